@@ -1,0 +1,35 @@
+"""What can go wrong for a user. Every message says what is wrong, where, and what to do next."""
+
+from __future__ import annotations
+
+
+class TarlError(Exception):
+    """Base of all errors that are meant for the user: shown as one sentence, without a traceback."""
+
+
+class SettingsError(TarlError):
+    """A marker, an option or an ini value is not usable."""
+
+
+class FixtureError(TarlError):
+    """A utility fixture is missing, damaged, foreign or of another format."""
+
+
+class AnalysisError(TarlError):
+    """The named nodes cannot be analysed, or hold no flow from a subscription to a publish call."""
+
+
+class RecordingError(TarlError):
+    """A test run cannot be recorded: no reward, silent sensor, node that fails to start."""
+
+
+class NodeError(TarlError):
+    """A node misbehaves towards the simulation: it never waits, or ends in an exception."""
+
+
+class UnsupportedApiError(TarlError):
+    """A node asks the in-process ROS for something that it does not have."""
+
+
+class RepairError(TarlError):
+    """A mutation cannot be written into the source."""

@@ -1,0 +1,179 @@
+"""The values that the stages of the plugin hand on: frozen, no pytest, no numpy at import."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal
+
+from pytest_tarl.sensors import Cell, Sensor
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Vector = NDArray[np.float64]
+    Matrix = NDArray[np.float64]
+
+Result = Literal["degraded", "drifted", "no difference"]
+Reason = Literal["", "no operand helps", "gain too small", "nominal gets worse", "budget"]
+
+
+@dataclass(frozen=True, slots=True)
+class SitePlace:
+    """A site where it stands now: `id` is `str(tarl_lint.model.SiteId)`; lines count from 1."""
+
+    id: str
+    path: str
+    line: int
+    code: str
+    dependence: str
+    role: str
+    qualname: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class TaintList:
+    """The sites of one (source topic, sink topic) pair in order; a site's index is its *n* in this list."""
+
+    source: str
+    sink: str
+    sites: tuple[SitePlace, ...]
+
+    @property
+    def name(self) -> str:
+        """Name the list for people: `/odom → /cmd_vel`."""
+        return f"{self.source} → {self.sink}"
+
+
+@dataclass(frozen=True, slots=True)
+class Conjunct:
+    """One condition of a guard: `low <= sensor <= high`. Either end may be infinite; equal ends test a category."""
+
+    sensor: Sensor
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class Guard:
+    """When a mutation holds: all conjuncts, at most two; none means always."""
+
+    conjuncts: tuple[Conjunct, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """The cells in which the on-line world differs, and those never seen off-line."""
+
+    cells: tuple[Cell, ...] = ()
+    novel: tuple[Cell, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What the comparison concludes. `loss` and `detectable_loss` are rewards per episode."""
+
+    result: Result
+    p_drift: float
+    p_loss: float
+    loss: float
+    detectable_loss: float
+    tolerance: float
+
+
+@dataclass(frozen=True, slots=True)
+class Slice:
+    """Eq. 2 at one site: utility summed over the region, off-line and on-line."""
+
+    site: SitePlace
+    list_name: str
+    offline: float
+    online: float
+
+    @property
+    def difference(self) -> float:
+        """Return on-line minus off-line; negative where the site is worth less than designed."""
+        return self.online - self.offline
+
+
+@dataclass(frozen=True, slots=True)
+class OperandEffect:
+    """What simulation found out about one operand: its best value and the reward it gains per episode."""
+
+    code: str
+    value: float | None
+    best: float
+    effect: float
+
+
+@dataclass(frozen=True, slots=True)
+class Culprit:
+    """A ranked site. `method` is `slices` where nothing was simulated for it."""
+
+    site: SitePlace
+    score: float
+    method: str
+    operands: tuple[OperandEffect, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """One repaired operand: where, its text, and the value (or factor) it takes under the guard."""
+
+    path: str
+    line: int
+    code: str
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class Repair:
+    """What the search ended with. `guard` is Python as written in the patch; `diff` is empty when not accepted."""
+
+    accepted: bool
+    guard: str
+    edits: tuple[Edit, ...]
+    diff: str = ""
+    patch: str = ""                         # path of the patch file, relative to the root
+    reason: Reason = ""
+
+
+@dataclass(frozen=True, slots=True)
+class SearchTrace:
+    """Average-total-reward curve of one search: `totals[i]` is the reward of its i-th episode, `labels[i]` what ran."""
+
+    method: str
+    totals: tuple[float, ...]
+    labels: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class ListComparison:
+    """One taint list under both worlds. Arrays have shape (cells, sites); NaN where never visited."""
+
+    taint_list: TaintList
+    offline: Matrix
+    online: Matrix
+    slices: tuple[Slice, ...]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Everything that an on-line run found: what terminal, JSON result and report page are made from."""
+
+    test: str
+    drift: str | None
+    seed: int
+    sensors: tuple[Sensor, ...]
+    cells: tuple[Cell, ...]                 # rows of the matrices below, sorted
+    lists: tuple[ListComparison, ...]
+    verdict: Verdict
+    region: Region
+    paper_region: tuple[Cell, ...]
+    totals: Mapping[str, tuple[float, ...]]  # reward per episode: offline, online, repaired, nominal_repaired
+    culprits: tuple[Culprit, ...] = ()
+    searches: tuple[SearchTrace, ...] = ()
+    repair: Repair | None = None
+    notes: tuple[str, ...] = ()
+    parts: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # part → mean off-line, on-line

@@ -1,0 +1,109 @@
+"""Sensors: what the node was told, binned into the cell that everything is learned by."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pytest_tarl.errors import SettingsError
+
+Cell = tuple[int, ...]          # one bin per sensor
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """A declared input and how it is binned.
+
+    With `topic` and `field` (dotted) it is read from the messages delivered to the node and can appear
+    in a guard; without them the test gives its value through `tarl.observe(name=value)` and it is
+    diagnostic only. `low`, `high` (units of the field) and `bins` make it numeric, with one more bin at
+    either end for values outside. `categories` lists the values of a text sensor. With neither it takes
+    booleans and small integers as they are.
+    """
+
+    name: str
+    topic: str | None = None
+    field: str | None = None
+    low: float | None = None
+    high: float | None = None
+    bins: int | None = None
+    categories: tuple[str, ...] = ()
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.name.isidentifier():
+            raise SettingsError(f"Sensor name {self.name!r} is not a Python identifier: choose one such as 'x'.")
+        if (self.topic is None) != (self.field is None):
+            raise SettingsError(f"Sensor {self.name!r} has a topic or a field but not both: give both, or neither "
+                                f"and report it with tarl.observe({self.name}=…).")
+        bounds = (self.low, self.high, self.bins)
+        if any(b is not None for b in bounds) and any(b is None for b in bounds):
+            raise SettingsError(f"Sensor {self.name!r} needs low, high and bins together, or none of them.")
+        if self.low is not None and self.high is not None and self.bins is not None:
+            if not self.low < self.high or self.bins < 1:
+                raise SettingsError(f"Sensor {self.name!r}: low must be below high and bins at least 1, got "
+                                    f"low={self.low}, high={self.high}, bins={self.bins}.")
+            if self.categories:
+                raise SettingsError(f"Sensor {self.name!r} is either numeric (low, high, bins) or has categories.")
+
+    @property
+    def numeric(self) -> bool:
+        """Tell whether values are binned by intervals."""
+        return self.bins is not None
+
+    @property
+    def guardable(self) -> bool:
+        """Tell whether a node can read it, so that a guard may test it."""
+        return self.topic is not None
+
+    def bin(self, value: Any) -> int | None:
+        """Return the bin of `value`: 0 to bins-1, -1 and `bins` outside; None for NaN, which tells nothing."""
+        if self.bins is not None and self.low is not None and self.high is not None:
+            number = float(value)
+            if math.isnan(number):
+                return None
+            if number == self.high:
+                return self.bins - 1
+            return max(-1, min(self.bins, math.floor((number - self.low) / (self.high - self.low) * self.bins)))
+        if self.categories:
+            if value not in self.categories:
+                raise SettingsError(f"Sensor {self.name!r} got {value!r}, which is not among its categories "
+                                    f"{', '.join(map(repr, self.categories))}: add it there.")
+            return self.categories.index(value)
+        number = float(value) if not isinstance(value, str) else math.nan
+        if not number.is_integer():
+            raise SettingsError(f"Sensor {self.name!r} got {value!r}: give it low, high and bins for a measurement, "
+                                "or categories for texts.")
+        return int(number)
+
+    def interval(self, first: int, last: int) -> tuple[float, float]:
+        """Return the values that bins `first` to `last` cover; infinite beyond the outer bins."""
+        if self.bins is None or self.low is None or self.high is None:
+            return float(first), float(last)
+        width = (self.high - self.low) / self.bins
+        low = -math.inf if first < 0 else self.low + first * width
+        high = math.inf if last >= self.bins else self.low + (last + 1) * width
+        return low, high
+
+    def label(self, index: int) -> str:
+        """Name a bin for people: `4.0-4.4`, `true`, a category."""
+        if self.numeric:
+            low, high = self.interval(index, index)
+            return f"{low:g}-{high:g}{self.unit and ' ' + self.unit}"
+        if self.categories:
+            return self.categories[index]
+        return str(index)
+
+
+def field_value(message: Any, field: str) -> Any:
+    """Follow a dotted field; a number indexes a sequence (`ranges.0`). Raises AttributeError or IndexError."""
+    for part in field.split("."):
+        if isinstance(message, Mapping):
+            message = message[part]
+        elif part.lstrip("-").isdigit() and isinstance(message, Sequence):
+            message = message[int(part)]
+        else:
+            message = getattr(message, part)
+    return message
