@@ -1,0 +1,232 @@
+"""Settings: `Options` (what the user typed) and `[tool.tarl-lint]` become a `Config`, valid for one run."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, Literal, cast, get_args
+
+from tarl_lint.errors import BaselineError, ConfigError
+
+FailOn = Literal["never", "hazard", "explicit", "implicit"]
+
+TABLE: Final = "tarl-lint"
+BASELINE_NAME: Final = "tarl-flows.json"
+FAIL_ON: Final[tuple[FailOn, ...]] = get_args(FailOn)
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What the user typed. None means that the settings file or the default decides."""
+
+    paths: tuple[Path, ...] = (Path(),)
+    config: Path | None = None
+    select: tuple[str, ...] | None = None
+    ignore: tuple[str, ...] | None = None
+    exclude: tuple[str, ...] | None = None
+    baseline: Path | None = None
+    no_baseline: bool = False
+    write_baseline: bool = False
+    fail_on: FailOn | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Config:
+    """Settings of one run. `Config()` is valid: every rule, nothing excluded, no baseline.
+
+    `select` and `ignore` hold rule codes or their beginnings (`TARL1`); an empty `select` means all rules.
+    `exclude` holds patterns as in .gitignore; they and a named baseline are relative to `root`.
+    `sources`, `sinks` and `sanitizers` are qualified names (`robot.bus.listen`).
+    `origins` names where each value comes from: "default", "command line" or the settings file.
+    """
+
+    root: Path | None = None
+    select: tuple[str, ...] = ()
+    ignore: tuple[str, ...] = ()
+    exclude: tuple[str, ...] = ()
+    baseline: Path | None = None
+    fail_on: FailOn = "explicit"
+    sources: tuple[str, ...] = ()
+    sinks: tuple[str, ...] = ()
+    sanitizers: tuple[str, ...] = ()
+    file: Path | None = None
+    origins: tuple[tuple[str, str], ...] = ()
+
+    def enabled(self, code: str) -> bool:
+        """Tell whether findings of a rule are wanted."""
+        chosen = not self.select or code.startswith(self.select)
+        return chosen and not (self.ignore and code.startswith(self.ignore))
+
+
+def resolve(options: Options) -> Config:
+    """Find and read the settings file, put the command line over it and return what this run uses.
+
+    Raises ConfigError for a file, key or value that is not usable, BaselineError when a named baseline is missing.
+    """
+    start = common_directory(options.paths)
+    file = options.config or find_settings(start)
+    table = read_settings(file, required=options.config is not None) if file else {}
+    root = file.resolve().parent if file else repository_root(start) or Path.cwd()
+    origins: dict[str, str] = {}
+
+    def choose(key: str, typed: Any, default: Any) -> Any:
+        origin = "command line" if typed is not None else shown(file) if file and key in table else "default"
+        origins[key] = origin
+        return typed if typed is not None else table.get(key, default)
+
+    return Config(
+        root=root,
+        select=choose("select", options.select, ()),
+        ignore=choose("ignore", options.ignore, ()),
+        exclude=choose("exclude", options.exclude, ()),
+        baseline=_baseline(options, root, choose("baseline", options.baseline, None)),
+        fail_on=choose("fail-on", options.fail_on, "explicit"),
+        file=file,
+        origins=tuple(origins.items()),
+    )
+
+
+def _baseline(options: Options, root: Path, named: Path | str | None) -> Path | None:
+    """Return the file of accepted flows to use, or None: there is none, or it is not wanted."""
+    if options.no_baseline:
+        return None
+    path = named if isinstance(named, Path) else root / (named or BASELINE_NAME)
+    if options.write_baseline or path.is_file():
+        return path
+    if named is not None:
+        raise BaselineError(
+            f"The baseline {shown(path)} does not exist: write it with --write-baseline, "
+            "or leave it out with --no-baseline."
+        )
+    return None
+
+
+def common_directory(paths: Sequence[Path]) -> Path:
+    """Return the nearest directory that holds all the paths, absolute; the working directory for none."""
+    places = [os.path.abspath(p) for p in paths] or [os.getcwd()]  # noqa: PTH100, PTH109 - also for missing files
+    try:
+        common = Path(os.path.commonpath(places))
+    except ValueError:  # drives of Windows have nothing in common
+        return Path.cwd()
+    return common if common.is_dir() else common.parent
+
+
+def repository_root(start: Path) -> Path | None:
+    """Return the nearest directory above (or at) `start` that git calls the top of a work tree."""
+    return next((d for d in (start, *start.parents) if (d / ".git").exists()), None)
+
+
+def find_settings(start: Path) -> Path | None:
+    """Return the nearest pyproject.toml with our table, from `start` up to the top of the repository."""
+    top = repository_root(start)
+    for directory in (start, *start.parents):
+        candidate = directory / "pyproject.toml"
+        if _mentions_us(candidate):
+            return candidate
+        if directory == top:
+            return None
+    return None
+
+
+def _mentions_us(path: Path) -> bool:
+    """Look at the bytes first: most projects' files need no TOML parser, which takes time to import."""
+    try:
+        data = path.read_bytes()
+    except OSError:
+        return False
+    return TABLE.encode() in data and _table(path, data) is not None
+
+
+def read_settings(path: Path, *, required: bool) -> Mapping[str, Any]:
+    """Return the checked values of `[tool.tarl-lint]`, or of the top level of a file of its own."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise ConfigError(f"The settings file {shown(path)} cannot be read: {error.strerror}.") from None
+    table = _table(path, data)
+    if table is None and required:
+        raise ConfigError(f"{shown(path)} has no [tool.{TABLE}] table: add one, or leave out --config.")
+    return {key: _check(path, key, value) for key, value in (table or {}).items()}
+
+
+def _table(path: Path, data: bytes) -> dict[str, Any] | None:
+    """Parse TOML and return our table, None when there is none."""
+    document = _parse_toml(path, data)
+    tool = document.get("tool")
+    if isinstance(tool, dict) and TABLE in tool:
+        table = tool[TABLE]
+        if not isinstance(table, dict):
+            raise ConfigError(
+                f"{shown(path)}: tool.{TABLE} must be a table: write [tool.{TABLE}] on a line of its own."
+            )
+        return cast("dict[str, Any]", table)
+    return None if path.name == "pyproject.toml" else document
+
+
+def _parse_toml(path: Path, data: bytes) -> dict[str, Any]:
+    toml = importlib.import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+    try:
+        return cast("dict[str, Any]", toml.loads(data.decode("utf-8")))
+    except ValueError as error:  # also bytes that are not UTF-8
+        raise ConfigError(f"{shown(path)} is not valid TOML: {error}.") from None
+
+
+def _texts(value: Any) -> tuple[str, ...] | None:
+    texts = isinstance(value, list) and all(isinstance(v, str) and v for v in value)
+    return tuple(value) if texts else None
+
+
+def _codes(value: Any) -> tuple[str, ...] | None:
+    codes = _texts(value)
+    return codes and tuple(code.upper() for code in codes) if codes is not None else None
+
+
+def _text(value: Any) -> str | None:
+    return value if isinstance(value, str) and value else None
+
+
+def _fail_on(value: Any) -> str | None:
+    return value if value in FAIL_ON else None
+
+
+KEYS: Final[Mapping[str, tuple[Callable[[Any], Any], str]]] = {
+    "select": (_codes, 'a list of rule codes such as ["TARL1"]'),
+    "ignore": (_codes, 'a list of rule codes such as ["TARL102"]'),
+    "exclude": (_texts, 'a list of patterns as in .gitignore, such as ["vendor/"]'),
+    "baseline": (_text, f'the name of a file, such as "{BASELINE_NAME}"'),
+    "fail-on": (_fail_on, f"one of {', '.join(map(repr, FAIL_ON))}"),
+}
+
+
+def _check(path: Path, key: str, value: Any) -> Any:
+    """Return a value as `Config` holds it; raises ConfigError that names the key, or the one meant."""
+    if key not in KEYS:
+        meant = suggestion(key.replace("_", "-"), KEYS)
+        raise ConfigError(
+            f"{shown(path)}: [tool.{TABLE}] has no key {key!r}{meant} Keys are {', '.join(KEYS)}."
+        )
+    convert, wanted = KEYS[key]
+    checked = convert(value)
+    if checked is None:
+        raise ConfigError(f"{shown(path)}: {key!r} in [tool.{TABLE}] must be {wanted}, not {value!r}.")
+    return checked
+
+
+def suggestion(word: str, known: Mapping[str, Any] | Sequence[str]) -> str:
+    """Return ": did you mean 'x'?" for a word that is nearly a known one, else a full stop."""
+    import difflib  # only mistakes need it
+
+    close = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
+    return f": did you mean {close[0]!r}?" if close else "."
+
+
+def shown(path: Path) -> str:
+    """Write a path for people: with slashes, relative to the working directory when below it."""
+    try:
+        return path.absolute().relative_to(Path.cwd()).as_posix()
+    except ValueError:
+        return path.absolute().as_posix()
