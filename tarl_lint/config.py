@@ -65,7 +65,7 @@ class Config:
 def resolve(options: Options) -> Config:
     """Find and read the settings file, put the command line over it and return what this run uses.
 
-    Raises ConfigError for a file, key or value that is not usable, BaselineError when a named baseline is missing.
+    Raises ConfigError for an unusable file, key or value, BaselineError when a named baseline is missing.
     """
     start = common_directory(options.paths)
     file = options.config or find_settings(start)

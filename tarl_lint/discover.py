@@ -1,0 +1,233 @@
+"""Which files are analysed, what they are called, and what is left out (counted, so that it can be said)."""
+
+# ruff: noqa: PTH - paths are texts here: trees are large, and Path objects cost five times as much
+
+from __future__ import annotations
+
+import difflib
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from tarl_lint import gitignore
+from tarl_lint.config import Config, repository_root, shown
+from tarl_lint.errors import UsageError
+from tarl_lint.gitignore import Ignore
+from tarl_lint.layout import Layout
+
+_NEVER = frozenset({"__pycache__", "node_modules", "site-packages"})
+_COLCON = frozenset({"build", "install", "log"})
+_MARKERS = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "pyvenv.cfg", ".catkin")
+_CPP = (".cpp", ".cc", ".cxx")
+_CPP_NODE = (
+    b"ros::init(",
+    b"ros::NodeHandle",
+    b"rclcpp::init(",
+    b"rclcpp::Node",
+    b"RCLCPP_COMPONENTS_REGISTER_NODE",
+)
+_LAUNCH = (".launch", ".launch.xml", ".launch.py", ".launch.yaml", ".launch.yml")
+_ENOUGH = 200_000  # bytes read of a file that only is to be counted
+
+
+class SourceFile(NamedTuple):
+    """A file to analyse: where it is, its path as people see it, its dotted name, whether it is `__init__.py`."""
+
+    path: Path
+    shown: str
+    name: str
+    is_package: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Notes:
+    """What was seen but not analysed: counts, and the directories that cannot be read."""
+
+    cpp_nodes: int = 0
+    remapping_launch_files: int = 0
+    duplicate_links: int = 0
+    unreadable: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Discovery:
+    """The files of a run, sorted by the path that people see, and what was left out."""
+
+    files: tuple[SourceFile, ...] = ()
+    notes: Notes = field(default_factory=Notes)
+
+
+def find(paths: Sequence[Path], config: Config) -> Discovery:
+    """Return the Python files at and below `paths`; what is named itself is taken even if a pattern excludes it.
+
+    Raises UsageError for a path that does not exist.
+    """
+    walk = _Walk(config)
+    for path in paths:
+        if path.is_dir():
+            walk.tree(_absolute(path))
+        elif path.exists():
+            walk.take(_absolute(path))
+        else:
+            raise UsageError(_missing(path))
+    walk.follow_links()
+    return walk.discovery()
+
+
+class _Walk:
+    """One search. Links are followed last, so that the place they lead to goes first."""
+
+    def __init__(self, config: Config) -> None:
+        root = _absolute(config.root or Path.cwd())
+        self._excluded = gitignore.parse(root, config.exclude)
+        self._seen: set[str] = set()
+        self._files: dict[str, str] = {}
+        self._links: list[tuple[str, tuple[Ignore, ...]]] = []
+        self._cpp = self._launch = self._duplicates = 0
+        self._unreadable: list[str] = []
+
+    def tree(self, directory: str) -> None:
+        """Search a directory that the user named."""
+        self._search(directory, _ignores_above(directory))
+
+    def take(self, path: str) -> None:
+        """Add a file, unless it is there already under another name."""
+        real = os.path.realpath(path)
+        if real in self._files and self._files[real] != path:
+            self._duplicates += 1
+        self._files.setdefault(real, path)
+
+    def follow_links(self) -> None:
+        """Search what links lead to, as far as it was not reached without them."""
+        while self._links:
+            path, ignores = self._links.pop(0)
+            if not os.path.isdir(path):
+                self.take(path)
+            elif os.path.realpath(path) in self._seen or _leads_above_itself(path):
+                self._duplicates += 1
+            else:
+                self._search(path, ignores)
+
+    def discovery(self) -> Discovery:
+        """Return what was found."""
+        layout, here = Layout(), _absolute(Path()).rstrip("/") + "/"
+        files = [SourceFile(Path(p), p.removeprefix(here), *layout.module(p)) for p in self._files.values()]
+        notes = Notes(self._cpp, self._launch, self._duplicates, tuple(sorted(self._unreadable)))
+        return Discovery(tuple(sorted(files, key=lambda f: f.shown)), notes)
+
+    def _search(self, top: str, ignores: tuple[Ignore, ...]) -> None:
+        pending = [(top, ignores)]
+        while pending:
+            directory, above = pending.pop()
+            real = os.path.realpath(directory)
+            if real in self._seen:
+                continue
+            self._seen.add(real)
+            entries = self._entries(directory)
+            inside = above + _ignore_file(directory)
+            for entry in entries:
+                if self._left_out(entry, inside):
+                    continue
+                if entry.is_symlink():
+                    self._links += [(entry.path, inside)] if entry.is_dir() or _is_python(entry) else []
+                elif entry.is_dir():
+                    pending.append((entry.path, inside))
+                else:
+                    self._file(entry)
+
+    def _entries(self, directory: str) -> list[os.DirEntry[str]]:
+        try:
+            with os.scandir(directory) as found:
+                return sorted(found, key=lambda entry: entry.name)
+        except OSError:
+            self._unreadable.append(shown(Path(directory)))
+            return []
+
+    def _left_out(self, entry: os.DirEntry[str], ignores: tuple[Ignore, ...]) -> bool:
+        is_directory = entry.is_dir()
+        if is_directory and _not_ours(entry.path, entry.name):
+            return True
+        return gitignore.ignored(entry.path, (*ignores, self._excluded), is_directory=is_directory)
+
+    def _file(self, entry: os.DirEntry[str]) -> None:
+        if _is_python(entry):
+            self.take(entry.path)
+        if entry.name.endswith(_CPP):
+            self._cpp += _mentions(entry.path, _CPP_NODE)
+        elif entry.name.endswith(_LAUNCH):
+            self._launch += _mentions(entry.path, (b"remap",))
+
+
+def _absolute(path: Path) -> str:
+    return os.path.abspath(path)
+
+
+def _not_ours(path: str, name: str) -> bool:
+    """Tell whether a directory holds what tools made or installed: hidden, environment, colcon's, catkin's."""
+    if name.startswith(".") or name in _NEVER:
+        return True
+    if name in _COLCON and not os.path.exists(f"{path}/__init__.py"):
+        return True
+    return any(os.path.exists(f"{path}/{marker}") for marker in _MARKERS)
+
+
+def _leads_above_itself(path: str) -> bool:
+    """Tell whether a link leads to a directory that it lies in, which would go round for ever."""
+    parent = os.path.realpath(os.path.dirname(path))
+    target = os.path.realpath(path)
+    return parent == target or parent.startswith(target.rstrip("/") + "/")
+
+
+def _is_python(entry: os.DirEntry[str]) -> bool:
+    """Tell whether a file is Python by its name, or by its first line where it has no extension."""
+    if not entry.is_file():
+        return False
+    return entry.name.endswith(".py") or ("." not in entry.name and _has_python_shebang(entry.path))
+
+
+def _has_python_shebang(path: str) -> bool:
+    first = _head(path, 120).split(b"\n", 1)[0]
+    return first.startswith(b"#!") and b"python" in first
+
+
+def _mentions(path: str, words: tuple[bytes, ...]) -> bool:
+    data = _head(path, _ENOUGH)
+    return any(word in data for word in words)
+
+
+def _head(path: str, size: int) -> bytes:
+    try:
+        with open(path, "rb") as file:
+            return file.read(size)
+    except OSError:
+        return b""
+
+
+def _ignore_file(directory: str) -> tuple[Ignore, ...]:
+    text = _head(f"{directory}/.gitignore", _ENOUGH).decode("utf-8", errors="replace")
+    return (gitignore.parse(directory, text.splitlines()),) if text else ()
+
+
+def _ignores_above(directory: str) -> tuple[Ignore, ...]:
+    """Return the .gitignore files between the top of the repository and a directory, outermost first."""
+    return tuple(ignore for place in _above(directory) for ignore in _ignore_file(place))
+
+
+def _above(directory: str) -> Iterator[str]:
+    start = Path(directory)
+    top = repository_root(start)
+    if top is not None and top != start:
+        relative = start.relative_to(top).parts
+        yield from (str(top.joinpath(*relative[:depth])) for depth in range(len(relative)))
+
+
+def _missing(path: Path) -> str:
+    """Say that a path does not exist, and which neighbour may have been meant."""
+    parent = path.parent
+    if not parent.is_dir():
+        return f"There is no {path.as_posix()}: the directory {parent.as_posix()} does not exist either."
+    close = difflib.get_close_matches(path.name, [p.name for p in parent.iterdir()], n=1)
+    hint = f"did you mean {(parent / close[0]).as_posix()}?" if close else "check the path."
+    return f"There is no {path.as_posix()}: {hint}"
