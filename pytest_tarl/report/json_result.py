@@ -1,0 +1,147 @@
+"""The result for other tools: one versioned JSON document per on-line run, see `result.schema.json`."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from pytest_tarl.errors import TarlError
+from pytest_tarl.fixture import write_atomically
+from pytest_tarl.model import Comparison, Culprit, Repair, SitePlace, Slice
+from pytest_tarl.report.regions import boxes
+from pytest_tarl.report.words import atr
+from pytest_tarl.sensors import Cell, Sensor
+
+FORMAT_VERSION = 1  # 1: first version
+COUNTED = ("offline", "online", "search", "acceptance")
+WORLDS = ("offline", "online", "repaired", "nominal_repaired")
+
+
+def write(comparison: Comparison, path: Path, episodes: Mapping[str, int]) -> None:
+    """Write the result of a run; `episodes` counts those of `offline`, `online`, `search` and `acceptance`.
+
+    Raises:
+        TarlError: the file cannot be written.
+    """
+    text = json.dumps(document(comparison, episodes), indent=1, ensure_ascii=False, allow_nan=False)
+    try:
+        write_atomically(path, f"{text}\n".encode())
+    except OSError as error:
+        raise TarlError(
+            f"The result {path} cannot be written: {error.strerror or error}. "
+            "Make the directory writable, or free some space."
+        ) from error
+
+
+def schema() -> dict[str, Any]:
+    """Return the JSON schema of the document."""
+    text = resources.files(__package__).joinpath("result.schema.json").read_text("utf-8")
+    loaded: dict[str, Any] = json.loads(text)
+    return loaded
+
+
+def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, Any]:
+    """Return the result as plain values; what is not a finite number is null."""
+    verdict, repair = comparison.verdict, comparison.repair
+    return {
+        "format": FORMAT_VERSION,
+        "test": comparison.test,
+        "drift": comparison.drift,
+        "seed": comparison.seed,
+        "episodes": {name: int(episodes.get(name, 0)) for name in COUNTED},
+        "atr": {world: _finite(atr(comparison, world)) for world in WORLDS},
+        "verdict": {
+            "result": verdict.result,
+            "p_drift": _finite(verdict.p_drift),
+            "p_loss": _finite(verdict.p_loss),
+            "loss": _finite(verdict.loss),
+            "detectable_loss": _finite(verdict.detectable_loss),
+        },
+        "region": rectangles(comparison.region.cells, comparison.sensors),
+        "novel": rectangles(comparison.region.novel, comparison.sensors),
+        "sites": [
+            _site(one) for one in _widest(one for compared in comparison.lists for one in compared.slices)
+        ],
+        "culprits": [_culprit(culprit) for culprit in comparison.culprits],
+        "repair": _repair(repair) if repair else None,
+    }
+
+
+def rectangles(cells: Iterable[Cell], sensors: Sequence[Sensor]) -> list[dict[str, list[Any]]]:
+    """Cover cells with rectangles: per sensor name a closed interval in its units, null at an open end.
+
+    Both ends of a text sensor are one and the same category.
+    """
+    texts = [d for d, sensor in enumerate(sensors) if sensor.categories]
+    return [
+        {sensor.name: _interval(sensor, *ends) for sensor, ends in zip(sensors, box, strict=True)}
+        for box in boxes(cells, apart=texts)
+    ]
+
+
+def _interval(sensor: Sensor, first: int, last: int) -> list[Any]:
+    if sensor.categories:
+        return [sensor.categories[first], sensor.categories[last]]
+    if not sensor.numeric:
+        return [first, last]
+    return [_finite(round(end, 9)) for end in sensor.interval(first, last)]
+
+
+def _widest(slices: Iterable[Slice]) -> list[Slice]:
+    """Keep each site once, with the list in which it changes most, in order of first appearance."""
+    kept: dict[str, Slice] = {}
+    for one in slices:
+        held = kept.get(one.site.id)
+        if held is None or _size(one) > _size(held):
+            kept[one.site.id] = one
+    return list(kept.values())
+
+
+def _size(one: Slice) -> float:
+    return -1.0 if math.isnan(one.difference) else abs(one.difference)
+
+
+def _place(site: SitePlace) -> dict[str, Any]:
+    return {"site": site.id, "path": site.path, "line": site.line}
+
+
+def _site(one: Slice) -> dict[str, Any]:
+    figures = {"offline": one.offline, "online": one.online, "difference": one.difference}
+    return {
+        **_place(one.site),
+        "code": one.site.code,
+        **{name: _finite(value) for name, value in figures.items()},
+    }
+
+
+def _culprit(culprit: Culprit) -> dict[str, Any]:
+    operands = [
+        {
+            "code": one.code,
+            "value": _finite(one.value),
+            "best": _finite(one.best),
+            "effect": _finite(one.effect),
+        }
+        for one in culprit.operands
+    ]
+    evidence = {"score": _finite(culprit.score), "method": culprit.method, "operands": operands}
+    return {**_place(culprit.site), **evidence}
+
+
+def _repair(repair: Repair) -> dict[str, Any]:
+    edits = [
+        {"path": edit.path, "line": edit.line, "code": edit.code, "value": _finite(edit.value)}
+        for edit in repair.edits
+    ]
+    return {"accepted": repair.accepted, "guard": repair.guard, "patch": repair.patch or None, "edits": edits}
+
+
+def _finite(value: float | None) -> float | None:
+    """Return a number as JSON can hold it: numpy scalars as Python's, NaN and infinities as null."""
+    if value is None or not math.isfinite(value):
+        return None
+    return value if isinstance(value, int) else float(value)

@@ -1,0 +1,115 @@
+"""The terminal's account of one comparison: a few labelled lines, nothing that the page says better."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from textwrap import wrap
+
+from pytest_tarl.model import Comparison, Culprit, ListComparison, Slice
+from pytest_tarl.report import words
+
+SHOWN = 3  # culprits, lists and notes before "(and 3 more)"
+LABEL = 9  # width of the column of labels
+NARROWEST = 40  # below this, lines are left to the terminal to break
+
+
+def lines(comparison: Comparison, *, width: int, root: Path, page: Path | None = None) -> list[str]:
+    """Return the account of one comparison, `width` columns wide; `page` is the report's path, if written.
+
+    Paths and commands that must be copied whole may be wider.
+    """
+    width = max(width, NARROWEST)
+    name = f"{comparison.test}[{comparison.drift or 'online'}]"
+    told = [f"{name}: {comparison.verdict.result}"]
+    for label, texts in _entries(comparison, width, root, page):
+        for text in texts:
+            told += _labelled(label, text, width, whole=label in ("page", "again", "next"))
+            label = ""
+    return told
+
+
+def _entries(
+    comparison: Comparison, width: int, root: Path, page: Path | None
+) -> Iterator[tuple[str, list[str]]]:
+    yield "verdict", [words.verdict_sentence(comparison)]
+    yield "reward", [_rewards(comparison)]
+    if comparison.verdict.result != "no difference":
+        yield "where", [words.region_words(comparison) or "no single situation stands out"]
+        yield "lines", list(_culprits(comparison, width - LABEL - 2, root))
+        yield "slices", list(_slices(comparison, root))
+    yield "repair", list(_repair(comparison))
+    yield "note", list(_some([words.one_line(note) for note in comparison.notes]))
+    yield "page", [_shown(page, root)] if page else []
+    yield "again", [words.command(comparison)]
+    yield "next", list(words.next_steps(comparison))
+
+
+def _labelled(label: str, text: str, width: int, *, whole: bool) -> list[str]:
+    """Hang `text` beside its label; paths and commands stay `whole`, to be copied."""
+    body = [text] if whole else wrap(text, width - LABEL - 2, break_on_hyphens=False) or [""]
+    return [f"  {label if i == 0 else '':<{LABEL}}{line}".rstrip() for i, line in enumerate(body)]
+
+
+def _rewards(comparison: Comparison) -> str:
+    named = {
+        "offline": "off-line",
+        "online": "on-line",
+        "repaired": "repaired",
+        "nominal_repaired": "designed world repaired",
+    }
+    figures = [
+        f"{name} {words.amount(words.atr(comparison, world))}"
+        for world, name in named.items()
+        if comparison.totals.get(world)
+    ]
+    return ", ".join(figures)
+
+
+def _culprits(comparison: Comparison, width: int, root: Path) -> Iterator[str]:
+    ranked = enumerate(comparison.culprits, start=1)
+    return _some([_culprit(f"{rank}.", culprit, width, root) for rank, culprit in ranked])
+
+
+def _culprit(rank: str, culprit: Culprit, width: int, root: Path) -> str:
+    site = culprit.site
+    evidence = "by its slice" if culprit.method == "slices" else "no operand helps"
+    if culprit.operands:
+        best = culprit.operands[0]
+        evidence = f"{best.code} at {best.best:g}: {words.signed(best.effect)}"
+    where = f"{rank} {words.place(site.path, site.line, root)}"
+    room = width - len(where) - len(evidence) - 6
+    return f"{where}  {words.one_line(site.code, room)}  ({evidence})"
+
+
+def _slices(comparison: Comparison, root: Path) -> Iterator[str]:
+    peaks = ((one, words.peak(one.slices)) for one in comparison.lists)
+    return _some([_slice_summary(one, peak, root) for one, peak in peaks if peak])
+
+
+def _slice_summary(compared: ListComparison, peak: Slice, root: Path) -> str:
+    change = f"{words.amount(peak.offline)} to {words.amount(peak.online)}"
+    where = words.place(peak.site.path, peak.site.line, root)
+    return f"{compared.taint_list.name}: utility changes most at {where}, {change}"
+
+
+def _repair(comparison: Comparison) -> Iterator[str]:
+    repair = comparison.repair
+    if repair is None:
+        return
+    if repair.accepted:
+        yield f"accepted: {words.repair_words(repair)}"
+    else:
+        yield f"none accepted: {words.refusal(repair)}"
+        if repair.edits:
+            yield f"best so far: {words.repair_words(repair)}"
+
+
+def _some(texts: list[str]) -> Iterator[str]:
+    yield from texts[:SHOWN]
+    if len(texts) > SHOWN:
+        yield f"(and {len(texts) - SHOWN} more)"
+
+
+def _shown(path: Path, root: Path) -> str:
+    return (path.relative_to(root) if path.is_relative_to(root) else path).as_posix()

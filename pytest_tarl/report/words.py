@@ -1,0 +1,151 @@
+"""The sentences that terminal and page share: verdict, numbers, repair, commands."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import accumulate
+from pathlib import Path
+from statistics import fmean
+
+from pytest_tarl.model import Comparison, Edit, Reason, Repair, Slice
+from pytest_tarl.report.regions import Vocabulary
+
+SHORTEST = 16  # characters of a code line that are shown however narrow the place is
+REASONS: dict[Reason, str] = {
+    "": "no reason was recorded",
+    "no operand helps": "no change of a single constant brings the reward back",
+    "gain too small": "the best change found gains too little",
+    "nominal gets worse": "the best change found makes the designed world worse",
+    "budget": "the search used up its episodes",
+}
+
+
+def amount(value: float | None) -> str:
+    """Write a reward or utility with three digits or so; `n/a` where there is none."""
+    if value is None or math.isnan(value):
+        return "n/a"
+    if value == 0 or 0.1 <= abs(value) < 1000:
+        return f"{value:.2f}"
+    return f"{value:.3g}"
+
+
+def signed(value: float | None) -> str:
+    """Write a difference, its sign always shown."""
+    text = amount(value)
+    return text if text.startswith(("-", "n")) else f"+{text}"
+
+
+def p_value(value: float) -> str:
+    """Write a p value as an equation or inequality: `p = 0.021`, `p < 0.001`."""
+    if math.isnan(value):
+        return "p unknown"
+    return "p < 0.001" if value < 0.001 else f"p = {value:.2g}"
+
+
+def atr(comparison: Comparison, world: str) -> float | None:
+    """Return the average total reward (Eq. 3) of `offline`, `online`, `repaired` or `nominal_repaired`."""
+    totals = comparison.totals.get(world, ())
+    return fmean(totals) if totals else None
+
+
+def running_mean(totals: Sequence[float]) -> list[float]:
+    """Return the average total reward after each episode (Eq. 3)."""
+    return [total / count for count, total in enumerate(accumulate(totals), start=1)]
+
+
+def world_name(comparison: Comparison) -> str:
+    """Name the world that was compared with the designed one."""
+    return f"the drift scenario {comparison.drift!r}" if comparison.drift else "the on-line world"
+
+
+def verdict_sentence(comparison: Comparison) -> str:
+    """Say in one sentence what the comparison concludes."""
+    verdict, world = comparison.verdict, world_name(comparison)
+    if verdict.result == "degraded":
+        loss = amount(verdict.loss)
+        return f"In {world} an episode earns {loss} less than designed ({p_value(verdict.p_loss)})."
+    if verdict.result == "drifted":
+        return (
+            f"{_capital(world)} differs from the designed one ({p_value(verdict.p_drift)}), "
+            f"but no loss of reward was found ({p_value(verdict.p_loss)})."
+        )
+    return (
+        f"No difference was found between {world} and the designed one; "
+        f"a loss of {amount(verdict.detectable_loss)} per episode would have been."
+    )
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def region_words(comparison: Comparison) -> str:
+    """Say where the on-line world differs, never-seen situations apart; empty when nowhere."""
+    vocabulary = Vocabulary(comparison.sensors, comparison.cells)
+    novel = set(comparison.region.novel)
+    known = [cell for cell in comparison.region.cells if cell not in novel]
+    parts = [vocabulary.words(known)] if known else []
+    if novel:
+        parts.append(f"never seen off-line: {vocabulary.words(novel)}")
+    return "; ".join(parts)
+
+
+def paper_region_words(comparison: Comparison) -> str:
+    """Name the paper's own region; empty when there is none."""
+    if not comparison.paper_region:
+        return ""
+    return Vocabulary(comparison.sensors, comparison.cells).words(comparison.paper_region)
+
+
+def edit_words(edit: Edit) -> str:
+    """Say what an edit does: a number is replaced, a name takes another value."""
+    return f"{edit.code} → {edit.value:g}"
+
+
+def repair_words(repair: Repair) -> str:
+    """Say what the repair changes and when: `5 → 12 at traveller.py:30 where terrain`."""
+    edits = ", ".join(f"{edit_words(edit)} at {edit.path}:{edit.line}" for edit in repair.edits)
+    return f"{edits} {f'where {repair.guard}' if repair.guard else 'everywhere'}"
+
+
+def refusal(repair: Repair) -> str:
+    """Say why no repair was accepted."""
+    return REASONS.get(repair.reason, repair.reason)
+
+
+def command(comparison: Comparison, *flags: str) -> str:
+    """Return the command that repeats the comparison."""
+    drift = ["--tarl-drift", comparison.drift] if comparison.drift else []
+    return shlex.join(["pytest", comparison.test, "--tarl-online", *drift, *flags])
+
+
+def next_steps(comparison: Comparison) -> Iterator[str]:
+    """Yield the commands that a developer would run now, the most useful last."""
+    if comparison.repair and comparison.repair.accepted and comparison.repair.patch:
+        yield shlex.join(["git", "apply", comparison.repair.patch])
+    elif comparison.verdict.result == "degraded" and comparison.repair is None:
+        yield command(comparison, "--tarl-repair")
+
+
+def peak(slices: Iterable[Slice]) -> Slice | None:
+    """Return the slice that differs most between the worlds; None where none is known."""
+    known = [one for one in slices if not math.isnan(one.difference)]
+    return max(known, key=lambda one: abs(one.difference), default=None)
+
+
+def place(path: str, line: int, root: Path) -> str:
+    """Return `path:line`, the path relative to `root` where it lies below it."""
+    inside = Path(path)
+    if inside.is_absolute() and inside.is_relative_to(root):
+        inside = inside.relative_to(root)
+    return f"{inside.as_posix()}:{line}"
+
+
+def one_line(code: str, width: int | None = None) -> str:
+    """Fold a statement that spans lines into one, of at most `width` characters."""
+    folded = " ".join(code.split())
+    if width is None or len(folded) <= max(width, SHORTEST):
+        return folded
+    return folded[: max(width, SHORTEST) - 1].rstrip() + "…"

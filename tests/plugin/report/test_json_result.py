@@ -1,0 +1,142 @@
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+
+from pytest_tarl.errors import TarlError
+from pytest_tarl.model import Culprit, OperandEffect, Repair, Verdict
+from pytest_tarl.report.json_result import document, rectangles, schema, write
+from pytest_tarl.sensors import Sensor
+
+EPISODES = {"offline": 120, "online": 40, "search": 46, "acceptance": 28}
+
+
+def written(comparison, tmp_path: Path):
+    path = tmp_path / "results" / "delivers-mud.json"
+    write(comparison, path, EPISODES)
+    return json.loads(path.read_text("utf-8"), parse_constant=pytest.fail)
+
+
+def test_every_comparison_fits_the_schema(any_comparison, tmp_path):
+    jsonschema.Draft202012Validator.check_schema(schema())
+    jsonschema.validate(written(any_comparison, tmp_path), schema())
+
+
+def test_the_document_has_the_agreed_keys_in_their_order(shuttle, tmp_path):
+    found = written(shuttle, tmp_path)
+    assert list(found) == [
+        "format",
+        "test",
+        "drift",
+        "seed",
+        "episodes",
+        "atr",
+        "verdict",
+        "region",
+        "novel",
+        "sites",
+        "culprits",
+        "repair",
+    ]
+    assert found["format"] == 1
+    assert found["episodes"] == EPISODES
+    assert found["verdict"] == {
+        "result": "degraded",
+        "p_drift": 0.001,
+        "p_loss": 0.0005,
+        "loss": 16.9,
+        "detectable_loss": 0.41,
+    }
+    assert found["repair"] == {
+        "accepted": True,
+        "guard": "terrain and 4.167 <= pos <= 7.083",
+        "patch": ".tarl/patches/test-delivers-mud-1a2b3c4d.patch",
+        "edits": [{"path": "traveller.py", "line": 30, "code": "5", "value": 12.0}],
+    }
+    assert found["culprits"][0]["operands"] == [{"code": "5", "value": 5, "best": 12.0, "effect": 14.2}]
+    assert found["sites"][5]["difference"] == pytest.approx(
+        found["sites"][5]["online"] - found["sites"][5]["offline"]
+    )
+
+
+def test_the_region_is_rectangles_in_sensor_units(shuttle, tmp_path):
+    assert written(shuttle, tmp_path)["region"] == [{"x": [4.166666667, 7.083333333], "terrain": [1, 1]}]
+
+
+def test_open_ends_are_null_and_text_categories_stay_apart(two_lists, tmp_path):
+    found = written(two_lists, tmp_path)
+    assert found["novel"] == [{"x": [7.916666667, None], "terrain": [0, 1], "light": ["night", "night"]}]
+    two = rectangles([(0,), (1,)], [Sensor("light", categories=("day", "night"))])
+    assert two == [{"light": ["day", "day"]}, {"light": ["night", "night"]}]
+
+
+def test_a_site_of_two_lists_appears_once_with_its_largest_change(two_lists, tmp_path):
+    found = written(two_lists, tmp_path)["sites"]
+    shared = two_lists.lists[0].taint_list.sites[1].id
+    differences = [
+        one.difference for compared in two_lists.lists for one in compared.slices if one.site.id == shared
+    ]
+    assert len(differences) == 2
+    assert [site["difference"] for site in found if site["site"] == shared] == [
+        pytest.approx(max(differences, key=abs))
+    ]
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, np.float64("nan")])
+def test_numbers_that_are_not_finite_become_null(varied, bad, tmp_path):
+    places = varied().culprits[0].site
+    broken = varied(
+        verdict=Verdict("degraded", bad, bad, bad, bad, 0.5),
+        totals={"offline": (1.0, bad), "online": ()},
+        culprits=(Culprit(places, bad, "sweep", (OperandEffect("5", None, bad, bad),)),),
+    )
+    found = written(broken, tmp_path)
+    assert set(found["verdict"].values()) == {"degraded", None}
+    assert found["atr"] == dict.fromkeys(("offline", "online", "repaired", "nominal_repaired"))
+    jsonschema.validate(found, schema())
+
+
+def test_numpy_numbers_are_written_as_numbers(varied, tmp_path):
+    verdict = Verdict("degraded", np.float64(0.25), np.float64(0.5), np.float32(1.5), np.float64(2), 0.5)
+    assert written(varied(verdict=verdict), tmp_path)["verdict"]["loss"] == 1.5
+
+
+def test_without_a_search_repair_is_null_and_without_acceptance_the_patch_is(varied, unrepaired, tmp_path):
+    assert written(unrepaired, tmp_path)["repair"] is None
+    refused = varied(repair=Repair(False, "", (), reason="budget"))
+    assert written(refused, tmp_path)["repair"] == {
+        "accepted": False,
+        "guard": "",
+        "patch": None,
+        "edits": [],
+    }
+
+
+def test_missing_counts_are_zero(shuttle):
+    assert document(shuttle, {"online": 3})["episodes"] == {
+        "offline": 0,
+        "online": 3,
+        "search": 0,
+        "acceptance": 0,
+    }
+
+
+def test_the_same_comparison_gives_the_same_bytes_and_leaves_nothing_else_behind(shuttle, tmp_path):
+    path = tmp_path / "result.json"
+    write(shuttle, path, EPISODES)
+    first = path.read_bytes()
+    write(shuttle, path, EPISODES)
+    assert path.read_bytes() == first
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_place_that_cannot_be_written_is_named_in_a_sentence(shuttle, tmp_path):
+    blocked = tmp_path / "file"
+    blocked.write_text("not a directory")
+    with pytest.raises(TarlError, match=r"The result .*result\.json cannot be written: "):
+        write(shuttle, blocked / "result.json", EPISODES)

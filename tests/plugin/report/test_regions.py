@@ -1,0 +1,107 @@
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pytest_tarl.report.regions import Vocabulary, boxes, bridged
+from pytest_tarl.sensors import Sensor
+
+X = Sensor("x", low=0, high=10, bins=10, unit="m")
+TERRAIN = Sensor("terrain")
+LANE = Sensor("lane")
+LIGHT = Sensor("light", categories=("day", "dusk", "night"))
+CELLS = st.sets(st.tuples(st.integers(-1, 5), st.integers(0, 2), st.integers(0, 1)), max_size=30)
+
+
+def inside(cover):
+    return {
+        (x, y, z)
+        for (a, b), (c, d), (e, f) in cover
+        for x in range(a, b + 1)
+        for y in range(c, d + 1)
+        for z in range(e, f + 1)
+    }
+
+
+@given(CELLS)
+def test_boxes_cover_the_cells_and_nothing_else(cells):
+    cover = boxes(cells)
+    assert inside(cover) == cells
+    assert sum((b - a + 1) * (d - c + 1) * (f - e + 1) for (a, b), (c, d), (e, f) in cover) == len(cells)
+
+
+@given(CELLS, CELLS)
+def test_bridges_never_take_in_a_cell_that_was_visited_and_is_not_in_the_region(cells, others):
+    joined = inside(bridged(boxes(cells), others - cells))
+    assert cells <= joined
+    assert not joined & (others - cells)
+
+
+def test_a_full_rectangle_is_one_box():
+    assert boxes((x, y) for x in range(3, 7) for y in range(2)) == (((3, 6), (0, 1)),)
+
+
+def test_sensors_kept_apart_are_never_merged():
+    assert boxes([(1, 0), (1, 1)], apart=[1]) == (((1, 1), (0, 0)), ((1, 1), (1, 1)))
+
+
+def words(cells, sensors=(X, TERRAIN), seen=None):
+    everywhere = [(x, t) for x in range(-1, 11) for t in (0, 1)]
+    return Vocabulary(sensors, everywhere if seen is None else seen).words(cells)
+
+
+@pytest.mark.parametrize(
+    ("cells", "expected"),
+    [
+        ([(4, 1), (5, 1), (6, 1)], "x 4-7 m, terrain true"),
+        ([(4, 0), (5, 0)], "x 4-6 m, terrain false"),
+        ([(4, 0), (4, 1)], "x 4-5 m"),
+        ([(1, 1), (4, 1), (5, 1)], "x 1-2 or 4-6 m, terrain true"),
+        ([(-1, 1), (0, 1)], "x below 1 m, terrain true"),
+        ([(9, 1), (10, 1)], "x above 9 m, terrain true"),
+        ([(x, 1) for x in range(-1, 11)], "x anywhere, terrain true"),
+        ([(1, 0), (4, 1), (5, 1)], "x 1-2 m, terrain false; x 4-6 m, terrain true"),
+        ([], "nowhere"),
+    ],
+)
+def test_a_region_is_named_by_its_intervals(cells, expected):
+    assert words(cells) == expected
+
+
+def test_words_close_gaps_that_nobody_visited():
+    seen = [(3, 1), (4, 1), (6, 1), (8, 1)]
+    assert words([(3, 1), (4, 1), (6, 1)], seen=seen) == "x 3-7 m, terrain true"
+
+
+def test_a_gap_that_was_visited_stays():
+    seen = [(3, 1), (4, 1), (6, 1)]
+    assert words([(3, 1), (6, 1)], seen=seen) == "x 3-4 or 6-7 m, terrain true"
+
+
+def test_many_places_are_capped():
+    cells = [(2 * i, i % 2, i) for i in range(5)]
+    seen = [(x, t, lane) for x in range(10) for t in (0, 1) for lane in range(5)]
+    assert words(cells, (X, TERRAIN, LANE), seen).endswith("; and 2 more")
+
+
+def test_integers_beyond_one_are_no_booleans():
+    assert words([(0,), (1,)], (LANE,), [(0,), (1,), (2,)]) == "lane 0 or 1"
+
+
+def test_categories_are_named():
+    assert words([(0, 1), (0, 2)], (X, LIGHT), [(0, 0), (0, 1), (0, 2)]) == "x 0-1 m, light dusk or night"
+
+
+def test_a_category_region_that_covers_all_says_everywhere():
+    assert words([(0,), (1,)], (TERRAIN,), [(0,), (1,)]) == "everywhere"
+
+
+def test_negative_bounds_are_not_written_with_a_dash():
+    heading = Sensor("heading", low=-3, high=3, bins=6, unit="rad")
+    assert words([(0,), (1,)], (heading,), [(i,) for i in range(6)]) == "heading -3 to -1 rad"
+
+
+def test_narrow_bins_get_the_digits_they_need():
+    fine = Sensor("offset", low=0, high=0.1, bins=20)
+    assert words([(3,)], (fine,), [(i,) for i in range(20)]) == "offset 0.015-0.020"

@@ -1,0 +1,102 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from pytest_tarl.model import Repair, SitePlace
+from pytest_tarl.report.terminal import lines
+
+ROOT = Path("/home/dev/robot")
+WHOLE = ("  page", "  again", "  next")
+
+
+def told(comparison, width=100, page=None):
+    return "\n".join(lines(comparison, width=width, root=ROOT, page=page))
+
+
+def test_the_shuttle_reads_as_one_short_section(shuttle):
+    assert told(shuttle, page=ROOT / ".tarl/report/delivers.html").splitlines() == [
+        "tests/test_traveller.py::test_delivers[mud]: degraded",
+        "  verdict  In the drift scenario 'mud' an episode earns 16.90 less than designed (p < 0.001).",
+        "  reward   off-line 9.78, on-line -6.83, repaired 9.42, designed world repaired 10.09",
+        "  where    x 4.2-7.1 m, terrain true",
+        "  lines    1. traveller.py:30  vel = 5 * delta  (5 at 12: +14.20)",
+        "           2. traveller.py:28  delta = goal - pos  (by its slice)",
+        "           3. traveller.py:31  pub.publish(vel)  (by its slice)",
+        "           (and 2 more)",
+        "  slices   /odom → /velocity: utility changes most at traveller.py:30, 58.92 to 2.39",
+        "  repair   accepted: 5 → 12 at traveller.py:30 where terrain and 4.167 <= pos <= 7.083",
+        "  note     The site `err = abs(delta)` is only reached by a condition.",
+        "  page     .tarl/report/delivers.html",
+        "  again    pytest tests/test_traveller.py::test_delivers --tarl-online --tarl-drift mud",
+        "  next     git apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch",
+    ]
+
+
+@pytest.mark.parametrize("width", [20, 40, 72, 100, 200])
+def test_no_line_is_wider_than_asked_except_what_must_be_copied_whole(any_comparison, width):
+    for line in lines(any_comparison, width=width, root=ROOT)[1:]:
+        assert len(line) <= max(width, 40) or line.startswith(WHOLE) or len(line.split()) <= 2
+
+
+def test_a_refused_repair_says_why_and_shows_the_best_so_far(two_lists):
+    text = told(two_lists, 200)
+    assert "none accepted: the best change found gains too little" in text
+    assert "best so far: self.kp → 2.2 at src/follower/node.py:63 where light == 'dusk <&>'" in text
+    assert "git apply" not in text
+
+
+def test_situations_never_seen_off_line_are_told_apart(two_lists):
+    assert "x 1.2-8.8 m, light dusk <&>; never seen off-line: x above 7.9 m, light night" in told(
+        two_lists, 200
+    )
+
+
+def test_long_code_is_elided_and_keeps_its_evidence(two_lists):
+    first = next(line for line in told(two_lists, 80).splitlines() if " 1. " in line)
+    assert first.endswith("…  (self.kp at 2.2: +3.40)")
+    assert len(first) <= 80
+
+
+def test_without_a_repair_the_next_step_is_to_ask_for_one(unrepaired):
+    command = "pytest tests/test_traveller.py::test_delivers --tarl-online --tarl-drift mud --tarl-repair"
+    assert told(unrepaired).splitlines()[-1] == f"  next     {command}"
+
+
+def test_no_difference_says_how_small_a_loss_would_have_shown_and_blames_no_line(unchanged):
+    text = told(unchanged, 200)
+    assert "No difference was found" in text
+    assert "a loss of 0.71 per episode would have been" in text
+    assert "  lines" not in text
+    assert "  next" not in text
+
+
+def test_a_loss_without_a_place_says_so_and_leaves_out_slices_that_do_not_exist(placeless):
+    text = told(placeless)
+    assert "no single situation stands out" in text
+    assert "  slices" not in text
+    assert "nan" not in text
+
+
+def test_lists_that_are_gone_leave_verdict_and_note(listless):
+    text = told(listless, 200)
+    assert "record again to see slices" in text
+    assert "degraded" in text
+
+
+def test_absolute_paths_are_shown_from_the_root(varied, shuttle):
+    site = SitePlace("m:f:x", str(ROOT / "src/a.py"), 3, "x = 1", "data", "assign")
+    culprit = type(shuttle.culprits[0])(site, 1.0, "sweep", ())
+    assert "1. src/a.py:3  x = 1  (no operand helps)" in told(varied(culprits=(culprit,)))
+
+
+def test_a_test_id_with_spaces_is_quoted_in_the_command(two_lists):
+    assert "pytest 'tests/test_follower.py::test_follows[a b]' --tarl-online" in told(two_lists)
+
+
+@pytest.mark.parametrize("reason", ["", "no operand helps", "gain too small", "nominal gets worse", "budget"])
+def test_every_reason_for_a_refusal_has_words_of_its_own(varied, reason):
+    text = told(varied(repair=Repair(False, "", (), reason=reason)))
+    assert "none accepted: " in text
+    assert f"none accepted: {reason}\n" not in text
