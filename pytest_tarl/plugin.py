@@ -1,1 +1,90 @@
-"""The pytest hooks of TARL."""
+"""The pytest hooks of TARL: options, marker and fixtures. What a run with TARL's flags does is in session.py."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from pytest_tarl.episode import Tarl
+    from pytest_tarl.settings import Options
+
+MARKER = (
+    "tarl(nodes, sensors, drifts={}, episodes=200, min_success=1.0, tolerance=None): "
+    "a simulation test that TARL records off-line and compares on-line."
+)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Declare the flags; those that choose a mode do nothing unless given."""
+    group = parser.getgroup("tarl", "TARL: record, compare and repair robot code in simulation")
+    flag = group.addoption
+    flag("--tarl-record", action="store_true", help="run the episodes off-line and record the utility fixture")
+    flag("--tarl-online", action="store_true", help="run the drift scenarios and compare with the fixture")
+    flag("--tarl-repair", action="store_true", help="with --tarl-online: search a repair and write a patch")
+    flag("--tarl-drift", metavar="NAME", help="with --tarl-online: only this drift scenario")
+    flag("--tarl-seed", metavar="N", type=int, default=0, help="the one seed that decides everything (default 0)")
+    flag("--tarl-episodes", metavar="N", type=int, help="episodes to run instead of the marker's number, or of 40 on-line")
+    flag("--tarl-alpha", metavar="P", type=float, default=0.05, help="rate of false alarms (default 0.05)")
+    flag("--tarl-search", metavar="METHOD", action="append",
+         help="sweep (default) or epsilon-greedy; given twice, both run and the first accepted repair counts")
+    flag("--tarl-budget", metavar="N", type=int, default=300, help="episodes that a search may spend (default 300)")
+    flag("--tarl-utility", metavar="KIND", default="batch", help="batch (default) or sarsa, as in the paper")
+    flag("--tarl-strict", action="store_true", help="with --tarl-online: a test without fixture fails")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Register the marker, and the session object when a mode is asked for."""
+    config.addinivalue_line("markers", MARKER)
+    if _asked(config):
+        from pytest_tarl.session import TarlSession
+
+        config.pluginmanager.register(TarlSession(config, _options(config)), "tarl-session")
+
+
+@pytest.fixture
+def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
+    """The episode's random numbers, in-process ROS, sensors and reward."""
+    from pytest_tarl.repeating import opened
+
+    with opened(request.node) as episode:
+        yield episode
+
+
+@pytest.fixture
+def tarl_drift(request: pytest.FixtureRequest) -> Any:
+    """The value of the drift scenario that this episode runs under; None off-line."""
+    from pytest_tarl.repeating import drift_value
+
+    return drift_value(request.node)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: pytest.CallInfo[None]
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Keep what an episode ended with, and show a user's mistake as a sentence."""
+    report = yield
+    if call.excinfo is not None and item.get_closest_marker("tarl") is not None:
+        from pytest_tarl.repeating import keep_error
+
+        keep_error(item, call.excinfo.value, report)
+    return report
+
+
+def _asked(config: pytest.Config) -> bool:
+    return any(config.getoption(flag) for flag in ("--tarl-record", "--tarl-online", "--tarl-repair"))
+
+
+def _options(config: pytest.Config) -> Options:
+    from pytest_tarl.errors import SettingsError
+    from pytest_tarl.settings import options
+
+    try:
+        return options({name: config.getoption(f"--tarl-{name}") for name in (
+            "record", "online", "repair", "drift", "seed", "episodes", "alpha", "search", "budget", "utility", "strict"
+        )})
+    except SettingsError as error:
+        raise pytest.UsageError(str(error)) from None

@@ -1,0 +1,159 @@
+"""`--tarl-online`: run the test in the deployed world and compare it with the fixture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pytest_tarl import localize, seeds
+from pytest_tarl.drift import compare, paper_region
+from pytest_tarl.fixture import Fixture
+from pytest_tarl.model import Comparison, ListComparison, Region, SitePlace, TaintList
+from pytest_tarl.recording import Progress, Recorded, mean_flows, run_episodes, sarsa_tables
+from pytest_tarl.rollout import Rollout
+from pytest_tarl.seeds import episode_seeds
+from pytest_tarl.sensors import Cell
+from pytest_tarl.settings import Designation, Options
+from pytest_tarl.sites import Plan
+from pytest_tarl.statistics import Sample, aligned
+from pytest_tarl.utility import Floats, Ints, batch
+
+MOST_NAMED = 3                          # lost sites that a note names
+
+
+@dataclass(frozen=True)
+class Online:
+    """An on-line run: what was found, the recording it was found in, and the paper's tables of that recording."""
+
+    comparison: Comparison
+    recorded: Recorded
+    sarsa: tuple[Floats, ...]
+
+
+def run_online(
+    rollout: Rollout,
+    fixture: Fixture,
+    designation: Designation,
+    options: Options,
+    plan: Plan,
+    drift: str | None,
+    progress: Progress,
+) -> Online:
+    """Run the on-line episodes of one scenario and compare them with the fixture."""
+    count = options.episodes or options.ONLINE_EPISODES
+    members = current_members(fixture, plan)
+    recorded = run_episodes(rollout, episode_seeds(options.seed, "online", count), drift, members, progress)
+    difference = compare(
+        fixture.sample,
+        recorded.sample,
+        alpha=options.alpha,
+        tolerance=designation.tolerance,
+        generator=seeds.generator(options.seed, "compare"),
+    )
+    offline, online = aligned(fixture.sample, recorded.sample)
+    scales = mean_flows(fixture.sample)
+    learned = sarsa_tables(recorded, members, scales)
+    tables = [
+        (batch(before, len(offline.cells), scale), batch(after, len(offline.cells), scale))
+        for before, after, scale in zip(offline.lists, online.lists, scales, strict=True)
+    ]
+    if options.utility == "sarsa":
+        tables = _learned_tables(fixture, recorded, learned, offline.cells)
+    near_half = _paper_cells(tables, offline.cells)
+    chosen = _rows(difference.region, near_half, offline.cells)
+    lists = tuple(
+        ListComparison(t, before, after, localize.slices(t, before, after, chosen))
+        for t, (before, after) in zip(_current(fixture, plan), tables, strict=True)
+        if t.sites
+    )
+    ranked = localize.prior(one.slices for one in lists)
+    comparison = Comparison(
+        test=fixture.test,
+        drift=drift,
+        seed=options.seed,
+        sensors=fixture.sensors,
+        cells=offline.cells,
+        lists=lists,
+        verdict=difference.verdict,
+        region=difference.region,
+        paper_region=near_half,
+        totals={"offline": tuple(offline.total.tolist()), "online": tuple(online.total.tolist())},
+        culprits=localize.culprits(ranked, {}, (), difference.verdict.loss),
+        notes=lost_sites(fixture, plan),
+        parts=_parts(offline, online),
+    )
+    return Online(comparison, recorded, learned)
+
+
+def current_members(fixture: Fixture, plan: Plan) -> tuple[tuple[int, ...], ...]:
+    """Return, per list of the fixture, the sites' numbers in the node as it is now; -1 for a site that is gone."""
+    number = {place.id: n for n, place in enumerate(plan.places)}
+    return tuple(tuple(number.get(site.id, -1) for site in one.sites) for one in fixture.lists)
+
+
+def lost_sites(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
+    """Tell which recorded sites the node no longer has; their slices are lost, verdict and region are not."""
+    present = {place.id for place in plan.places}
+    gone: dict[str, SitePlace] = {}
+    for one in fixture.lists:
+        gone.update({site.id: site for site in one.sites if site.id not in present})
+    if not gone:
+        return ()
+    named = [f"{site.path}:{site.line} `{site.code}`" for site in gone.values()][:MOST_NAMED]
+    more = f" and {len(gone) - MOST_NAMED} more" if len(gone) > MOST_NAMED else ""
+    return (
+        f"the node was edited since the recording: the slices of {', '.join(named)}{more} are lost; verdict and "
+        "region stand. Record again with --tarl-record once the change is meant to stay.",
+    )
+
+
+def _current(fixture: Fixture, plan: Plan) -> list[TaintList]:
+    places = {place.id: place for place in plan.places}
+    return [
+        TaintList(one.source, one.sink, tuple(places.get(site.id, site) for site in one.sites))
+        for one in fixture.lists
+    ]
+
+
+def _learned_tables(
+    fixture: Fixture, recorded: Recorded, learned: Sequence[Floats], cells: Sequence[Cell]
+) -> list[tuple[Floats, Floats]]:
+    """Return the paper's tables off-line and on-line per list over the same cells, shape (cells, sites)."""
+    return [
+        (_spread(before, fixture.sample.cells, cells), _spread(after, recorded.sample.cells, cells))
+        for before, after in zip(fixture.sarsa, learned, strict=True)
+    ]
+
+
+def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Floats:
+    """Move a table's rows to where their cells stand in `cells`."""
+    place = {cell: i for i, cell in enumerate(cells)}
+    wide = np.full((len(cells), table.shape[1]), np.nan)
+    wide[[place[cell] for cell in rows]] = table
+    return wide
+
+
+def _paper_cells(tables: Sequence[tuple[Floats, Floats]], cells: Sequence[Cell]) -> tuple[Cell, ...]:
+    """Return the paper's region: cells of any list whose utilities differ by half of the largest difference."""
+    rows: set[int] = set()
+    for before, after in tables:
+        rows.update(paper_region(before, after).tolist())
+    return tuple(cells[row] for row in sorted(rows))
+
+
+def _rows(region: Region, otherwise: Sequence[Cell], cells: Sequence[Cell]) -> Ints:
+    """Return the rows that Eq. 2 sums over: the region, or the paper's where none was found."""
+    chosen = {*region.cells, *region.novel} or set(otherwise)
+    return np.array([i for i, cell in enumerate(cells) if cell in chosen], dtype=np.int64)
+
+
+def _parts(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
+    """Return the mean of each part of the reward per episode, off-line and on-line."""
+    means = []
+    for world in (offline, online):
+        summed = world.chain.parts.sum(axis=0) / world.episodes
+        means.append(dict(zip(world.part_names, summed.tolist(), strict=True)))
+    names = sorted({*means[0], *means[1]})
+    return {name: (means[0].get(name, 0.0), means[1].get(name, 0.0)) for name in names}

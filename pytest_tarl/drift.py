@@ -1,0 +1,169 @@
+"""Compare two worlds: is performance worse, is the world another one, and in which cells?
+
+Bellman residuals of the off-line utility are zero in expectation where the world still is the one that it was
+fitted in, so what stands out is where it changed, not what lies upstream of it (performance-difference lemma,
+Kakade & Langford 2002). Significance is by permutation of whole episodes, corrected over cells by the largest
+statistic (Westfall & Young 1993).
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from statistics import NormalDist
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.model import Region, Result, Verdict
+from pytest_tarl.statistics import END, Ints, Sample, aligned
+from pytest_tarl.utility import GAMMA_STEP, Floats, chain_utility
+
+PERMUTATIONS = 999
+POWER = 0.8                 # of the smallest loss that is called detectable
+NOVEL_VISITS = 3            # a cell unknown to the fit counts as novel from so many visits,
+NOVEL_EPISODES = 2          # in so many episodes
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """Per episode and cell: γU(x')-U(x) and r summed over visits, visits to novel cells; shape (episodes, cells)."""
+
+    move: Floats
+    reward: Floats
+    novel: Floats
+
+
+@dataclass(frozen=True)
+class Difference:
+    """What the comparison of two samples found, before any word of it."""
+
+    verdict: Verdict
+    region: Region
+
+
+def compare(
+    offline: Sample, online: Sample, *, alpha: float, tolerance: float | None, generator: np.random.Generator
+) -> Difference:
+    """Judge the on-line world against the off-line one; `tolerance` is the loss per episode that nobody minds."""
+    offline, online = aligned(offline, online)
+    margin = max(0.05 * abs(float(offline.total.mean())), tolerance or 0.0)
+    p_loss = permuted_loss(offline.total, online.total, generator)
+    loss = float(offline.total.mean() - online.total.mean())
+    p_drift, region = _drift(offline, online, alpha, generator)
+    result: Result = "no difference"
+    if p_loss < alpha and loss > margin:
+        result = "degraded"
+    elif p_drift < alpha:
+        result = "drifted"
+    detectable = max(margin, smallest_detectable_loss(offline.total, online.total, alpha))
+    found = region if result != "no difference" else Region()
+    return Difference(Verdict(result, p_drift, p_loss, loss, detectable, margin), found)
+
+
+def in_fit(seed: int) -> bool:
+    """Tell whether an off-line episode is one that the utility is fitted on; the others are compared with."""
+    return zlib.crc32(str(seed).encode()) % 2 == 0
+
+
+def permuted_loss(offline: Floats, online: Floats, generator: np.random.Generator) -> float:
+    """Return the one-sided permutation p-value for a lower mean on-line; inputs have shape (episodes,)."""
+    pooled = np.concatenate((online, offline))
+    shuffled = _labels(pooled.size, online.size, generator) @ pooled
+    return float(1 + np.count_nonzero(shuffled[1:] <= shuffled[0] + 1e-9 * abs(shuffled[0]))) / shuffled.size
+
+
+def smallest_detectable_loss(offline: Floats, online: Floats, alpha: float) -> float:
+    """Return the loss that a test of this size would have seen four times in five, by normal approximation."""
+    spread = np.sqrt(_variance(offline) / offline.size + _variance(online) / online.size)
+    normal = NormalDist()
+    return float((normal.inv_cdf(1 - alpha) + normal.inv_cdf(POWER)) * spread)
+
+
+def residuals(compared: Sample, utility: Floats) -> Residuals:
+    """Return each episode's residuals per cell; `utility` has shape (cells,), NaN where unknown.
+
+    The last step of an episode has no move. Transitions from or to a cell of unknown utility are left out.
+    """
+    chain, shape = compared.chain, (compared.episodes, len(compared.cells))
+    known = ~np.isnan(utility)
+    inside = chain.next_cell != END
+    usable = inside & known[chain.cell] & known[np.where(inside, chain.next_cell, 0)]
+    gain = GAMMA_STEP * utility[np.where(inside, chain.next_cell, 0)] - utility[chain.cell]
+    weighted = np.where(usable, gain * chain.count, 0.0)
+    return Residuals(
+        move=_sum_by(chain.episode, chain.cell, weighted, shape),
+        reward=_sum_by(chain.episode, chain.cell, np.where(known[chain.cell], chain.reward, 0.0), shape),
+        novel=_sum_by(chain.episode, chain.cell, np.where(known[chain.cell], 0.0, chain.count), shape),
+    )
+
+
+def _drift(offline: Sample, online: Sample, alpha: float, generator: np.random.Generator) -> tuple[float, Region]:
+    """Return p_drift and the region; both samples share their cells."""
+    fit = np.array([in_fit(seed) for seed in offline.seeds])
+    rows = fit[offline.chain.episode]
+    cells = len(offline.cells)
+    known = type(offline.chain)(*(column[rows] for column in vars(offline.chain).values()))
+    utility = chain_utility(known, cells)
+    held_out, deployed = residuals(offline, utility), residuals(online, utility)
+    blocks = [
+        np.concatenate((getattr(deployed, part), getattr(held_out, part)[~fit]))
+        for part in ("move", "reward", "novel")
+    ]
+    visited = (blocks[2] > 0).sum(axis=0) >= NOVEL_EPISODES
+    blocks[2] = np.where(visited & (blocks[2].sum(axis=0) >= NOVEL_VISITS), np.minimum(blocks[2], 1.0), 0.0)
+    p_values = max_statistic(np.concatenate(blocks, axis=1), online.episodes, generator)
+    move, reward, novel = (block <= alpha for block in np.split(p_values, 3))
+    seen = np.zeros(cells, dtype=bool)
+    seen[offline.chain.cell] = True
+    differing = move if move.any() else reward
+    chosen = [np.flatnonzero(differing & seen), np.flatnonzero(novel & ~seen)]
+    region = Region(*(tuple(offline.cells[i] for i in part) for part in chosen))
+    return float(p_values.min(initial=1.0)), region
+
+
+def max_statistic(columns: Floats, first: int, generator: np.random.Generator) -> Floats:
+    """Return each column's p-value corrected over all columns, shape (columns,).
+
+    The first `first` rows are one group, the others the other. The statistic is the difference of the groups' means in
+    units of the column's standard deviation, which orders columns as the pooled t statistic does.
+    """
+    deviation = columns - columns.mean(axis=0)
+    scale = np.sqrt((deviation**2).mean(axis=0))
+    alive = scale > 1e-12 * np.maximum(1.0, np.abs(columns).max(axis=0, initial=0.0))
+    p_values = np.ones(columns.shape[1])
+    if not alive.any() or not 0 < first < columns.shape[0]:
+        return p_values
+    standard = deviation[:, alive] / scale[alive]
+    statistic = np.abs(_labels(columns.shape[0], first, generator) @ standard)
+    largest = statistic.max(axis=1)
+    reached = largest[1:, None] >= statistic[0] - 1e-9
+    p_values[alive] = (1 + reached.sum(axis=0)) / statistic.shape[0]
+    return p_values
+
+
+def paper_region(offline: Floats, online: Floats) -> Ints:
+    """Return the cells whose utility differs by at least half of the largest difference, as the paper's region.
+
+    Inputs have shape (cells, sites), NaN where a world never was; only what both have visited counts.
+    """
+    gap = np.abs(np.nansum(online - offline, axis=1))
+    return np.flatnonzero(gap >= 0.5 * gap.max()) if gap.max(initial=0.0) > 0 else np.empty(0, dtype=np.int64)
+
+
+def _labels(rows: int, first: int, generator: np.random.Generator) -> Floats:
+    """Return group indicators, shape (1 + PERMUTATIONS, rows): as observed, then shuffled."""
+    observed = np.zeros(rows)
+    observed[:first] = 1.0
+    labels = np.tile(observed, (1 + PERMUTATIONS, 1))
+    labels[1:] = generator.permuted(labels[1:], axis=1)
+    return labels
+
+
+def _sum_by(row: Ints, column: Ints, weights: Floats, shape: tuple[int, int]) -> Floats:
+    flat = np.bincount(row * shape[1] + column, weights=weights, minlength=shape[0] * shape[1])
+    return flat.reshape(shape)
+
+
+def _variance(values: NDArray[np.float64]) -> float:
+    return float(values.var(ddof=1)) if values.size > 1 else 0.0

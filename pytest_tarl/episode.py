@@ -1,0 +1,166 @@
+"""What a designated test sees as `tarl`: one episode, from seed to trace."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pytest_tarl import seeds
+from pytest_tarl.errors import RecordingError, SettingsError
+from pytest_tarl.sensors import Cell, Sensor, field_value
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from pytest_tarl.importhook import NodeImports
+    from pytest_tarl.recorder import Recorder
+    from pytest_tarl.ros import Bus, Ros
+
+
+class Tarl:
+    """The fixture `tarl`: random numbers, the in-process ROS, sensors and reward of one episode."""
+
+    def __init__(
+        self, seed: int, sensors: Sequence[Sensor], folder: Path, recorder: Recorder, imports: NodeImports
+    ) -> None:
+        self.seed = seed
+        self.topics: dict[str, str] = {}
+        self.drives_ros = False
+        self._sensors = tuple(sensors)
+        self._bins: dict[str, int | None] = {}
+        self._folder = folder
+        self._recorder = recorder
+        self._imports = imports
+        self._rewards = 0
+        self._streams: dict[str, np.random.Generator] = {}
+        self._ros: Ros | None = None
+        self._open = ExitStack()
+        self._open.enter_context(imports)
+
+    def rng(self, name: str) -> np.random.Generator:
+        """Return this episode's stream of random numbers with that name; asked again, it goes on where it was."""
+        if name not in self._streams:
+            self._streams[name] = seeds.generator(self.seed, name)
+        return self._streams[name]
+
+    @property
+    def ros(self) -> Ros:
+        """The in-process ROS of this episode."""
+        if self._ros is None:
+            from pytest_tarl.ros import Ros
+
+            self._ros = Ros()
+            self._open.enter_context(self._ros.installed())
+            self._open.callback(self._ros.close)
+            self._ros.on_delivery(self._latch)
+        return self._ros
+
+    @property
+    def bus(self) -> Bus:
+        """The topics, as the world sees them: `publish` to the nodes, `latest` from them."""
+        return self.ros.bus
+
+    @property
+    def now(self) -> float:
+        """Virtual seconds since the episode began."""
+        return self.ros.now
+
+    def start(self, script: str, *, name: str | None = None, argv: Sequence[str] = ()) -> None:
+        """Start a node: a file relative to the test's folder, run as a program. Raises NodeError when it fails."""
+        path = (self._folder / script).resolve()
+        if not path.is_file():
+            raise SettingsError(f"tarl.start: there is no file {script!r} in {self._folder}.")
+        imports = self._imports
+        self.drives_ros = True
+        self.ros.start(lambda: imports.run_script(path), name=name or path.stem, argv=argv)
+
+    def step(self, dt: float) -> None:
+        """Let the nodes run and virtual time advance by `dt` seconds, until every node waits again."""
+        self.ros.step(dt)
+
+    def message(self, topic: str, message: Any) -> None:
+        """Tell what is being delivered to the node, in a test that delivers messages itself."""
+        self._latch(topic, message)
+
+    def observe(self, **values: Any) -> None:
+        """Give the values of sensors that have no topic."""
+        declared = {sensor.name: sensor for sensor in self._sensors}
+        for name, value in values.items():
+            if name not in declared:
+                raise SettingsError(f"tarl.observe: no sensor is named {name!r}; the marker declares "
+                                    f"{', '.join(declared)}.")
+            self._bins[name] = declared[name].bin(value)
+        self._latch_cell()
+
+    def reward(self, total: float | None = None, /, **parts: float) -> None:
+        """Give the monitor's judgement of this simulation step, once a step; parts are summed and reported apart."""
+        if total is None and not parts:
+            raise SettingsError("tarl.reward needs a number, or parts such as tarl.reward(progress=0.2, clearance=-1).")
+        amount = sum(parts.values()) if total is None else float(total)
+        if not abs(amount) < float("inf"):
+            raise SettingsError(f"tarl.reward got {amount}: rewards must be finite numbers.")
+        self._rewards += 1
+        self._recorder.reward(float(amount), {name: float(value) for name, value in parts.items()})
+
+    def close(self) -> None:
+        """End the nodes and forget the episode."""
+        self._open.close()
+
+    def check(self) -> None:
+        """Raise RecordingError where the episode cannot be learned from: no reward, a silent sensor, a mute node."""
+        if not self._rewards:
+            raise RecordingError("The test never called tarl.reward: call it once a simulation step with the "
+                                 "monitor's judgement, for instance tarl.reward(world.monitor()).")
+        silent = [sensor for sensor in self._sensors if sensor.name not in self._bins]
+        if silent:
+            raise RecordingError(_silence(silent[0]))
+        if self.drives_ros and not self.ros.published:
+            raise RecordingError("The node published nothing in the whole episode, so nothing can be learned: look "
+                                 "whether it gets the messages that it waits for"
+                                 f" (it subscribes to {', '.join(sorted(self.ros.subscribed)) or 'no topic'}).")
+
+    def _latch(self, topic: str, message: Any) -> None:
+        """Hold the sensors' bins until the next message on their topic."""
+        changed = False
+        for sensor in self._sensors:
+            if sensor.topic is not None and same_topic(sensor.topic, topic):
+                self._bins[sensor.name] = sensor.bin(_read(sensor, message))
+                self.topics[sensor.topic] = message_type_name(message)
+                changed = True
+        if changed:
+            self._latch_cell()
+
+    def _latch_cell(self) -> None:
+        bins = [self._bins.get(sensor.name) for sensor in self._sensors]
+        known = [value for value in bins if value is not None]
+        cell: Cell | None = tuple(known) if len(known) == len(bins) else None
+        self._recorder.latch(cell)
+
+
+def same_topic(first: str, second: str) -> bool:
+    """Compare topic names; a leading slash makes no difference."""
+    return first.lstrip("/") == second.lstrip("/")
+
+
+def message_type_name(message: Any) -> str:
+    """Name a message's type as ROS 2 does: `std_msgs/msg/Bool`. Empty for what is no ROS message."""
+    kind = type(message)
+    package = kind.__module__.split(".")[0]
+    return f"{package}/msg/{kind.__name__}" if hasattr(kind, "__slots__") or hasattr(kind, "_type") else ""
+
+
+def _read(sensor: Sensor, message: Any) -> Any:
+    try:
+        return field_value(message, sensor.field or "")
+    except (AttributeError, IndexError, KeyError, TypeError) as problem:
+        raise SettingsError(f"Sensor {sensor.name!r}: a message on {sensor.topic} ({type(message).__name__}) has no "
+                            f"field {sensor.field!r}. Mend the field in the marker.") from problem
+
+
+def _silence(sensor: Sensor) -> str:
+    if sensor.topic is None:
+        return f"Sensor {sensor.name!r} was never observed: call tarl.observe({sensor.name}=…) in each step."
+    return (f"Sensor {sensor.name!r} heard nothing on {sensor.topic}: publish it with tarl.bus.publish({sensor.topic!r}, "
+            f"…), or tell its message with tarl.message({sensor.topic!r}, message), or mend the topic in the marker.")

@@ -1,0 +1,158 @@
+"""One designated test in one mode: analysis, the mode's work, files below `.tarl`, what is told."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from pytest_tarl import fixture as fixtures
+from pytest_tarl.comparing import Online, run_online
+from pytest_tarl.errors import AnalysisError, FixtureError, TarlError
+from pytest_tarl.fixture import Fixture
+from pytest_tarl.model import Comparison
+from pytest_tarl.recording import Progress, record
+from pytest_tarl.repairing import RepairShop, repair
+from pytest_tarl.report import json_result, terminal
+from pytest_tarl.rollout import Rollout
+from pytest_tarl.settings import Designation, Options
+from pytest_tarl.sites import Plan, plan
+from tarl_lint.api import Analysis, analyse
+
+Positions = Mapping[Path, Mapping[tuple[int, int], int]]
+
+IGNORED = "# Only the recorded utility is worth committing.\n*\n!.gitignore\n!utility/\n!utility/**\n"
+
+
+@dataclass(frozen=True)
+class Account:
+    """What a mode has to tell: lines for the summary, and what fails the test."""
+
+    lines: tuple[str, ...]
+    problem: str = ""
+
+
+@dataclass(frozen=True)
+class Mission:
+    """A designated test, where it stands, and how it is to be run."""
+
+    test: str
+    folder: Path
+    root: Path
+    designation: Designation
+    options: Options
+    drift: str | None
+    width: int
+    progress: Progress
+
+    def run(self, rollout_with: Callable[[Positions], Rollout]) -> Account:
+        """Do the mode's work. Raises TarlError with a sentence where it cannot be done."""
+        fixture = None if self.options.mode == "record" else self._fixture()
+        analysis = self._analysis()
+        sites = plan(analysis)
+        rollout = rollout_with({self.root / path: at for path, at in sites.positions.items()})
+        self._ignore()
+        if fixture is None:
+            return self._record(rollout, sites)
+        return self._online(rollout, sites, analysis, fixture)
+
+    @property
+    def fixture_path(self) -> Path:
+        """Return where the utility fixture of the test is."""
+        return self.tarl / "utility" / f"{slug(self.test)}.npz"
+
+    @property
+    def tarl(self) -> Path:
+        """Return the folder that everything is written to."""
+        return self.root / ".tarl"
+
+    def _analysis(self) -> Analysis:
+        paths = [(self.folder / node).resolve() for node in self.designation.nodes]
+        for path, node in zip(paths, self.designation.nodes, strict=True):
+            if not path.exists():
+                raise AnalysisError(f"The marker names the node {node!r}, but there is no such file in {self.folder}.")
+        analysis = analyse(paths, root=self.root)
+        if analysis.errors:
+            first = analysis.errors[0]
+            raise AnalysisError(f"{first.path}:{first.line} cannot be analysed: {first.message}")
+        if not analysis.flows:
+            raise AnalysisError(f"No flow from a subscription to a publish call was found in {', '.join(self.designation.nodes)}"
+                                ", so there is nothing to instrument: run tarl-lint on it and name all files of the node.")
+        return analysis
+
+    def _record(self, rollout: Rollout, sites: Plan) -> Account:
+        result = record(rollout, self.test, self.designation, self.options, sites, self.fixture_path, self.progress)
+        written = self.fixture_path.relative_to(self.root)
+        lines = [f"{self.test}: {result.line}", f"  wrote {written}"] if not result.problem else []
+        return Account((*lines, *(f"  {note}" for note in result.notes)), result.problem)
+
+    def _online(self, rollout: Rollout, sites: Plan, analysis: Analysis, fixture: Fixture) -> Account:
+        online = run_online(
+            rollout, fixture, self.designation, self.options, sites, self.drift, self.progress
+        )
+        comparison = online.comparison
+        episodes = {"offline": fixture.sample.episodes, "online": online.recorded.sample.episodes}
+        if self.options.mode == "repair" and comparison.verdict.result == "degraded":
+            shop = RepairShop(rollout, analysis, self.root, fixture, online, self.options, self.progress, self.tarl)
+            comparison = repair(shop)
+            episodes |= shop.spent
+        return self._told(comparison, online, episodes)
+
+    def _told(self, comparison: Comparison, online: Online, episodes: Mapping[str, int]) -> Account:
+        name = f"{slug(self.test, hashed=False)}-{self.drift or 'online'}"
+        json_result.write(comparison, self.tarl / "results" / f"{name}.json", episodes)
+        fixtures.save(as_fixture(comparison, online), self.tarl / "online" / f"{name}.npz")
+        page = self.tarl / "report" / f"{name}.html"
+        notes = []
+        try:
+            from pytest_tarl.report import html
+
+            html.write(comparison, page)
+        except TarlError as missing:
+            notes = [f"  no report page: {missing}"]
+        shown = None if notes else page
+        lines = terminal.lines(comparison, width=self.width, root=self.root, page=shown)
+        problem = ""
+        if comparison.verdict.result == "degraded":
+            problem = lines[0]
+        return Account((*lines, *notes), problem)
+
+    def _fixture(self) -> Fixture:
+        if not self.fixture_path.exists():
+            command = f"pytest {self.test} --tarl-record"
+            raise NoFixtureError(f"{self.test} has no recorded utility yet: run `{command}` first.")
+        fixture = fixtures.load(self.fixture_path)
+        if fixture.sensors != self.designation.sensors:
+            raise FixtureError(f"The sensors of {self.test} are not those of its utility fixture: record it again with "
+                               f"`pytest {self.test} --tarl-record`.")
+        return fixture
+
+    def _ignore(self) -> None:
+        ignore = self.tarl / ".gitignore"
+        if not ignore.exists():
+            fixtures.write_atomically(ignore, IGNORED.encode())
+
+
+class NoFixtureError(FixtureError):
+    """Nothing was recorded yet: the test is skipped, or fails under `--tarl-strict`."""
+
+
+def slug(test: str, *, hashed: bool = True) -> str:
+    """Make a file name of a test's id: readable, and told apart by a hash."""
+    readable = re.sub(r"[^A-Za-z0-9]+", "-", test.replace(".py", "")).strip("-")[:60]
+    return f"{readable}-{hashlib.sha256(test.encode()).hexdigest()[:8]}" if hashed else readable
+
+
+def as_fixture(comparison: Comparison, online: Online) -> Fixture:
+    """Return the on-line recording in the form of a fixture, so that it can be looked at later."""
+    return Fixture(
+        test=comparison.test,
+        seed=comparison.seed,
+        sensors=comparison.sensors,
+        lists=tuple(one.taint_list for one in comparison.lists),
+        topics=online.recorded.topics,
+        sample=online.recorded.sample,
+        sarsa=online.sarsa,
+    )

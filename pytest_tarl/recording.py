@@ -1,0 +1,167 @@
+"""`--tarl-record`: run the test off-line, keep what its software is worth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+
+from pytest_tarl import fixture as fixtures
+from pytest_tarl.errors import FixtureError, RecordingError
+from pytest_tarl.fixture import Fixture
+from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout
+from pytest_tarl.seeds import episode_seeds
+from pytest_tarl.settings import Designation, Options
+from pytest_tarl.sites import Plan
+from pytest_tarl.statistics import Sample, event_sequence, merge, relabelled, sample
+from pytest_tarl.trace import Trace
+from pytest_tarl.utility import Floats, sarsa
+
+Progress = Callable[[int, int, str], None]
+Members = Sequence[Sequence[int]]
+
+NOT_REPRODUCIBLE = (
+    "not reproducible: two runs with the same seed differ. Draw all random numbers from tarl.rng(name) and read no "
+    "wall clock, or the comparison will see differences that are none."
+)
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """Episodes of one world, in the order they ran: traces, their statistics, message types by sensor topic."""
+
+    traces: tuple[Trace, ...]
+    sample: Sample
+    topics: dict[str, str]
+    failures: tuple[str, ...]
+
+    @property
+    def success(self) -> float:
+        """Return the share of episodes that passed."""
+        return float(self.sample.passed.mean())
+
+
+@dataclass(frozen=True)
+class RecordResult:
+    """What `--tarl-record` has to tell; nothing was written when `problem` is not empty."""
+
+    line: str
+    problem: str = ""
+    notes: tuple[str, ...] = ()
+
+
+def record(
+    rollout: Rollout,
+    test: str,
+    designation: Designation,
+    options: Options,
+    plan: Plan,
+    path: Path,
+    progress: Progress,
+) -> RecordResult:
+    """Run the off-line episodes and write the fixture, unless too many of them fail."""
+    seeds = episode_seeds(options.seed, "offline", options.episodes or designation.episodes)
+    recorded = run_episodes(rollout, seeds, None, plan.members, progress)
+    again = rollout(EpisodePlan(seeds[0], record=True))
+    notes = [] if identical(recorded.traces[0], again.trace) else [NOT_REPRODUCIBLE]
+    if recorded.success < designation.min_success:
+        return RecordResult("", _unfinished(recorded, designation), tuple(notes))
+    notes += _silent_lists(recorded.sample, plan)
+    old = _previous(path)
+    new = Fixture(
+        test=test,
+        seed=options.seed,
+        sensors=designation.sensors,
+        lists=plan.lists,
+        topics=recorded.topics,
+        sample=recorded.sample,
+        sarsa=sarsa_tables(recorded, plan.members, mean_flows(recorded.sample)),
+    )
+    fixtures.save(new, path)
+    return RecordResult(_summary(new.sample, old), "", tuple(notes))
+
+
+def run_episodes(
+    rollout: Rollout, seeds: Sequence[int], drift: str | None, members: Members, progress: Progress
+) -> Recorded:
+    """Run one instrumented episode per seed. Raises RecordingError when the test itself is broken."""
+    traces: list[Trace] = []
+    samples: list[Sample] = []
+    failures: list[str] = []
+    topics: dict[str, str] = {}
+    for done, seed in enumerate(seeds):
+        progress(done, len(seeds), drift or "off-line")
+        run = sound(rollout(EpisodePlan(seed, drift, record=True)))
+        traces.append(run.trace)
+        samples.append(sample(run.trace, seed, run.passed, members))
+        failures += [] if run.passed else [run.failure]
+        topics.update(run.topics)
+    return Recorded(tuple(traces), merge(samples), topics, tuple(failures))
+
+
+def sound(run: EpisodeRun) -> EpisodeRun:
+    """Return the run. Raises RecordingError where it was neither a success nor a failed mission."""
+    if run.broken:
+        raise RecordingError(f"An episode (seed {run.plan.seed}) broke outside of the mission:\n{run.broken}")
+    return run
+
+
+def sarsa_tables(recorded: Recorded, members: Members, scales: Sequence[float]) -> tuple[Floats, ...]:
+    """Learn the paper's table of every taint list, shape (cells, sites); `scales` holds each list's F."""
+    cells = recorded.sample.cells
+    traces = [relabelled(trace, cells) for trace in recorded.traces]
+    return tuple(
+        sarsa((event_sequence(trace, chosen) for trace in traces), len(cells), len(chosen), scale)
+        for chosen, scale in zip(members, scales, strict=True)
+    )
+
+
+def mean_flows(offline: Sample) -> tuple[float, ...]:
+    """Return F of every taint list."""
+    return tuple(one.mean_flow for one in offline.lists)
+
+
+def identical(first: Trace, second: Trace) -> bool:
+    """Tell whether two traces are the same to the last bit."""
+    pairs = [(getattr(first, f.name), getattr(second, f.name)) for f in fields(first)]
+    return all(
+        np.array_equal(a, b, equal_nan=True) if isinstance(a, np.ndarray) else _plain(a) == _plain(b)
+        for a, b in pairs
+    )
+
+
+def _plain(value: object) -> object:
+    return {k: v.tolist() for k, v in value.items()} if isinstance(value, dict) else value
+
+
+def _unfinished(recorded: Recorded, designation: Designation) -> str:
+    episodes = recorded.sample.episodes
+    failed = episodes - int(recorded.sample.passed.sum())
+    return (
+        f"{failed} of {episodes} episodes fail off-line (success {recorded.success:.1%}, min_success "
+        f"{designation.min_success:.1%}), so this is not yet the software as designed and no utility was written. "
+        f"The first failure: {recorded.failures[0]}. Mend the node, or lower min_success on the marker."
+    )
+
+
+def _silent_lists(recorded: Sample, plan: Plan) -> list[str]:
+    """Return a note for every taint list none of whose sites was reached."""
+    silent = [t.name for t, one in zip(plan.lists, recorded.lists, strict=True) if not one.visits.flow.size > 1]
+    return [f"no step of {name} was executed: does the test drive that part of the node?" for name in silent]
+
+
+def _previous(path: Path) -> Sample | None:
+    try:
+        return fixtures.load(path).sample if path.exists() else None
+    except FixtureError:
+        return None
+
+
+def _summary(new: Sample, old: Sample | None) -> str:
+    before = f"{old.total.mean():.3g} → " if old is not None else ""
+    return (
+        f"off-line ATR {before}{new.total.mean():.3g}, success {new.passed.mean():.1%}, "
+        f"{new.episodes} episodes, {len(new.cells)} cells"
+    )

@@ -1,0 +1,155 @@
+"""Run the body of a test as one episode, as often as asked, with fresh function-scoped fixtures each time.
+
+One pass is pytest's own run of an item (set-up, call, teardown, each with its report), except that the reports are not
+logged and that only the item's own fixtures are torn down: wider-scoped ones live until the item is done.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from _pytest.runner import runtestprotocol
+
+from pytest_tarl.errors import NodeError, SettingsError, TarlError
+from pytest_tarl.rollout import EpisodePlan, EpisodeRun
+from pytest_tarl.seeds import episode_seed
+from pytest_tarl.settings import Designation, designation
+
+if TYPE_CHECKING:
+    from pytest_tarl.episode import Tarl
+
+Positions = Mapping[Path, Mapping[tuple[int, int], int]]
+
+
+@dataclass
+class Episode:
+    """The episode that an item is about to run or has run: plan in, outcome out."""
+
+    plan: EpisodePlan
+    designation: Designation
+    positions: Positions = field(default_factory=dict)
+    tarl: Tarl | None = None
+    error: BaseException | None = None
+    trace: Any = None
+    topics: Mapping[str, str] = field(default_factory=dict)
+
+
+EPISODE = pytest.StashKey[Episode]()
+
+
+def designated(item: pytest.Item) -> Designation | None:
+    """Return the item's marker, checked; None without one. Raises SettingsError."""
+    marker = item.get_closest_marker("tarl")
+    return designation(item.nodeid, marker.args, marker.kwargs) if marker else None
+
+
+@contextmanager
+def opened(item: pytest.Item) -> Iterator[Tarl]:
+    """Open the item's episode, close it afterwards and keep its trace."""
+    from pytest_tarl.episode import Tarl
+    from pytest_tarl.importhook import NodeImports
+    from pytest_tarl.recorder import Recorder
+
+    episode = _episode(item)
+    recorder = Recorder()
+    imports = NodeImports(item.path.parent, episode.positions, recorder.hook, episode.plan.overlay)
+    tarl = Tarl(episode.plan.seed, episode.designation.sensors, item.path.parent, recorder, imports)
+    try:
+        yield tarl
+    finally:
+        episode.trace = recorder.finish()
+        episode.topics = dict(tarl.topics)
+        tarl.close()
+    if EPISODE in item.stash and episode.error is None:
+        tarl.check()
+
+
+def drift_value(item: pytest.Item) -> Any:
+    """Return the value of the scenario that the item's episode runs under; None off-line."""
+    episode = _episode(item)
+    return None if episode.plan.drift is None else episode.designation.drifts[episode.plan.drift]
+
+
+def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestReport) -> None:
+    """Keep what ended a phase; a user's mistake becomes a sentence in the report."""
+    if EPISODE in item.stash and item.stash[EPISODE].error is None:
+        item.stash[EPISODE].error = error
+    if isinstance(error, TarlError) and report.failed:
+        report.longrepr = str(error)
+
+
+def _episode(item: pytest.Item) -> Episode:
+    """Return the episode that is set up for the item, or the one of a plain test run."""
+    if EPISODE in item.stash:
+        return item.stash[EPISODE]
+    marked = designated(item)
+    if marked is None:
+        raise SettingsError(
+            f"{item.nodeid} uses the fixture `tarl` without the marker: add @pytest.mark.tarl(nodes=[…], sensors=[…])."
+        )
+    seed = episode_seed(item.config.getoption("--tarl-seed"), "offline", 0)
+    return Episode(EpisodePlan(seed), marked)
+
+
+@dataclass(frozen=True)
+class ItemRollout:
+    """Runs episodes of one pytest item, here and now."""
+
+    item: pytest.Function
+    designation: Designation
+    positions: Positions
+
+    def __call__(self, plan: EpisodePlan) -> EpisodeRun:
+        """Run one episode. Raises TarlError where the test cannot be run as asked, pytest's Exit on Ctrl-C."""
+        episode = Episode(plan, self.designation, self.positions if plan.record else {})
+        self.item.stash[EPISODE] = episode
+        try:
+            reports = runtestprotocol(self.item, log=False, nextitem=self.item.parent)
+        finally:
+            del self.item.stash[EPISODE]
+        return _outcome(episode, reports)
+
+
+def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestReport:
+    """Tear down what the next item does not need, once the last episode has run."""
+    call = pytest.CallInfo.from_call(
+        lambda: item.ihook.pytest_runtest_teardown(item=item, nextitem=nextitem), when="teardown"
+    )
+    report: pytest.TestReport = item.ihook.pytest_runtest_makereport(item=item, call=call)
+    return report
+
+
+def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
+    if isinstance(episode.error, TarlError) and not isinstance(episode.error, NodeError):
+        raise episode.error
+    skipped = next((report for report in reports if report.skipped), None)
+    if skipped is not None:
+        pytest.skip(_reason(skipped))
+    mission = isinstance(episode.error, (AssertionError, pytest.fail.Exception, NodeError))
+    failed = [report for report in reports if report.failed]
+    broken = [report for report in failed if report.when != "call" or not mission]
+    if episode.trace is None and not broken:
+        raise TarlError("The test does not use the fixture `tarl`: take it as an argument.")
+    return EpisodeRun(
+        plan=episode.plan,
+        trace=episode.trace,
+        passed=not failed,
+        failure=_first_line(episode.error) if failed and mission else "",
+        broken="\n".join(report.longreprtext for report in broken),
+        topics=episode.topics,
+    )
+
+
+def _reason(report: pytest.TestReport) -> str:
+    """Return why a test skipped itself."""
+    return str(report.longrepr[2]) if isinstance(report.longrepr, tuple) else report.longreprtext
+
+
+def _first_line(error: BaseException | None) -> str:
+    text = str(error).strip()
+    return text.splitlines()[0] if text else type(error).__name__

@@ -1,0 +1,30 @@
+"""Random numbers: one seed decides everything, every stream is told by its name."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+def episode_seed(seed: int, stream: str, index: int) -> int:
+    """Return the seed of a stream's index-th episode, below 2⁶³; streams do not overlap but by chance."""
+    return _hashed(f"{seed}/{stream}/{index}", 8) >> 1
+
+
+def episode_seeds(seed: int, stream: str, count: int) -> tuple[int, ...]:
+    """Return the first `count` seeds of a stream."""
+    return tuple(episode_seed(seed, stream, index) for index in range(count))
+
+
+def generator(seed: int, name: str) -> np.random.Generator:
+    """Return the Philox stream keyed by (seed, name): another name, other numbers, whatever was drawn before."""
+    import numpy as np
+
+    return np.random.Generator(np.random.Philox(key=_hashed(f"{seed}/{name}", 16)))
+
+
+def _hashed(text: str, size: int) -> int:
+    return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=size).digest(), "little")

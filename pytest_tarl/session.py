@@ -1,0 +1,153 @@
+"""A pytest run with TARL's flags: which tests take part, what each of them does, what is told in the end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
+
+import pytest
+
+from pytest_tarl.errors import SettingsError, TarlError
+from pytest_tarl.repeating import ItemRollout, designated, finish
+from pytest_tarl.settings import Options
+
+if TYPE_CHECKING:
+    from _pytest.terminal import TerminalReporter
+
+    from pytest_tarl.missions import Account
+
+ACCOUNT = "tarl_account"                # attribute of a report: lines for the summary
+
+
+class TarlSession:
+    """The hooks of one run; registered only when a mode is asked for."""
+
+    def __init__(self, config: pytest.Config, options: Options) -> None:
+        self.config = config
+        self.options = options
+        self._accounts: list[list[str]] = []
+
+    def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
+        """Make an id of every drift scenario: `test_delivers[mud]`, `[online]` without one."""
+        marker = metafunc.definition.get_closest_marker("tarl")
+        if marker is None or self.options.mode == "record":
+            return
+        names = list(marker.kwargs.get("drifts", {}))
+        if self.options.drift is not None:
+            names = [name for name in names if name == self.options.drift]
+        if "tarl_drift" in metafunc.fixturenames:
+            metafunc.parametrize("tarl_drift", names or [None], ids=names or ["online"], indirect=True)
+
+    def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Item]) -> None:
+        """Deselect what TARL has nothing to do with."""
+        marked = [item for item in items if item.get_closest_marker("tarl") is not None]
+        if self.options.drift is not None:
+            self._check_drift(marked)
+            marked = [item for item in marked if scenario(item) == self.options.drift]
+        others = [item for item in items if item not in marked]
+        if others:
+            config.hook.pytest_deselected(items=others)
+            items[:] = marked
+
+    def _check_drift(self, marked: Sequence[pytest.Item]) -> None:
+        known = sorted({name for item in marked for name in _drift_names(item)})
+        if marked and self.options.drift not in known:
+            names = ", ".join(known) or "none is declared"
+            raise pytest.UsageError(f"No test declares the drift {self.options.drift!r}; known are: {names}. Declare it "
+                                    "in the marker: drifts={…}.")
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
+        """Run a designated test in the mode asked for, as one test with one report a phase."""
+        if not isinstance(item, pytest.Function) or item.get_closest_marker("tarl") is None:
+            return None
+        item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
+        call = pytest.CallInfo.from_call(lambda: self._run(item), when="call", reraise=(pytest.exit.Exception, KeyboardInterrupt))
+        report = pytest.TestReport.from_item_and_call(item, call)
+        account = call.result if call.excinfo is None else None
+        if account is not None:
+            setattr(report, ACCOUNT, list(account.lines))
+            if account.problem:
+                report.outcome, report.longrepr = "failed", account.problem
+        elif call.excinfo is not None and isinstance(call.excinfo.value, TarlError):
+            report.longrepr = f"{item.nodeid}: {call.excinfo.value}"
+        for one in (_phase(item, "setup"), report, finish(item, nextitem)):
+            item.ihook.pytest_runtest_logreport(report=one)
+        item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
+        return True
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Collect what the tests have to tell, also from xdist's workers."""
+        if hasattr(report, ACCOUNT):
+            self._accounts.append(getattr(report, ACCOUNT))
+
+    def pytest_terminal_summary(self, terminalreporter: TerminalReporter) -> None:
+        """Tell it in one section."""
+        if not self._accounts:
+            return
+        terminalreporter.section("TARL", sep="=")
+        for number, lines in enumerate(self._accounts):
+            terminalreporter.write_line("\n".join(["", *lines] if number else lines))
+
+    def _run(self, item: pytest.Function) -> Account:
+        from pytest_tarl.missions import Mission, NoFixtureError
+
+        marked = designated(item)
+        if marked is None:
+            raise SettingsError(f"{item.nodeid} has no marker.")
+        mission = Mission(
+            test=_without_drift(item),
+            folder=item.path.parent,
+            root=self.config.rootpath,
+            designation=marked,
+            options=self.options,
+            drift=scenario(item),
+            width=self._width(),
+            progress=self._progress(item),
+        )
+        try:
+            return mission.run(lambda positions: ItemRollout(item, marked, positions))
+        except NoFixtureError as missing:
+            if self.options.strict:
+                raise
+            pytest.skip(str(missing))
+
+    def _width(self) -> int:
+        return self.config.get_terminal_writer().fullwidth
+
+    def _progress(self, item: pytest.Function):
+        reporter = self.config.pluginmanager.get_plugin("terminalreporter")
+        live = reporter is not None and reporter.isatty
+
+        def show(done: int, total: int, what: str) -> None:
+            if live and done % 5 == 0:
+                reporter.rewrite(f"{item.nodeid} {what} {done}/{total} ", erase=True)
+
+        return show
+
+
+def scenario(item: pytest.Item) -> str | None:
+    """Return the name of the drift scenario that the item's id stands for."""
+    callspec = getattr(item, "callspec", None)
+    name: str | None = callspec.params.get("tarl_drift") if callspec is not None else None
+    return name
+
+
+def _without_drift(item: pytest.Item) -> str:
+    """Return the node id as it is off-line, so that all scenarios of a test share its fixture."""
+    callspec = getattr(item, "callspec", None)
+    if callspec is None or "tarl_drift" not in callspec.params:
+        return item.nodeid
+    drift = scenario(item) or "online"
+    base, _, bracket = item.nodeid.partition("[")
+    rest = bracket.removesuffix("]").removeprefix(drift).removesuffix(drift).strip("-")
+    return f"{base}[{rest}]" if rest else base
+
+
+def _drift_names(item: pytest.Item) -> list[str]:
+    marked = designated(item)
+    return list(marked.drifts) if marked else []
+
+
+def _phase(item: pytest.Item, when: Literal["setup"]) -> pytest.TestReport:
+    return pytest.TestReport.from_item_and_call(item, pytest.CallInfo.from_call(lambda: None, when=when))

@@ -1,0 +1,136 @@
+"""What the user asked for: the marker of a test, and the options of a run. Frozen, without pytest."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.sensors import Sensor
+
+Mode = Literal["plain", "record", "online", "repair"]
+SEARCHES = ("sweep", "epsilon-greedy")
+UTILITIES = ("batch", "sarsa")
+MARKER_ARGUMENTS = ("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance")
+
+
+@dataclass(frozen=True)
+class Options:
+    """The options of one run of pytest."""
+
+    mode: Mode = "plain"
+    seed: int = 0
+    drift: str | None = None
+    episodes: int | None = None             # overrides the marker off-line, the default on-line
+    alpha: float = 0.05
+    searches: tuple[str, ...] = ("sweep",)
+    budget: int = 300                       # episodes that a search may spend
+    strict: bool = False
+    utility: str = "batch"
+
+    ONLINE_EPISODES = 40
+
+
+@dataclass(frozen=True)
+class Designation:
+    """The arguments of `@pytest.mark.tarl`: what makes a simulation test one that TARL records and compares."""
+
+    nodes: tuple[str, ...]
+    sensors: tuple[Sensor, ...]
+    drifts: Mapping[str, Any] = field(default_factory=dict)
+    episodes: int = 200
+    min_success: float = 1.0
+    tolerance: float | None = None
+
+
+def options(given: Mapping[str, Any]) -> Options:
+    """Check the flags of a run. Raises SettingsError with a sentence."""
+    if given["record"] and given["online"]:
+        raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
+    if given["repair"] and not given["online"]:
+        raise SettingsError("--tarl-repair goes with --tarl-online: it repairs what the comparison finds.")
+    if given["drift"] and not given["online"]:
+        raise SettingsError("--tarl-drift goes with --tarl-online: it chooses one of the marker's drifts.")
+    searches = tuple(dict.fromkeys(given["search"] or ("sweep",)))
+    for name in searches:
+        _known("--tarl-search", name, SEARCHES)
+    _known("--tarl-utility", given["utility"], UTILITIES)
+    if given["episodes"] is not None:
+        _number("--tarl-episodes", "it", given["episodes"], int, 2, 10**6)
+    mode: Mode = "record" if given["record"] else "repair" if given["repair"] else "online"
+    return Options(
+        mode=mode,
+        seed=given["seed"],
+        drift=given["drift"],
+        episodes=given["episodes"],
+        alpha=_number("--tarl-alpha", "it", given["alpha"], float, 1e-6, 0.5),
+        searches=searches,
+        budget=_number("--tarl-budget", "it", given["budget"], int, 1, 10**6),
+        strict=given["strict"],
+        utility=given["utility"],
+    )
+
+
+def _known(flag: str, name: str, among: Sequence[str]) -> None:
+    if name not in among:
+        close = difflib.get_close_matches(name, among, 1)
+        hint = f"did you mean {close[0]!r}?" if close else f"it takes {' or '.join(among)}."
+        raise SettingsError(f"{flag} does not know {name!r}; {hint}")
+
+
+def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, Any]) -> Designation:
+    """Check a marker's arguments. Raises SettingsError with a sentence that says which one and how to mend it."""
+    if positional:
+        raise SettingsError(f"{where}: @pytest.mark.tarl takes named arguments only, such as nodes=[…], sensors=[…].")
+    for name in arguments:
+        if name not in MARKER_ARGUMENTS:
+            close = difflib.get_close_matches(name, MARKER_ARGUMENTS, 1)
+            hint = f"did you mean {close[0]!r}?" if close else f"it has {', '.join(MARKER_ARGUMENTS)}."
+            raise SettingsError(f"{where}: @pytest.mark.tarl has no argument {name!r}; {hint}")
+    return Designation(
+        nodes=_nodes(where, arguments.get("nodes", ())),
+        sensors=_sensors(where, arguments.get("sensors", ())),
+        drifts=_drifts(where, arguments.get("drifts", {})),
+        episodes=_number(where, "episodes", arguments.get("episodes", 200), int, 2, 10**6),
+        min_success=_number(where, "min_success", arguments.get("min_success", 1.0), float, 0, 1),
+        tolerance=_tolerance(where, arguments.get("tolerance")),
+    )
+
+
+def _nodes(where: str, nodes: Any) -> tuple[str, ...]:
+    if isinstance(nodes, str) or not nodes or not all(isinstance(node, str) for node in nodes):
+        raise SettingsError(f'{where}: name the files of the node under test, for instance nodes=["my_node.py"] '
+                            "(relative to the test's folder).")
+    return tuple(nodes)
+
+
+def _sensors(where: str, sensors: Any) -> tuple[Sensor, ...]:
+    if not isinstance(sensors, Sequence) or not sensors or not all(isinstance(s, Sensor) for s in sensors):
+        raise SettingsError(f'{where}: declare what the node is told, for instance sensors=[Sensor("x", topic="/odom", '
+                            'field="pose.pose.position.x", low=0, high=10, bins=24)] with `from pytest_tarl import Sensor`.')
+    names = [sensor.name for sensor in sensors]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise SettingsError(f"{where}: the sensor name {twice[0]!r} is used twice; give each its own.")
+    return tuple(sensors)
+
+
+def _drifts(where: str, drifts: Any) -> Mapping[str, Any]:
+    if not isinstance(drifts, Mapping) or not all(isinstance(name, str) and name for name in drifts):
+        raise SettingsError(f'{where}: drifts maps names to values of the fixture tarl_drift, for instance '
+                            'drifts={"mud": 0.15}.')
+    return dict(drifts)
+
+
+def _number(where: str, name: str, value: Any, kind: type, low: float, high: float) -> Any:
+    fits = isinstance(value, (int, kind)) and not isinstance(value, bool) and low <= value <= high
+    if not fits:
+        what = "a whole number" if kind is int else "a number"
+        raise SettingsError(f"{where}: {name} must be {what} from {low:g} to {high:g}, got {value!r}.")
+    return kind(value)
+
+
+def _tolerance(where: str, value: Any) -> float | None:
+    return None if value is None else float(_number(where, "tolerance", value, float, 0, float("inf")))
