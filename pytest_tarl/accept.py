@@ -13,7 +13,7 @@ from statistics import NormalDist, fmean, variance
 
 from pytest_tarl.model import Reason
 
-LOOKS = (8, 12, 17, 24, 32, 40)         # episodes after which the bound is looked at
+LOOKS = (8, 12, 17, 24, 32, 40)  # episodes after which the bound is looked at
 PASS_RATE_LOSS = 0.05
 
 
@@ -71,7 +71,9 @@ def accept(
     return Acceptance(True, "", runs[0], runs[1] if len(runs) > 1 else ())
 
 
-def _holds(outcomes: Iterator[Outcome], reference: Reference, risk: float) -> tuple[bool, tuple[Outcome, ...]]:
+def _holds(
+    outcomes: Iterator[Outcome], reference: Reference, risk: float
+) -> tuple[bool, tuple[Outcome, ...]]:
     seen: list[Outcome] = []
     for look in LOOKS:
         while len(seen) < look:
@@ -91,7 +93,9 @@ def interval(repaired: Sequence[float], offline: Sequence[float], risk: float) -
     """Return the one-sided lower and upper bounds of mean(repaired) - mean(offline), each at `risk` (Welch)."""
     parts = [_spread(repaired), _spread(offline)]
     spread = sqrt(sum(parts))
-    freedom = [part**2 / max(len(group) - 1, 1) for part, group in zip(parts, (repaired, offline), strict=True)]
+    freedom = [
+        part**2 / max(len(group) - 1, 1) for part, group in zip(parts, (repaired, offline), strict=True)
+    ]
     degrees = sum(parts) ** 2 / sum(freedom) if sum(freedom) > 0 else 1e9
     reach = student_quantile(1 - risk, degrees) * spread
     difference = fmean(repaired) - fmean(offline)

@@ -12,10 +12,12 @@ from pytest_tarl.sensors import Cell, Sensor
 from pytest_tarl.statistics import Sample
 
 ALWAYS = Guard()
-WIDER = 2                               # bins by which an interval is widened on either side, as a last proposal
+WIDER = 2  # bins by which an interval is widened on either side, as a last proposal
 
 
-def candidate_guards(region: Region, sensors: Sequence[Sensor], worlds: Sequence[Sample]) -> tuple[Guard, ...]:
+def candidate_guards(
+    region: Region, sensors: Sequence[Sensor], worlds: Sequence[Sample]
+) -> tuple[Guard, ...]:
     """Return the guards worth simulating, fewest conditions first, then the narrowest in the given worlds.
 
     `worlds` are the samples that tell which bins occur at all: a condition that always holds there is none.

@@ -20,7 +20,7 @@ from pytest_tarl.sites import Plan
 from pytest_tarl.statistics import Sample, aligned
 from pytest_tarl.utility import Floats, Ints, batch
 
-MOST_NAMED = 3                          # lost sites that a note names
+MOST_NAMED = 3  # lost sites that a note names
 
 
 @dataclass(frozen=True)

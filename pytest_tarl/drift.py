@@ -20,9 +20,9 @@ from pytest_tarl.statistics import END, Ints, Sample, aligned
 from pytest_tarl.utility import GAMMA_STEP, Floats, chain_utility
 
 PERMUTATIONS = 999
-POWER = 0.8                 # of the smallest loss that is called detectable
-NOVEL_VISITS = 3            # a cell unknown to the fit counts as novel from so many visits,
-NOVEL_EPISODES = 2          # in so many episodes
+POWER = 0.8  # of the smallest loss that is called detectable
+NOVEL_VISITS = 3  # a cell unknown to the fit counts as novel from so many visits,
+NOVEL_EPISODES = 2  # in so many episodes
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,9 @@ def residuals(compared: Sample, utility: Floats) -> Residuals:
     )
 
 
-def _drift(offline: Sample, online: Sample, alpha: float, generator: np.random.Generator) -> tuple[float, Region]:
+def _drift(
+    offline: Sample, online: Sample, alpha: float, generator: np.random.Generator
+) -> tuple[float, Region]:
     """Return p_drift and the region; both samples share their cells."""
     fit = np.array([in_fit(seed) for seed in offline.seeds])
     rows = fit[offline.chain.episode]

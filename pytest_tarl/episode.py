@@ -89,15 +89,18 @@ class Tarl:
         declared = {sensor.name: sensor for sensor in self._sensors}
         for name, value in values.items():
             if name not in declared:
-                raise SettingsError(f"tarl.observe: no sensor is named {name!r}; the marker declares "
-                                    f"{', '.join(declared)}.")
+                raise SettingsError(
+                    f"tarl.observe: no sensor is named {name!r}; the marker declares {', '.join(declared)}."
+                )
             self._bins[name] = declared[name].bin(value)
         self._latch_cell()
 
     def reward(self, total: float | None = None, /, **parts: float) -> None:
         """Give the monitor's judgement of this simulation step, once a step; parts are summed and reported apart."""
         if total is None and not parts:
-            raise SettingsError("tarl.reward needs a number, or parts such as tarl.reward(progress=0.2, clearance=-1).")
+            raise SettingsError(
+                "tarl.reward needs a number, or parts such as tarl.reward(progress=0.2, clearance=-1)."
+            )
         amount = sum(parts.values()) if total is None else float(total)
         if not abs(amount) < float("inf"):
             raise SettingsError(f"tarl.reward got {amount}: rewards must be finite numbers.")
@@ -111,15 +114,19 @@ class Tarl:
     def check(self) -> None:
         """Raise RecordingError where the episode cannot be learned from: no reward, a silent sensor, a mute node."""
         if not self._rewards:
-            raise RecordingError("The test never called tarl.reward: call it once a simulation step with the "
-                                 "monitor's judgement, for instance tarl.reward(world.monitor()).")
+            raise RecordingError(
+                "The test never called tarl.reward: call it once a simulation step with the "
+                "monitor's judgement, for instance tarl.reward(world.monitor())."
+            )
         silent = [sensor for sensor in self._sensors if sensor.name not in self._bins]
         if silent:
             raise RecordingError(_silence(silent[0]))
         if self.drives_ros and not self.ros.published:
-            raise RecordingError("The node published nothing in the whole episode, so nothing can be learned: look "
-                                 "whether it gets the messages that it waits for"
-                                 f" (it subscribes to {', '.join(sorted(self.ros.subscribed)) or 'no topic'}).")
+            raise RecordingError(
+                "The node published nothing in the whole episode, so nothing can be learned: look "
+                "whether it gets the messages that it waits for"
+                f" (it subscribes to {', '.join(sorted(self.ros.subscribed)) or 'no topic'})."
+            )
 
     def _latch(self, topic: str, message: Any) -> None:
         """Hold the sensors' bins until the next message on their topic."""
@@ -155,12 +162,16 @@ def _read(sensor: Sensor, message: Any) -> Any:
     try:
         return field_value(message, sensor.field or "")
     except (AttributeError, IndexError, KeyError, TypeError) as problem:
-        raise SettingsError(f"Sensor {sensor.name!r}: a message on {sensor.topic} ({type(message).__name__}) has no "
-                            f"field {sensor.field!r}. Mend the field in the marker.") from problem
+        raise SettingsError(
+            f"Sensor {sensor.name!r}: a message on {sensor.topic} ({type(message).__name__}) has no "
+            f"field {sensor.field!r}. Mend the field in the marker."
+        ) from problem
 
 
 def _silence(sensor: Sensor) -> str:
     if sensor.topic is None:
         return f"Sensor {sensor.name!r} was never observed: call tarl.observe({sensor.name}=…) in each step."
-    return (f"Sensor {sensor.name!r} heard nothing on {sensor.topic}: publish it with tarl.bus.publish({sensor.topic!r}, "
-            f"…), or tell its message with tarl.message({sensor.topic!r}, message), or mend the topic in the marker.")
+    return (
+        f"Sensor {sensor.name!r} heard nothing on {sensor.topic}: publish it with tarl.bus.publish({sensor.topic!r}, "
+        f"…), or tell its message with tarl.message({sensor.topic!r}, message), or mend the topic in the marker."
+    )

@@ -40,7 +40,7 @@ class Fixture:
     seed: int
     sensors: tuple[Sensor, ...]
     lists: tuple[TaintList, ...]
-    topics: Mapping[str, str]               # sensor topic → message type
+    topics: Mapping[str, str]  # sensor topic → message type
     sample: Sample
     sarsa: tuple[Floats, ...]
 
@@ -75,13 +75,28 @@ def load(path: Path) -> Fixture:
         found = header["format"]
     except FileNotFoundError:
         raise FixtureError(f"There is no utility fixture {path}. {advice}") from None
-    except (OSError, ValueError, LookupError, EOFError, TypeError, AttributeError, zlib.error, BadZipFile) as problem:
-        raise FixtureError(f"The utility fixture {path} is damaged or is not one ({problem}). {advice}") from problem
+    except (
+        OSError,
+        ValueError,
+        LookupError,
+        EOFError,
+        TypeError,
+        AttributeError,
+        zlib.error,
+        BadZipFile,
+    ) as problem:
+        raise FixtureError(
+            f"The utility fixture {path} is damaged or is not one ({problem}). {advice}"
+        ) from problem
     if found != FORMAT_VERSION:
-        raise FixtureError(f"The utility fixture {path} has format {found}, this version of tarl reads "
-                           f"{FORMAT_VERSION}. {advice}")
+        raise FixtureError(
+            f"The utility fixture {path} has format {found}, this version of tarl reads "
+            f"{FORMAT_VERSION}. {advice}"
+        )
     if header.pop("digest", None) != _digest(header, columns):
-        raise FixtureError(f"The utility fixture {path} is damaged: its digest does not fit its content. {advice}")
+        raise FixtureError(
+            f"The utility fixture {path} is damaged: its digest does not fit its content. {advice}"
+        )
     return _fixture(header, columns)
 
 

@@ -72,18 +72,24 @@ class Mission:
         paths = [(self.folder / node).resolve() for node in self.designation.nodes]
         for path, node in zip(paths, self.designation.nodes, strict=True):
             if not path.exists():
-                raise AnalysisError(f"The marker names the node {node!r}, but there is no such file in {self.folder}.")
+                raise AnalysisError(
+                    f"The marker names the node {node!r}, but there is no such file in {self.folder}."
+                )
         analysis = analyse(paths, root=self.root)
         if analysis.errors:
             first = analysis.errors[0]
             raise AnalysisError(f"{first.path}:{first.line} cannot be analysed: {first.message}")
         if not analysis.flows:
-            raise AnalysisError(f"No flow from a subscription to a publish call was found in {', '.join(self.designation.nodes)}"
-                                ", so there is nothing to instrument: run tarl-lint on it and name all files of the node.")
+            raise AnalysisError(
+                f"No flow from a subscription to a publish call was found in {', '.join(self.designation.nodes)}"
+                ", so there is nothing to instrument: run tarl-lint on it and name all files of the node."
+            )
         return analysis
 
     def _record(self, rollout: Rollout, sites: Plan) -> Account:
-        result = record(rollout, self.test, self.designation, self.options, sites, self.fixture_path, self.progress)
+        result = record(
+            rollout, self.test, self.designation, self.options, sites, self.fixture_path, self.progress
+        )
         written = self.fixture_path.relative_to(self.root)
         lines = [f"{self.test}: {result.line}", f"  wrote {written}"] if not result.problem else []
         return Account((*lines, *(f"  {note}" for note in result.notes)), result.problem)
@@ -95,7 +101,16 @@ class Mission:
         comparison = online.comparison
         episodes = {"offline": fixture.sample.episodes, "online": online.recorded.sample.episodes}
         if self.options.mode == "repair" and comparison.verdict.result == "degraded":
-            shop = RepairShop(rollout, analysis, self.root, fixture, online, self.options, self.progress, self.tarl)
+            shop = RepairShop(
+                rollout,
+                analysis,
+                self.root,
+                fixture,
+                online,
+                self.options,
+                self.progress,
+                self.tarl / "patches",
+            )
             comparison = repair(shop)
             episodes |= shop.spent
         return self._told(comparison, online, episodes)
@@ -125,8 +140,10 @@ class Mission:
             raise NoFixtureError(f"{self.test} has no recorded utility yet: run `{command}` first.")
         fixture = fixtures.load(self.fixture_path)
         if fixture.sensors != self.designation.sensors:
-            raise FixtureError(f"The sensors of {self.test} are not those of its utility fixture: record it again with "
-                               f"`pytest {self.test} --tarl-record`.")
+            raise FixtureError(
+                f"The sensors of {self.test} are not those of its utility fixture: record it again with "
+                f"`pytest {self.test} --tarl-record`."
+            )
         return fixture
 
     def _ignore(self) -> None:

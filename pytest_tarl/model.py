@@ -119,12 +119,13 @@ class Culprit:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """One repaired operand: where, its text, and the value (or factor) it takes under the guard."""
+    """One repaired operand: where, its text, and the value it takes under the guard, or the factor on it."""
 
     path: str
     line: int
     code: str
     value: float
+    factor: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +136,7 @@ class Repair:
     guard: str
     edits: tuple[Edit, ...]
     diff: str = ""
-    patch: str = ""                         # path of the patch file, relative to the root
+    patch: str = ""  # path of the patch file, relative to the root
     reason: Reason = ""
 
 
@@ -166,7 +167,7 @@ class Comparison:
     drift: str | None
     seed: int
     sensors: tuple[Sensor, ...]
-    cells: tuple[Cell, ...]                 # rows of the matrices below, sorted
+    cells: tuple[Cell, ...]  # rows of the matrices below, sorted
     lists: tuple[ListComparison, ...]
     verdict: Verdict
     region: Region

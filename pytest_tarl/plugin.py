@@ -21,16 +21,39 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """Declare the flags; those that choose a mode do nothing unless given."""
     group = parser.getgroup("tarl", "TARL: record, compare and repair robot code in simulation")
     flag = group.addoption
-    flag("--tarl-record", action="store_true", help="run the episodes off-line and record the utility fixture")
+    flag(
+        "--tarl-record", action="store_true", help="run the episodes off-line and record the utility fixture"
+    )
     flag("--tarl-online", action="store_true", help="run the drift scenarios and compare with the fixture")
     flag("--tarl-repair", action="store_true", help="with --tarl-online: search a repair and write a patch")
     flag("--tarl-drift", metavar="NAME", help="with --tarl-online: only this drift scenario")
-    flag("--tarl-seed", metavar="N", type=int, default=0, help="the one seed that decides everything (default 0)")
-    flag("--tarl-episodes", metavar="N", type=int, help="episodes to run instead of the marker's number, or of 40 on-line")
+    flag(
+        "--tarl-seed",
+        metavar="N",
+        type=int,
+        default=0,
+        help="the one seed that decides everything (default 0)",
+    )
+    flag(
+        "--tarl-episodes",
+        metavar="N",
+        type=int,
+        help="episodes to run instead of the marker's number, or of 40 on-line",
+    )
     flag("--tarl-alpha", metavar="P", type=float, default=0.05, help="rate of false alarms (default 0.05)")
-    flag("--tarl-search", metavar="METHOD", action="append",
-         help="sweep (default) or epsilon-greedy; given twice, both run and the first accepted repair counts")
-    flag("--tarl-budget", metavar="N", type=int, default=300, help="episodes that a search may spend (default 300)")
+    flag(
+        "--tarl-search",
+        metavar="METHOD",
+        action="append",
+        help="sweep (default) or epsilon-greedy; given twice, both run and the first accepted repair counts",
+    )
+    flag(
+        "--tarl-budget",
+        metavar="N",
+        type=int,
+        default=300,
+        help="episodes that a search may spend (default 300)",
+    )
     flag("--tarl-utility", metavar="KIND", default="batch", help="batch (default) or sarsa, as in the paper")
     flag("--tarl-strict", action="store_true", help="with --tarl-online: a test without fixture fails")
 
@@ -83,8 +106,23 @@ def _options(config: pytest.Config) -> Options:
     from pytest_tarl.settings import options
 
     try:
-        return options({name: config.getoption(f"--tarl-{name}") for name in (
-            "record", "online", "repair", "drift", "seed", "episodes", "alpha", "search", "budget", "utility", "strict"
-        )})
+        return options(
+            {
+                name: config.getoption(f"--tarl-{name}")
+                for name in (
+                    "record",
+                    "online",
+                    "repair",
+                    "drift",
+                    "seed",
+                    "episodes",
+                    "alpha",
+                    "search",
+                    "budget",
+                    "utility",
+                    "strict",
+                )
+            }
+        )
     except SettingsError as error:
         raise pytest.UsageError(str(error)) from None

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from statistics import fmean, stdev
-from typing import Any
 
-from pytest_tarl import candidates, localize, seeds
+from pytest_tarl import candidates, localize, patch, seeds
 from pytest_tarl.accept import LOOKS, Acceptance, Outcome, Reference, accept
 from pytest_tarl.comparing import Online
 from pytest_tarl.errors import RepairError
 from pytest_tarl.fixture import Fixture
-from pytest_tarl.model import Comparison, Edit, Guard, Reason, Repair, SearchTrace
-from pytest_tarl.mutate import rewrite
+from pytest_tarl.model import Comparison, Edit, Guard, OperandEffect, Reason, Repair, SearchTrace, SitePlace
+from pytest_tarl.mutate import Mutation, guard_text, is_integral, mutations, rewrite
 from pytest_tarl.recording import Progress, sound
 from pytest_tarl.rollout import EpisodePlan, Rollout
-from pytest_tarl.search import BudgetSpentError, Candidate, EpsilonGreedy, Goal, Pair, Sweep, Trials, label
+from pytest_tarl.search import BudgetSpentError, Candidate, EpsilonGreedy, Goal, Pair, Sweep, Trials
 from pytest_tarl.settings import Options
 from tarl_lint.api import Analysis
 from tarl_lint.model import Operand
@@ -45,6 +45,7 @@ class RepairShop:
     online: Online
     options: Options
     progress: Progress
+    patches: Path                       # the folder that patches are written to
     spent: dict[str, int] = field(default_factory=lambda: {"search": 0, "acceptance": 0})
     tested: int = 0
     reason: Reason = "no operand helps"
@@ -56,13 +57,84 @@ class RepairShop:
         """Return what the on-line run found."""
         return self.online.comparison
 
-    @property
+    @cached_property
     def reference(self) -> Reference:
         """Return the off-line world that repairs are held against."""
         offline = self.fixture.sample
         return Reference(
             offline.total.tolist(), float(offline.passed.mean()), self.comparison.verdict.tolerance
         )
+
+    @cached_property
+    def goal(self) -> Goal:
+        """Return what the search is after."""
+        online = self.online.recorded.sample
+        pairs = [Pair(seed, total) for seed, total in zip(online.seeds, online.total.tolist(), strict=True)]
+        return goal(pairs, self.reference, self.comparison.verdict.loss)
+
+    @cached_property
+    def operands(self) -> tuple[Operand, ...]:
+        """Return all operands of the analysed flows, those of the sites that the slices rank first in front."""
+        rank = {culprit.site.id: i for i, culprit in enumerate(self.comparison.culprits)}
+        steps = sorted(self.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
+        return tuple(dict.fromkeys(o for step in steps for o in self.analysis.operands(step.site)))
+
+    def mutate(self, operand: Operand, factor: float) -> Mutation | None:
+        """Return one sweep step of an operand."""
+        return mutations(operand, factor, is_integral(self.analysis, operand))
+
+    def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+        """Run one episode of a candidate. Raises RepairError when it cannot be written into the source."""
+        run = sound(self.rollout(EpisodePlan(seed, drift, self.mutant(candidate))))
+        return Outcome(float(run.trace.reward.sum()), run.passed)
+
+    def mutant(self, candidate: Candidate) -> Mapping[Path, str]:
+        """Return the candidate as source: path → text of every file that it changes."""
+        if candidate not in self._mutants:
+            texts = rewrite(self.analysis, candidate.mutations, candidate.guard, self.fixture.topics)
+            self._mutants[candidate] = {self.root / path: text for path, text in texts.items()}
+        return self._mutants[candidate]
+
+
+def repair(shop: RepairShop) -> Comparison:
+    """Search, guard, accept; return the comparison with culprits, curves and the repair in it."""
+    comparison = shop.comparison
+    worlds = (shop.fixture.sample, shop.online.recorded.sample)
+    guards = candidates.candidate_guards(comparison.region, comparison.sensors, worlds)
+    widest = candidates.widest(guards, worlds[1], comparison.sensors)
+    accepted: Accepted | None = None
+    searches: list[SearchTrace] = []
+    effects: dict[str, list[OperandEffect]] = {}
+    for method in shop.options.searches:
+        trials = Trials(lambda candidate, seed: shop.run(candidate, seed, comparison.drift), shop.options.budget)
+        for guard in dict.fromkeys((widest, candidates.ALWAYS)):
+            strategy = _strategy(shop, method, guard, trials)
+            found = _first_accepted(shop, strategy.candidates(), guards, wanted=accepted is None)
+            effects = effects or strategy.effects()
+            accepted = accepted or found
+            if found is not None or trials.spent >= trials.budget:
+                break
+        searches.append(SearchTrace(method, tuple(trials.totals), tuple(trials.labels)))
+        shop.spent["search"] += trials.spent
+    return _concluded(shop, accepted, effects, searches)
+
+
+def goal(self) -> Goal:
+        """Return what the search is after."""
+        online = self.online.recorded.sample
+        pairs = [Pair(seed, total) for seed, total in zip(online.seeds, online.total.tolist(), strict=True)]
+        return goal(pairs, self.reference, self.comparison.verdict.loss)
+
+    @cached_property
+    def operands(self) -> tuple[Operand, ...]:
+        """Return all operands of the analysed flows, those of the sites that the slices rank first in front."""
+        rank = {culprit.site.id: i for i, culprit in enumerate(self.comparison.culprits)}
+        steps = sorted(self.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
+        return tuple(dict.fromkeys(o for step in steps for o in self.analysis.operands(step.site)))
+
+    def mutate(self, operand: Operand, factor: float) -> Mutation | None:
+        """Return one sweep step of an operand."""
+        return mutations(operand, factor, is_integral(self.analysis, operand))
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
         """Run one episode of a candidate. Raises RepairError when it cannot be written into the source."""
@@ -118,14 +190,10 @@ def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:
 
 
 def _strategy(shop: RepairShop, method: str, guard: Guard, trials: Trials) -> Sweep | EpsilonGreedy:
-    operands = ranked_operands(shop.analysis, shop.comparison)
-    online = shop.online.recorded.sample
-    pairs = [Pair(seed, total) for seed, total in zip(online.seeds, online.total.tolist(), strict=True)]
-    aim = goal(pairs, shop.reference, shop.comparison.verdict.loss)
     if method == "sweep":
-        return Sweep(operands, guard, trials, aim)
+        return Sweep(shop.operands, shop.mutate, guard, trials, shop.goal)
     fresh = seeds.episode_seeds(shop.options.seed, "search", trials.budget)
-    return EpsilonGreedy(operands, guard, trials, aim, fresh, seeds.generator(shop.options.seed, method))
+    return EpsilonGreedy(shop.operands, shop.mutate, guard, trials, shop.goal, fresh, seeds.generator(shop.options.seed, method))
 
 
 def _first_accepted(
@@ -170,24 +238,22 @@ def _tested(shop: RepairShop, candidate: Candidate) -> Accepted | None:
 
 def _promising(shop: RepairShop, candidate: Candidate) -> bool:
     """Tell whether the candidate holds on a few on-line episodes that lost and off-line ones in which it acts."""
-    offline, online = shop.fixture.sample, shop.online.recorded.sample
-    pairs = [Pair(seed, total) for seed, total in zip(online.seeds, online.total.tolist(), strict=True)]
-    aim = goal(pairs, shop.reference, shop.comparison.verdict.loss)
+    aim, offline = shop.goal, shop.fixture.sample
     firing = candidates.firing_episodes(candidate.guard, offline, shop.comparison.sensors)
     known = dict(zip(offline.seeds, offline.total.tolist(), strict=True))
     slack = shop.reference.mean - aim.near
-    worlds = (
-        [(pair.seed, shop.comparison.drift, aim.near, "gain too small") for pair in aim.pairs[:QUICK]]
-        + [(seed, None, known[seed] - slack, "nominal gets worse") for seed in firing[:QUICK]]
-    )
-    for seed, drift, least, reason in worlds:
+    looks: list[tuple[int, str | None, float, Reason]] = [
+        *((pair.seed, shop.comparison.drift, aim.near, "gain too small") for pair in aim.pairs[:QUICK]),
+        *((seed, None, known[seed] - slack, "nominal gets worse") for seed in firing[:QUICK]),
+    ]
+    for seed, drift, least, reason in looks:
         shop.spent["search"] += 1
         try:
             total = shop.run(candidate, seed, drift).total
         except RepairError:
             return False
         if total < least:
-            shop.reason = "nominal gets worse" if drift is None else "gain too small"
+            shop.reason = reason
             return False
     return True
 
@@ -214,3 +280,49 @@ def _concluded(
         totals=totals,
         repair=_repair(shop, accepted),
     )
+
+
+def _unranked(shop: RepairShop) -> list[tuple[SitePlace, float]]:
+    """Return the sites as they stand, where no slice ranks them."""
+    return [
+        (SitePlace(str(step.site), step.span.path, step.span.line, step.code, step.dependence, step.role), 0.0)
+        for step in shop.analysis.sites
+    ]
+
+
+def _repair(shop: RepairShop, accepted: Accepted | None) -> Repair:
+    """Write the patch of an accepted repair; otherwise tell the best candidate and why it was not."""
+    candidate = accepted.candidate if accepted else shop.best
+    if candidate is None:
+        return Repair(False, "", (), reason=shop.reason)
+    guard = guard_text(candidate.guard, shop.analysis, candidate.mutations, shop.fixture.topics)
+    edits = tuple(_edit(mutation) for mutation in candidate.mutations)
+    if accepted is None:
+        return Repair(False, guard, edits, reason=shop.reason)
+    changed = shop.mutant(candidate)
+    originals = {path: path.read_bytes() for path in changed}
+    diff = patch.unified_diff(originals, changed, shop.root, _evidence(shop, accepted, guard))
+    written = patch.write(diff, shop.patches, shop.fixture.test, shop.comparison.drift)
+    return Repair(True, guard, edits, diff, written.relative_to(shop.root).as_posix())
+
+
+def _edit(mutation: Mutation) -> Edit:
+    operand = mutation.operand
+    return Edit(operand.span.path, operand.span.line, operand.code, float(mutation.value), not operand.literal)
+
+
+def _evidence(shop: RepairShop, accepted: Accepted, guard: str) -> list[str]:
+    """Return what the patch's header tells: test, drift, seed, rewards before and after, episodes."""
+    totals = shop.comparison.totals
+    acceptance = accepted.acceptance
+    repaired = [outcome.total for outcome in acceptance.drifted]
+    nominal = [outcome.total for outcome in acceptance.nominal]
+    lines = [
+        f"Repair of {shop.fixture.test} under the drift {shop.comparison.drift or '(on-line)'}, seed {shop.options.seed}",
+        f"when: {guard or 'always'}",
+        f"reward per episode: off-line {fmean(totals['offline']):.4g}, on-line {fmean(totals['online']):.4g}, "
+        f"repaired {fmean(repaired):.4g} ({len(repaired)} fresh episodes)",
+        f"designed world: {fmean(nominal):.4g} ({len(nominal)} fresh episodes)" if nominal
+        else "designed world: the guard never holds there",
+    ]
+    return [*lines, f"episodes spent: search {shop.spent['search']}, acceptance {shop.spent['acceptance']}"]

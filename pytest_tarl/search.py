@@ -16,15 +16,17 @@ from typing import TYPE_CHECKING
 from pytest_tarl.accept import Outcome
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
-from pytest_tarl.mutate import Mutation, mutations
+from pytest_tarl.mutate import Mutation
 
 if TYPE_CHECKING:
     import numpy as np
 
     from tarl_lint.model import Operand
 
+Mutate = Callable[["Operand", float], Mutation | None]
+
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)
-CONFIRMATIONS = 5                       # further seeds that a promising candidate must hold on
+CONFIRMATIONS = 5  # further seeds that a promising candidate must hold on
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,8 @@ class Trials:
 def label(candidate: Candidate) -> str:
     """Name a candidate's mutations for people: `line 30: 5 → 11.0`."""
     return ", ".join(
-        f"line {m.operand.span.line}: {m.operand.code} → {m.value:.4g}" if m.operand.literal
+        f"line {m.operand.span.line}: {m.operand.code} → {m.value:.4g}"
+        if m.operand.literal
         else f"line {m.operand.span.line}: {m.operand.code} × {m.value:.4g}"
         for m in candidate.mutations
     )
@@ -106,8 +109,11 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
 class Sweep:
     """Sweep and confirm, operands in the given order, each mutated at its use under `guard`."""
 
-    def __init__(self, operands: Sequence[Operand], guard: Guard, trials: Trials, goal: Goal) -> None:
+    def __init__(
+        self, operands: Sequence[Operand], mutate: Mutate, guard: Guard, trials: Trials, goal: Goal
+    ) -> None:
         self.operands = operands
+        self.mutate = mutate
         self.guard = guard
         self.trials = trials
         self.goal = goal
@@ -134,7 +140,7 @@ class Sweep:
         return found
 
     def _try(self, operand: Operand, factor: float, pair: int) -> Iterator[Candidate]:
-        mutation = mutations(operand, factor)
+        mutation = self.mutate(operand, factor)
         if mutation is None or mutation in self._tried:
             return
         self._tried.add(mutation)
@@ -160,7 +166,7 @@ class Sweep:
             return
         ordered = sorted(gains)
         place = ordered.index(factor)
-        for neighbour in ordered[max(place - 1, 0):place] + ordered[place + 1:place + 2]:
+        for neighbour in ordered[max(place - 1, 0) : place] + ordered[place + 1 : place + 2]:
             yield from self._try(best, round(sqrt(factor * neighbour), 3), pair)
 
 
@@ -170,12 +176,13 @@ class EpsilonGreedy:
     EPSILON = 0.2
     ALPHA = 0.3
     GAMMA = 0.5
-    SITES = 3                           # the sites that the slices rank first
-    CONFIRMED = 3                       # how many of the best mutations are confirmed in the end
+    SITES = 3  # the sites that the slices rank first
+    CONFIRMED = 3  # how many of the best mutations are confirmed in the end
 
     def __init__(
         self,
         operands: Sequence[Operand],
+        mutate: Mutate,
         guard: Guard,
         trials: Trials,
         goal: Goal,
@@ -183,7 +190,7 @@ class EpsilonGreedy:
         generator: np.random.Generator,
     ) -> None:
         sites = list(dict.fromkeys(operand.site for operand in operands))[: self.SITES]
-        tries = [mutations(o, f) for f in FACTORS for o in operands if o.site in sites]
+        tries = [mutate(o, f) for f in FACTORS for o in operands if o.site in sites]
         self.actions = [Candidate((m,), guard) for m in dict.fromkeys(tries) if m is not None]
         self.trials = trials
         self.goal = goal

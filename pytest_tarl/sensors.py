@@ -9,7 +9,7 @@ from typing import Any
 
 from pytest_tarl.errors import SettingsError
 
-Cell = tuple[int, ...]          # one bin per sensor
+Cell = tuple[int, ...]  # one bin per sensor
 
 
 @dataclass(frozen=True)
@@ -34,19 +34,27 @@ class Sensor:
 
     def __post_init__(self) -> None:
         if not self.name.isidentifier():
-            raise SettingsError(f"Sensor name {self.name!r} is not a Python identifier: choose one such as 'x'.")
+            raise SettingsError(
+                f"Sensor name {self.name!r} is not a Python identifier: choose one such as 'x'."
+            )
         if (self.topic is None) != (self.field is None):
-            raise SettingsError(f"Sensor {self.name!r} has a topic or a field but not both: give both, or neither "
-                                f"and report it with tarl.observe({self.name}=…).")
+            raise SettingsError(
+                f"Sensor {self.name!r} has a topic or a field but not both: give both, or neither "
+                f"and report it with tarl.observe({self.name}=…)."
+            )
         bounds = (self.low, self.high, self.bins)
         if any(b is not None for b in bounds) and any(b is None for b in bounds):
             raise SettingsError(f"Sensor {self.name!r} needs low, high and bins together, or none of them.")
         if self.low is not None and self.high is not None and self.bins is not None:
             if not self.low < self.high or self.bins < 1:
-                raise SettingsError(f"Sensor {self.name!r}: low must be below high and bins at least 1, got "
-                                    f"low={self.low}, high={self.high}, bins={self.bins}.")
+                raise SettingsError(
+                    f"Sensor {self.name!r}: low must be below high and bins at least 1, got "
+                    f"low={self.low}, high={self.high}, bins={self.bins}."
+                )
             if self.categories:
-                raise SettingsError(f"Sensor {self.name!r} is either numeric (low, high, bins) or has categories.")
+                raise SettingsError(
+                    f"Sensor {self.name!r} is either numeric (low, high, bins) or has categories."
+                )
 
     @property
     def numeric(self) -> bool:
@@ -66,16 +74,22 @@ class Sensor:
                 return None
             if number == self.high:
                 return self.bins - 1
-            return max(-1, min(self.bins, math.floor((number - self.low) / (self.high - self.low) * self.bins)))
+            return max(
+                -1, min(self.bins, math.floor((number - self.low) / (self.high - self.low) * self.bins))
+            )
         if self.categories:
             if value not in self.categories:
-                raise SettingsError(f"Sensor {self.name!r} got {value!r}, which is not among its categories "
-                                    f"{', '.join(map(repr, self.categories))}: add it there.")
+                raise SettingsError(
+                    f"Sensor {self.name!r} got {value!r}, which is not among its categories "
+                    f"{', '.join(map(repr, self.categories))}: add it there."
+                )
             return self.categories.index(value)
         number = float(value) if not isinstance(value, str) else math.nan
         if not number.is_integer():
-            raise SettingsError(f"Sensor {self.name!r} got {value!r}: give it low, high and bins for a measurement, "
-                                "or categories for texts.")
+            raise SettingsError(
+                f"Sensor {self.name!r} got {value!r}: give it low, high and bins for a measurement, "
+                "or categories for texts."
+            )
         return int(number)
 
     def interval(self, first: int, last: int) -> tuple[float, float]:

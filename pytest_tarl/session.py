@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from pytest_tarl.missions import Account
 
-ACCOUNT = "tarl_account"                # attribute of a report: lines for the summary
+ACCOUNT = "tarl_account"  # attribute of a report: lines for the summary
 
 
 class TarlSession:
@@ -53,8 +53,10 @@ class TarlSession:
         known = sorted({name for item in marked for name in _drift_names(item)})
         if marked and self.options.drift not in known:
             names = ", ".join(known) or "none is declared"
-            raise pytest.UsageError(f"No test declares the drift {self.options.drift!r}; known are: {names}. Declare it "
-                                    "in the marker: drifts={…}.")
+            raise pytest.UsageError(
+                f"No test declares the drift {self.options.drift!r}; known are: {names}. Declare it "
+                "in the marker: drifts={…}."
+            )
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
@@ -62,7 +64,9 @@ class TarlSession:
         if not isinstance(item, pytest.Function) or item.get_closest_marker("tarl") is None:
             return None
         item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
-        call = pytest.CallInfo.from_call(lambda: self._run(item), when="call", reraise=(pytest.exit.Exception, KeyboardInterrupt))
+        call = pytest.CallInfo.from_call(
+            lambda: self._run(item), when="call", reraise=(pytest.exit.Exception, KeyboardInterrupt)
+        )
         report = pytest.TestReport.from_item_and_call(item, call)
         account = call.result if call.excinfo is None else None
         if account is not None:

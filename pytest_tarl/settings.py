@@ -23,10 +23,10 @@ class Options:
     mode: Mode = "plain"
     seed: int = 0
     drift: str | None = None
-    episodes: int | None = None             # overrides the marker off-line, the default on-line
+    episodes: int | None = None  # overrides the marker off-line, the default on-line
     alpha: float = 0.05
     searches: tuple[str, ...] = ("sweep",)
-    budget: int = 300                       # episodes that a search may spend
+    budget: int = 300  # episodes that a search may spend
     strict: bool = False
     utility: str = "batch"
 
@@ -83,7 +83,9 @@ def _known(flag: str, name: str, among: Sequence[str]) -> None:
 def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, Any]) -> Designation:
     """Check a marker's arguments. Raises SettingsError with a sentence that says which one and how to mend it."""
     if positional:
-        raise SettingsError(f"{where}: @pytest.mark.tarl takes named arguments only, such as nodes=[…], sensors=[…].")
+        raise SettingsError(
+            f"{where}: @pytest.mark.tarl takes named arguments only, such as nodes=[…], sensors=[…]."
+        )
     for name in arguments:
         if name not in MARKER_ARGUMENTS:
             close = difflib.get_close_matches(name, MARKER_ARGUMENTS, 1)
@@ -101,15 +103,19 @@ def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, A
 
 def _nodes(where: str, nodes: Any) -> tuple[str, ...]:
     if isinstance(nodes, str) or not nodes or not all(isinstance(node, str) for node in nodes):
-        raise SettingsError(f'{where}: name the files of the node under test, for instance nodes=["my_node.py"] '
-                            "(relative to the test's folder).")
+        raise SettingsError(
+            f'{where}: name the files of the node under test, for instance nodes=["my_node.py"] '
+            "(relative to the test's folder)."
+        )
     return tuple(nodes)
 
 
 def _sensors(where: str, sensors: Any) -> tuple[Sensor, ...]:
     if not isinstance(sensors, Sequence) or not sensors or not all(isinstance(s, Sensor) for s in sensors):
-        raise SettingsError(f'{where}: declare what the node is told, for instance sensors=[Sensor("x", topic="/odom", '
-                            'field="pose.pose.position.x", low=0, high=10, bins=24)] with `from pytest_tarl import Sensor`.')
+        raise SettingsError(
+            f'{where}: declare what the node is told, for instance sensors=[Sensor("x", topic="/odom", '
+            'field="pose.pose.position.x", low=0, high=10, bins=24)] with `from pytest_tarl import Sensor`.'
+        )
     names = [sensor.name for sensor in sensors]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
@@ -119,8 +125,10 @@ def _sensors(where: str, sensors: Any) -> tuple[Sensor, ...]:
 
 def _drifts(where: str, drifts: Any) -> Mapping[str, Any]:
     if not isinstance(drifts, Mapping) or not all(isinstance(name, str) and name for name in drifts):
-        raise SettingsError(f'{where}: drifts maps names to values of the fixture tarl_drift, for instance '
-                            'drifts={"mud": 0.15}.')
+        raise SettingsError(
+            f"{where}: drifts maps names to values of the fixture tarl_drift, for instance "
+            'drifts={"mud": 0.15}.'
+        )
     return dict(drifts)
 
 

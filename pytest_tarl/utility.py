@@ -32,7 +32,7 @@ def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamm
     seen = np.flatnonzero(visits)
     place = np.full(states + 1, -1, dtype=np.int64)
     place[seen] = np.arange(seen.size)
-    inside = place[next_state] >= 0            # END indexes the last entry, which stays -1
+    inside = place[next_state] >= 0  # END indexes the last entry, which stays -1
     moves = np.zeros((seen.size, seen.size))
     np.add.at(moves, (place[state[inside]], place[next_state[inside]]), count[inside])
     mean = visits[seen]

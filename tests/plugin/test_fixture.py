@@ -22,7 +22,9 @@ def site(n: int) -> SitePlace:
 
 def example() -> Fixture:
     whole = merge([random_sample(seed) for seed in range(6)])
-    lists = tuple(TaintList(f"/in{i}", "/out", tuple(map(site, members))) for i, members in enumerate(MEMBERS))
+    lists = tuple(
+        TaintList(f"/in{i}", "/out", tuple(map(site, members))) for i, members in enumerate(MEMBERS)
+    )
     return Fixture(
         test="test_node.py::test_it",
         seed=3,
@@ -40,7 +42,11 @@ def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
     loaded = load(path)
     assert same(loaded.sample, fixture.sample)
     assert (loaded.test, loaded.seed, loaded.sensors, loaded.lists, loaded.topics) == (
-        fixture.test, fixture.seed, fixture.sensors, fixture.lists, fixture.topics
+        fixture.test,
+        fixture.seed,
+        fixture.sensors,
+        fixture.lists,
+        fixture.topics,
     )
     assert [table.shape for table in loaded.sarsa] == [table.shape for table in fixture.sarsa]
 

@@ -39,7 +39,9 @@ def same(first: Sample, second: Sample) -> bool:
         return [one.total, one.passed, one.steps, *(column for t in tables for column in vars(t).values())]
 
     plain = (first.cells, first.seeds, first.part_names) == (second.cells, second.seeds, second.part_names)
-    return plain and all(a.tobytes() == b.tobytes() for a, b in zip(columns(first), columns(second), strict=True))
+    return plain and all(
+        a.tobytes() == b.tobytes() for a, b in zip(columns(first), columns(second), strict=True)
+    )
 
 
 @given(st.integers(0, 10**6))

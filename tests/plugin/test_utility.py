@@ -9,7 +9,7 @@ from pytest_tarl.statistics import END, START, EventSequence, sample
 from pytest_tarl.trace import Trace
 from pytest_tarl.utility import batch, chain_utility, fixed_point, sarsa
 
-WALK = 5                                # Sutton & Barto, example 6.2: values 1/6 … 5/6
+WALK = 5  # Sutton & Barto, example 6.2: values 1/6 … 5/6
 
 
 def random_walk(seed: int) -> list[int]:
@@ -41,7 +41,7 @@ def walk_trace(seed: int) -> Trace:
 def test_the_fixed_point_solves_the_random_walk_exactly() -> None:
     state = np.repeat(np.arange(WALK), 2)
     following = np.array([END, 1, 0, 2, 1, 3, 2, 4, 3, END])
-    reward = np.array([0.0, 0.0, 0.0, 0.0, 1.0])      # half of the last state's two exits earns 1
+    reward = np.array([0.0, 0.0, 0.0, 0.0, 1.0])  # half of the last state's two exits earns 1
     values = fixed_point(state, following, np.ones(10, np.int64), reward, gamma=1.0)
     assert values == pytest.approx(np.arange(1, 6) / 6)
 
@@ -74,7 +74,7 @@ def test_sarsa_follows_the_update_rule_by_hand() -> None:
         flow=np.array([0.0, 4.0, 0.0]),
     )
     table = sarsa([sequence, sequence], cells=1, sites=2, scale=2.0, gamma=0.5, alpha=0.1)
-    first = 0.1 * 3.0                                   # ρ = 1 + 4/2
+    first = 0.1 * 3.0  # ρ = 1 + 4/2
     assert table[0, 0] == pytest.approx(first + 0.1 * (3.0 + 0.5 * 0.2 - first))
     assert table[0, 1] == pytest.approx(0.2 + 0.1 * (2.0 - 0.2))
 
