@@ -1,0 +1,100 @@
+"""Compiled code of instrumented files, kept between runs below `.tarl/cache`.
+
+An entry is named after everything that its code depends on, carries a digest of its contents and is written
+to a temporary file that is then renamed. A damaged, foreign or unwritable entry costs a compilation, no more.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import marshal
+import os
+import sys
+import tempfile
+from collections.abc import Iterable
+from importlib.util import MAGIC_NUMBER
+from pathlib import Path
+from types import CodeType
+
+FORMAT = b"tarl-code-1\n"
+KEPT = 8  # entries a file may have: one for each of its site plans, roughly
+REMEMBERED = 256  # entries in memory: a repair tries many edited texts
+_HEADER = len(FORMAT) + len(MAGIC_NUMBER) + hashlib.sha256().digest_size
+
+
+class CodeCache:
+    """Code objects by key, in this process and in a directory; None keeps them in this process only."""
+
+    def __init__(self, directory: Path | None) -> None:
+        self._directory = directory
+        self._codes: dict[str, CodeType] = {}
+
+    def load(self, name: str) -> CodeType | None:
+        """Return what was stored under this name, None when there is nothing usable."""
+        code = self._codes.get(name)
+        if code is None and self._directory is not None:
+            code = _read(self._directory / name)
+            if code is not None:
+                self._remember(name, code)
+        return code
+
+    def store(self, name: str, code: CodeType, *, keep: bool = True) -> None:
+        """Keep code under a name made by `entry_name`; with `keep=False` in this process only."""
+        self._remember(name, code)
+        if keep and self._directory is not None and not sys.dont_write_bytecode:
+            with contextlib.suppress(OSError):
+                _write(self._directory / name, code)
+
+    def _remember(self, name: str, code: CodeType) -> None:
+        self._codes[name] = code
+        while len(self._codes) > REMEMBERED:
+            del self._codes[next(iter(self._codes))]
+
+
+def entry_name(path: Path, depends_on: Iterable[object]) -> str:
+    """Name the code of a file after what it was compiled from; each part must have a faithful `repr`."""
+    digest = hashlib.sha256(repr(tuple(depends_on)).encode()).hexdigest()
+    return f"{path.stem}-{_place(path)}-{digest[:32]}.pyc"
+
+
+def _place(path: Path) -> str:
+    return hashlib.sha256(os.fsencode(path)).hexdigest()[:8]
+
+
+def _read(entry: Path) -> CodeType | None:
+    try:
+        data = entry.read_bytes()
+    except OSError:
+        return None
+    payload = data[_HEADER:]
+    if data[:_HEADER] != _header(payload):
+        return None
+    code = marshal.loads(payload)  # noqa: S302 - what a .pyc is; the digest says that it is whole
+    return code if isinstance(code, CodeType) else None
+
+
+def _write(entry: Path, code: CodeType) -> None:
+    payload = marshal.dumps(code)
+    entry.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(prefix=f".{entry.stem}-", dir=entry.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(_header(payload) + payload)
+        Path(temporary).replace(entry)
+    except OSError:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+    _forget_old(entry)
+
+
+def _header(payload: bytes) -> bytes:
+    return FORMAT + MAGIC_NUMBER + hashlib.sha256(payload).digest()
+
+
+def _forget_old(entry: Path) -> None:
+    """Remove all but the newest entries of the same file."""
+    same = entry.parent.glob(f"{entry.name[:-37]}-*.pyc")
+    by_age = sorted(same, key=lambda path: path.stat().st_mtime_ns, reverse=True)
+    for old in by_age[KEPT:]:
+        old.unlink(missing_ok=True)

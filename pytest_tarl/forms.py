@@ -1,0 +1,177 @@
+"""The little pieces of syntax that recording is made of, and where they say they stand.
+
+Every new node takes the place of code that runs at the same moment, so that line events, tracebacks and
+carets stay those of the program as written.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from dataclasses import dataclass
+from typing import TypedDict
+
+INLINED_COMPREHENSIONS = sys.version_info >= (3, 12)
+_FIRST = {
+    ast.Attribute: "value",
+    ast.Await: "value",
+    ast.BinOp: "left",
+    ast.BoolOp: "values",
+    ast.Call: "func",
+    ast.Compare: "left",
+    ast.IfExp: "test",
+    ast.List: "elts",
+    ast.NamedExpr: "value",
+    ast.Set: "elts",
+    ast.Starred: "value",
+    ast.Subscript: "value",
+    ast.Tuple: "elts",
+    ast.UnaryOp: "operand",
+    ast.Yield: "value",
+    ast.YieldFrom: "value",
+}
+
+
+class Where(TypedDict):
+    """The four coordinates of a node."""
+
+    lineno: int
+    col_offset: int
+    end_lineno: int | None
+    end_col_offset: int | None
+
+
+def where(node: ast.expr | ast.stmt | ast.keyword) -> Where:
+    """Return the coordinates of `node`, to build another one in its place."""
+    return Where(
+        lineno=node.lineno,
+        col_offset=node.col_offset,
+        end_lineno=node.end_lineno,
+        end_col_offset=node.end_col_offset,
+    )
+
+
+def first_evaluated(node: ast.expr) -> ast.expr:
+    """Return the part of an expression that runs first: where a debugger would stop."""
+    while True:
+        if INLINED_COMPREHENSIONS and isinstance(node, (ast.ListComp, ast.SetComp, ast.DictComp)):
+            node = node.generators[0].iter
+            continue
+        inner = getattr(node, _FIRST.get(type(node), ""), None)
+        if isinstance(inner, list):
+            inner = inner[0] if inner else None
+        if not isinstance(inner, ast.expr):
+            return node
+        node = inner
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """The globals that instrumented code uses. With `inline`, plain floats are appended without a call."""
+
+    hook: str
+    inline: bool = False
+
+    @property
+    def buffer(self) -> str:
+        """Name the list of events of the running thread."""
+        return _derived(self.hook, "list")
+
+    @property
+    def type(self) -> str:
+        """Name the builtin `type`, which the program may have hidden."""
+        return _derived(self.hook, "type")
+
+    @property
+    def float(self) -> str:
+        """Name the builtin `float`."""
+        return _derived(self.hook, "float")
+
+
+def _derived(hook: str, suffix: str) -> str:
+    """Keep two underscores at both ends, or classes would mangle the name."""
+    return f"{hook.removesuffix('__')}_{suffix}__"
+
+
+def recorded(value: ast.expr, number: int, names: Names) -> ast.Call:
+    """Build `hook(number, value)`, which gives `value` back."""
+    start = where(first_evaluated(value))
+    return ast.Call(
+        func=ast.Name(names.hook, ast.Load(), **start),
+        args=[ast.Constant(number, **start), value],
+        keywords=[],
+        **where(value),
+    )
+
+
+def note(name: str, number: int, names: Names, at: Where) -> ast.stmt:
+    """Build the statement that records the value of a plain name."""
+    value = ast.Name(name, ast.Load(), **at)
+    by_hook = _called(value, number, names, at)
+    if not names.inline:
+        return by_hook
+    kind = ast.Call(ast.Name(names.type, ast.Load(), **at), [ast.Name(name, ast.Load(), **at)], [], **at)
+    plain = ast.Compare(kind, [ast.Is()], [ast.Name(names.float, ast.Load(), **at)], **at)
+    appended = _appended(ast.Name(name, ast.Load(), **at), number, names, at)
+    return ast.If(plain, appended, [by_hook], **at)
+
+
+def note_constant(value: float, number: int, names: Names, at: Where) -> list[ast.stmt]:
+    """Build the statements that record a value known beforehand: a truth value, or 0 for nothing."""
+    constant = ast.Constant(value, **at)
+    if names.inline:
+        return _appended(constant, number, names, at)
+    return [_called(constant, number, names, at)]
+
+
+def truth(test: ast.expr) -> ast.expr:
+    """Build the truth value of a condition, asking each operand once, as a jump does."""
+    if isinstance(test, ast.Compare) and len(test.ops) == 1:
+        return test
+    at = where(test)
+    return ast.IfExp(test, ast.Constant(True, **at), ast.Constant(False, **at), **at)
+
+
+def reached(call: ast.Call, number: int, names: Names) -> ast.Call:
+    """Build the call with 0 recorded just before it happens, after its arguments are known.
+
+    A publish may hand over to other nodes and to the world: recorded afterwards, its event would land in
+    the wrong step of the simulation.
+    """
+    if call.keywords:
+        last = call.keywords[-1]
+        changed = ast.keyword(last.arg, _then(last.value, number, names), **where(last))
+        return ast.Call(call.func, call.args, [*call.keywords[:-1], changed], **where(call))
+    *before, final = call.args
+    if isinstance(final, ast.Starred):
+        final = ast.Starred(_then(final.value, number, names), final.ctx, **where(final))
+    else:
+        final = _then(final, number, names)
+    return ast.Call(call.func, [*before, final], [], **where(call))
+
+
+def _then(value: ast.expr, number: int, names: Names) -> ast.expr:
+    """Build `(value, hook(number, 0.0))[0]`."""
+    at = where(value)
+    hook = ast.Call(ast.Name(names.hook, ast.Load(), **at), _arguments(number, at), [], **at)
+    both = ast.Tuple([value, hook], ast.Load(), **at)
+    return ast.Subscript(both, ast.Constant(0, **at), ast.Load(), **at)
+
+
+def _arguments(number: int, at: Where) -> list[ast.expr]:
+    return [ast.Constant(number, **at), ast.Constant(0.0, **at)]
+
+
+def _called(value: ast.expr, number: int, names: Names, at: Where) -> ast.Expr:
+    hook = ast.Name(names.hook, ast.Load(), **at)
+    return ast.Expr(ast.Call(hook, [ast.Constant(number, **at), value], [], **at), **at)
+
+
+def _appended(value: ast.expr, number: int, names: Names, at: Where) -> list[ast.stmt]:
+    return [_append(ast.Constant(number, **at), names, at), _append(value, names, at)]
+
+
+def _append(entry: ast.expr, names: Names, at: Where) -> ast.stmt:
+    # As a method call on the list: CPython 3.11 and later specialise exactly this form.
+    method = ast.Attribute(ast.Name(names.buffer, ast.Load(), **at), "append", ast.Load(), **at)
+    return ast.Expr(ast.Call(method, [entry], [], **at), **at)

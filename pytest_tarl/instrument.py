@@ -1,0 +1,301 @@
+"""ast → ast with recording. Pure; the instrumented program computes exactly what the original computes."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection, Mapping
+from typing import Literal, TypeVar
+
+from pytest_tarl.forms import (
+    Names,
+    Where,
+    first_evaluated,
+    note,
+    note_constant,
+    reached,
+    recorded,
+    truth,
+    where,
+)
+
+Offset = tuple[int, int]  # line from 1 and column in UTF-8 bytes from 0, as `ast` counts
+Scope = Literal["module", "class", "function"]
+
+HOOK = "__tarl__"
+# They make names known to the compiler, or nothing at all: there is no value to record.
+_SILENT = (ast.ClassDef, ast.Import, ast.ImportFrom, ast.Global, ast.Nonlocal)
+Function = TypeVar("Function", ast.FunctionDef, ast.AsyncFunctionDef)
+Loop = TypeVar("Loop", ast.For, ast.AsyncFor)
+Block = TypeVar("Block", ast.With, ast.AsyncWith)
+
+
+def instrument(
+    tree: ast.Module,
+    sites: Mapping[Offset, int],
+    hook: str = HOOK,
+    *,
+    publishes: Collection[int] = (),
+    inline: bool = False,
+    placed: set[Offset] | None = None,
+) -> ast.Module:
+    """Return the module with every statement (or lambda body) that starts at a position of `sites` recorded.
+
+    `hook(number, value)` must give `value` back. Sites in `publishes`, and calls of methods named publish,
+    are recorded with 0 when they are reached. A condition is recorded as 1 or 0, the head of a function as
+    its message parameter, a loop as its target at each turn. With `inline`, plain floats are appended to
+    the list in `Names(hook).buffer` without a call. `tree` is used up; the positions at which something
+    stood are added to `placed`.
+    """
+    found: set[Offset] = set() if placed is None else placed
+    changed = _Recording(sites, Names(hook, inline), frozenset(publishes), found).visit(tree)
+    assert isinstance(changed, ast.Module)  # noqa: S101 - for the type checker
+    return changed
+
+
+class _Recording(ast.NodeTransformer):
+    """One walk over a module."""
+
+    def __init__(
+        self, sites: Mapping[Offset, int], names: Names, publishes: frozenset[int], placed: set[Offset]
+    ) -> None:
+        self._sites = sites
+        self._names = names
+        self._publishes = publishes
+        self._placed = placed
+        self._scope: list[Scope] = ["module"]
+
+    def visit(self, node: ast.AST) -> ast.AST | list[ast.stmt]:
+        """Transform what is inside first, then the statement itself."""
+        number = self._number(node) if isinstance(node, ast.stmt) else None
+        inner: ast.AST = super().visit(node)
+        if number is None or not isinstance(inner, ast.stmt):
+            return inner
+        change = getattr(self, f"_record_{type(inner).__name__.lower()}", None)
+        if change is not None:
+            changed: list[ast.stmt] = change(inner, number)
+            return changed
+        return inner if isinstance(inner, _SILENT) else [*self._nothing(inner, number), inner]
+
+    def _number(self, node: ast.expr | ast.stmt | ast.arg | ast.excepthandler | ast.pattern) -> int | None:
+        offset = (node.lineno, node.col_offset)
+        number = self._sites.get(offset)
+        if number is not None:
+            self._placed.add(offset)
+        return number
+
+    # Scopes, and what is recorded inside of them
+
+    def _inside(self, node: ast.AST, scope: Scope) -> None:
+        self._scope.append(scope)
+        self.generic_visit(node)
+        self._scope.pop()
+
+    def visit_ClassDef(self, node: ast.ClassDef) -> ast.ClassDef:
+        """Enter a class."""
+        self._inside(node, "class")
+        return node
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
+        """Enter a function; a site at one of its parameters is recorded at its entry."""
+        return self._function(node)
+
+    def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> ast.AsyncFunctionDef:
+        """Enter a coroutine."""
+        return self._function(node)
+
+    def _function(self, node: Function) -> Function:
+        numbers = [(self._number(parameter), parameter) for parameter in _parameters(node.args)]
+        at = _entry_place(node)
+        self._inside(node, "function")
+        for number, parameter in reversed(numbers):
+            if number is not None:
+                _enter(node, note(parameter.arg, number, self._names, at))
+        return node
+
+    def visit_Lambda(self, node: ast.Lambda) -> ast.Lambda:
+        """Record the body, and the message where the site is the lambda itself."""
+        body, receives = self._number(node.body), self._number(node)
+        same = (node.lineno, node.col_offset) == (node.body.lineno, node.body.col_offset)
+        publish = isinstance(node.body, ast.Call) and self._publishing(node.body, body)
+        self._inside(node, "function")
+        if body is not None:
+            node.body = self._value(node.body, body, publish=publish)
+        parameters = _parameters(node.args)
+        if receives is not None and parameters and not same:
+            at = where(first_evaluated(node.body))
+            message = recorded(ast.Name(parameters[0].arg, ast.Load(), **at), receives, self._names)
+            pair = ast.Tuple([message, node.body], ast.Load(), **at)
+            node.body = ast.Subscript(pair, ast.Constant(1, **at), ast.Load(), **at)
+        return node
+
+    def visit_ExceptHandler(self, node: ast.ExceptHandler) -> ast.ExceptHandler:
+        """Record that an exception was caught."""
+        number = self._number(node)
+        self.generic_visit(node)
+        if number is not None:
+            node.body[:0] = note_constant(0.0, number, self._names, where(first_statement(node.body)))
+        return node
+
+    def visit_match_case(self, node: ast.match_case) -> ast.match_case:
+        """Record the guard of a case, which stands where its pattern does."""
+        number = self._number(node.pattern)
+        self.generic_visit(node)
+        if number is not None and node.guard is not None:
+            node.guard = recorded(truth(node.guard), number, self._names)
+        return node
+
+    # Statements
+
+    def _record_functiondef(self, node: Function, number: int) -> list[ast.stmt]:
+        at = _entry_place(node)
+        message = _message(node, in_class=self._scope[-1] == "class")
+        if message is None:
+            for statement in reversed(note_constant(0.0, number, self._names, at)):
+                _enter(node, statement)
+        else:
+            _enter(node, note(message, number, self._names, at))
+        return [node]
+
+    _record_asyncfunctiondef = _record_functiondef
+
+    def _record_assign(self, node: ast.Assign, number: int) -> list[ast.stmt]:
+        target = node.targets[0]
+        if len(node.targets) == 1 and isinstance(target, ast.Name) and self._rereadable():
+            return [node, note(target.id, number, self._names, where(target))]
+        return self._before_or_around(node, node.value, number)
+
+    def _record_annassign(self, node: ast.AnnAssign, number: int) -> list[ast.stmt]:
+        if node.value is None:
+            return [node]
+        node.value = self._value(node.value, number)
+        return [node]
+
+    def _record_augassign(self, node: ast.AugAssign, number: int) -> list[ast.stmt]:
+        if isinstance(node.target, ast.Name):
+            return [node, note(node.target.id, number, self._names, where(node.target))]
+        return self._before_or_around(node, node.value, number)
+
+    def _record_return(self, node: ast.Return, number: int) -> list[ast.stmt]:
+        if node.value is None:
+            return [*self._nothing(node, number), node]
+        return self._before_or_around(node, node.value, number)
+
+    def _record_expr(self, node: ast.Expr, number: int) -> list[ast.stmt]:
+        value = node.value
+        if isinstance(value, ast.Constant):
+            return [node]  # a docstring must stay where it is, and `...` does nothing
+        if isinstance(value, ast.Yield):
+            if value.value is None:
+                return [*self._nothing(node, number), node]
+            value.value = recorded(value.value, number, self._names)
+            return [node]
+        return self._before_or_around(node, value, number)
+
+    def _record_raise(self, node: ast.Raise, number: int) -> list[ast.stmt]:
+        return [*self._nothing(node, number), node]
+
+    def _record_assert(self, node: ast.Assert, number: int) -> list[ast.stmt]:
+        node.test = recorded(truth(node.test), number, self._names)
+        return [node]
+
+    def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:
+        at = where(first_evaluated(node.test))
+        node.body[:0] = note_constant(1.0, number, self._names, at)
+        node.orelse[:0] = note_constant(0.0, number, self._names, at)
+        return [node]
+
+    _record_while = _record_if
+
+    def _record_for(self, node: Loop, number: int) -> list[ast.stmt]:
+        if isinstance(node.target, ast.Name) and self._rereadable():
+            node.body.insert(0, note(node.target.id, number, self._names, where(node.target)))
+        else:
+            node.iter = recorded(node.iter, number, self._names)
+        return [node]
+
+    _record_asyncfor = _record_for
+
+    def _record_with(self, node: Block, number: int) -> list[ast.stmt]:
+        last = node.items[-1]
+        if isinstance(last.optional_vars, ast.Name) and self._rereadable():
+            node.body.insert(0, note(last.optional_vars.id, number, self._names, where(last.optional_vars)))
+        else:
+            last.context_expr = recorded(last.context_expr, number, self._names)
+        return [node]
+
+    _record_asyncwith = _record_with
+
+    def _record_match(self, node: ast.Match, number: int) -> list[ast.stmt]:
+        node.subject = recorded(node.subject, number, self._names)
+        return [node]
+
+    # Values
+
+    def _rereadable(self) -> bool:
+        """Tell whether a plain name can be read again without running code: not so in a class body."""
+        return self._scope[-1] != "class"
+
+    def _before_or_around(
+        self, node: ast.Assign | ast.AugAssign | ast.Return | ast.Expr, value: ast.expr, number: int
+    ) -> list[ast.stmt]:
+        if isinstance(value, ast.Name) and self._rereadable() and not isinstance(node, ast.AugAssign):
+            return [note(value.id, number, self._names, where(value)), node]
+        publish = isinstance(value, ast.Call) and self._publishing(value, number)
+        if publish and isinstance(value, ast.Call) and not (value.args or value.keywords):
+            return [*self._nothing(node, number), node]
+        node.value = self._value(value, number, publish=publish)
+        return [node]
+
+    def _publishing(self, call: ast.Call, number: int | None) -> bool:
+        named = isinstance(call.func, ast.Attribute) and call.func.attr == "publish"
+        return named or number in self._publishes
+
+    def _value(self, value: ast.expr, number: int, *, publish: bool = False) -> ast.expr:
+        if publish and isinstance(value, ast.Call) and (value.args or value.keywords):
+            return reached(value, number, self._names)
+        return recorded(value, number, self._names)
+
+    def _nothing(self, node: ast.stmt, number: int) -> list[ast.stmt]:
+        return note_constant(0.0, number, self._names, where(first_statement([node])))
+
+
+def first_statement(body: list[ast.stmt]) -> ast.expr | ast.stmt:
+    """Return what runs first in a block that starts with this statement."""
+    node = next((s for s in body if not _is_declaration(s)), body[0])
+    decorators: list[ast.expr] = getattr(node, "decorator_list", [])
+    for part in (*decorators, *(getattr(node, name, None) for name in ("value", "test", "iter"))):
+        if isinstance(part, ast.expr):
+            return first_evaluated(part)
+    return node
+
+
+def _is_declaration(node: ast.stmt) -> bool:
+    """Tell whether no code runs for a statement: docstring, global, bare annotation."""
+    docstring = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    bare = isinstance(node, ast.AnnAssign) and node.value is None
+    return docstring or bare or isinstance(node, (ast.Global, ast.Nonlocal))
+
+
+def _entry_place(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Where:
+    return where(first_statement(node.body))
+
+
+def _enter(node: ast.FunctionDef | ast.AsyncFunctionDef, statement: ast.stmt) -> None:
+    """Put a statement at the entry of a function, behind its docstring and declarations."""
+    at = next((i for i, inner in enumerate(node.body) if not _is_declaration(inner)), len(node.body))
+    node.body.insert(at, statement)
+
+
+def _parameters(arguments: ast.arguments) -> list[ast.arg]:
+    extra = [one for one in (arguments.vararg, arguments.kwarg) if one is not None]
+    return [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, *extra]
+
+
+def _message(node: ast.FunctionDef | ast.AsyncFunctionDef, *, in_class: bool) -> str | None:
+    """Name the parameter that receives the message: the first one, behind `self` or `cls`."""
+    static = any(isinstance(d, ast.Name) and d.id == "staticmethod" for d in node.decorator_list)
+    bound = in_class and not static
+    positional = [parameter.arg for parameter in (*node.args.posonlyargs, *node.args.args)]
+    named = positional[1:] if bound else positional
+    rest = [one.arg for one in (node.args.vararg, *node.args.kwonlyargs) if one is not None]
+    return next(iter([*named, *rest]), None)

@@ -1,0 +1,146 @@
+"""Analysis → numbered sites: one list per source topic and sink topic, and where each site stands."""
+
+from __future__ import annotations
+
+import difflib
+import heapq
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise, product
+from typing import TYPE_CHECKING, Protocol
+
+from pytest_tarl.model import SitePlace, TaintList
+
+if TYPE_CHECKING:
+    from tarl_lint.model import Flow, SiteId, Step
+
+Position = tuple[int, int]  # line and column of a statement's first character, both from 1
+Positions = Mapping[Position, int]  # → global number of the site that stands there
+
+
+class HasFlows(Protocol):
+    """What `plan` needs of `tarl_lint.api.Analysis`."""
+
+    @property
+    def flows(self) -> Sequence[Flow]:
+        """Return every flow found."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What to record.
+
+    A global site number is an index into `places`; `members[i]` are the numbers of `lists[i]`.
+    `positions` tells by path (as the analysis writes it) where sites stand, columns in characters.
+    """
+
+    lists: tuple[TaintList, ...]
+    places: tuple[SitePlace, ...]
+    members: tuple[tuple[int, ...], ...]
+    positions: Mapping[str, Positions]
+
+    @property
+    def publishes(self) -> frozenset[int]:
+        """Return the sites that produce nothing and are recorded when they are reached."""
+        return frozenset(number for number, place in enumerate(self.places) if place.role == "publish")
+
+
+def plan(analysis: HasFlows) -> Plan:
+    """Number the data and control steps of all flows; context steps are never instrumented."""
+    grouped: dict[tuple[str, str], list[Flow]] = defaultdict(list)
+    for flow in analysis.flows:
+        for pair in product(_topics(flow.source), _topics(flow.sink)):
+            grouped[pair].append(flow)
+    ordered = {pair: _merged([_scored(flow) for flow in flows]) for pair, flows in sorted(grouped.items())}
+    number = _numbering(step for steps in ordered.values() for step in steps)
+    places = tuple(_place(step) for step in number.values())
+    index = {site: position for position, site in enumerate(number)}
+    members = tuple(tuple(index[step.site] for step in steps) for steps in ordered.values())
+    lists = tuple(
+        TaintList(source, sink, tuple(places[n] for n in sites))
+        for (source, sink), sites in zip(ordered, members, strict=True)
+    )
+    return Plan(lists, places, members, _positions(number.values()))
+
+
+def relocate(positions: Positions, before: str, after: str) -> dict[Position, int]:
+    """Find where the sites of `before` stand in an edited text.
+
+    A changed line keeps its sites when it is replaced by as many lines; sites on removed lines are left out.
+    """
+    lines: dict[int, int] = {}
+    matcher = difflib.SequenceMatcher(None, before.split("\n"), after.split("\n"), autojunk=False)
+    for tag, first, last, start, end in matcher.get_opcodes():
+        if tag == "equal" or (tag == "replace" and last - first == end - start):
+            lines.update(zip(range(first + 1, last + 1), range(start + 1, end + 1), strict=True))
+    return {(lines[line], column): n for (line, column), n in positions.items() if line in lines}
+
+
+def _topics(end: object) -> tuple[str, ...]:
+    topics: tuple[str, ...] = getattr(end, "topics", ())
+    if topics:
+        return topics
+    span = getattr(end, "span", None)
+    return (f"({getattr(end, 'api', '')} at {span.path}:{span.line})" if span else "(unknown)",)
+
+
+def _scored(flow: Flow) -> list[Step]:
+    return [step for step in flow.steps if step.dependence != "context"]
+
+
+def _merged(chains: Sequence[Sequence[Step]]) -> list[Step]:
+    """Merge taint lists: each keeps its order where they agree, ties go by position in the file."""
+    best: dict[SiteId, Step] = {}
+    followers: dict[SiteId, set[SiteId]] = defaultdict(set)
+    waiting: dict[SiteId, int] = defaultdict(int)
+    for chain in chains:
+        for step in chain:
+            known = best.setdefault(step.site, step)
+            if known.dependence == "control" and step.dependence == "data":
+                best[step.site] = step
+        for earlier, later in pairwise(chain):
+            if later.site not in followers[earlier.site]:
+                followers[earlier.site].add(later.site)
+                waiting[later.site] += 1
+    return list(_topological(best, followers, waiting))
+
+
+def _topological(
+    steps: Mapping[SiteId, Step], followers: Mapping[SiteId, set[SiteId]], waiting: dict[SiteId, int]
+) -> Iterator[Step]:
+    """Yield steps after all that lead to them; a cycle is entered at its first line."""
+    left = dict(sorted(steps.items(), key=lambda item: item[1].span))
+    ready = [(step.span, site) for site, step in left.items() if not waiting[site]]
+    heapq.heapify(ready)
+    while left:
+        site = heapq.heappop(ready)[1] if ready else next(iter(left))
+        if site not in left:
+            continue
+        yield left.pop(site)
+        for later in followers.get(site, ()):
+            waiting[later] -= 1
+            if not waiting[later] and later in left:
+                heapq.heappush(ready, (left[later].span, later))
+
+
+def _numbering(steps: Iterable[Step]) -> dict[SiteId, Step]:
+    """Return every distinct step by its site, in the order of the files; data wins over control."""
+    distinct: dict[SiteId, Step] = {}
+    for step in steps:
+        if step.site not in distinct or step.dependence == "data":
+            distinct[step.site] = step
+    return dict(sorted(distinct.items(), key=lambda item: item[1].span))
+
+
+def _place(step: Step) -> SitePlace:
+    span, site = step.span, step.site
+    return SitePlace(str(site), span.path, span.line, step.code, step.dependence, step.role, site.qualname)
+
+
+def _positions(steps: Iterable[Step]) -> dict[str, dict[Position, int]]:
+    found: dict[str, dict[Position, int]] = defaultdict(dict)
+    for number, step in enumerate(steps):
+        found[step.span.path].setdefault((step.span.line, step.span.column), number)
+    return dict(found)

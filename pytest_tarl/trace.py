@@ -1,0 +1,40 @@
+"""What one episode recorded, in columns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.sensors import Cell
+
+Ints = NDArray[np.int32]
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Events and simulation steps of one episode.
+
+    `cells` are the distinct cells in order of first latch; the other cell columns are indices into it, -1
+    where no message had come yet. Event columns have shape (events,), step columns (steps,). Events come by
+    step and, within a step, by thread: consecutive events of different threads are no sequence. Events
+    after the last reward belong to the last step. `thread` is None where one thread recorded everything.
+    """
+
+    cells: tuple[Cell, ...]
+    site: Ints
+    flow: Floats  # finite, at least 0
+    event_cell: Ints
+    event_step: Ints
+    step_cell: Ints  # latched when the reward of the step came
+    reward: Floats
+    parts: Mapping[str, Floats]
+    thread: Ints | None = None
+
+    @property
+    def steps(self) -> int:
+        """Return how many simulation steps were rewarded."""
+        return len(self.reward)
