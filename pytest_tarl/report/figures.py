@@ -1,0 +1,173 @@
+"""The page's figures as plain data: what is drawn, in sensor units and rewards; how it looks is the page's business."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from pytest_tarl.model import Comparison, ListComparison
+from pytest_tarl.report.regions import Vocabulary, runs
+from pytest_tarl.report.words import running_mean
+from pytest_tarl.sensors import Cell, Sensor
+
+if TYPE_CHECKING:
+    from pytest_tarl.model import Matrix
+
+MOST_ROWS = 6  # values of the splitting sensor that get a row of their own
+DIGITS = 5  # significant digits of a number on the page
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """The sensors that a figure shows: one along the axis, one whose values are rows; all others are averaged."""
+
+    position: int
+    split: int | None
+
+    def others(self, sensors: Sequence[Sensor]) -> tuple[str, ...]:
+        """Name the sensors that are averaged over."""
+        return tuple(s.name for d, s in enumerate(sensors) if d not in (self.position, self.split))
+
+
+def plane(sensors: Sequence[Sensor]) -> Plane:
+    """Choose the first numeric sensor as position and the first other one that is not numeric as split."""
+    position = next((d for d, sensor in enumerate(sensors) if sensor.numeric), 0)
+    split = next((d for d, sensor in enumerate(sensors) if d != position and not sensor.numeric), None)
+    return Plane(position, split)
+
+
+def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str, Any] | None:
+    """Return Figures 2 and 3 and their difference: utility over position and site; None without a visited cell."""
+    if not comparison.sensors or not comparison.cells:
+        return None
+    shown = plane(comparison.sensors)
+    vocabulary = Vocabulary(comparison.sensors, comparison.cells)
+    bins = _span(cell[shown.position] for cell in comparison.cells)
+    rows = [
+        _row(comparison, compared, shown, bins, value, vocabulary)
+        for value in split_values(comparison, shown)
+    ]
+    values = np.concatenate([compared.offline.ravel(), compared.online.ravel()])
+    change = (compared.online - compared.offline).ravel()
+    return {
+        "sites": [[site.line, site.code, site.path] for site in compared.taint_list.sites],
+        "axis": _axis(comparison.sensors[shown.position], shown.position, bins, vocabulary),
+        "rows": rows,
+        "range": [_least(values), -_least(-values)],
+        "reach": -_least(-np.abs(change)),
+    }
+
+
+def split_values(comparison: Comparison, shown: Plane) -> list[int | None]:
+    """Return the values that get rows, those of the most cells if there are too many; [None] for a single row."""
+    if shown.split is None:
+        return [None]
+    counted: dict[int, int] = {}
+    for cell in comparison.cells:
+        counted[cell[shown.split]] = counted.get(cell[shown.split], 0) + 1
+    chosen = sorted(counted, key=lambda value: (-counted[value], value))[:MOST_ROWS]
+    return list(sorted(chosen))
+
+
+def _row(
+    comparison: Comparison,
+    compared: ListComparison,
+    shown: Plane,
+    bins: Sequence[int],
+    value: int | None,
+    vocabulary: Vocabulary,
+) -> dict[str, Any]:
+    here = [i for i, cell in enumerate(comparison.cells) if shown.split is None or cell[shown.split] == value]
+    places = [comparison.cells[i][shown.position] for i in here]
+    sensor = comparison.sensors[shown.position]
+
+    def marked(cells: Iterable[Cell]) -> list[list[float]]:
+        chosen = {c[shown.position] for c in cells if shown.split is None or c[shown.split] == value}
+        return [list(_edges(sensor, first, last)) for first, last in runs((b, b) for b in chosen)]
+
+    return {
+        "title": "" if shown.split is None or value is None else vocabulary.bin(shown.split, value),
+        "offline": _grid(compared.offline[here], places, bins),
+        "online": _grid(compared.online[here], places, bins),
+        "region": marked(comparison.region.cells),
+        "paper": marked(comparison.paper_region),
+        "novel": marked(comparison.region.novel),
+    }
+
+
+def _grid(values: Matrix, places: Sequence[int], bins: Sequence[int]) -> list[list[float | None]]:
+    """Average cells over each position; shape (sites, positions), null where never visited."""
+    column = np.asarray(places, dtype=np.intp) - bins[0]
+    known = ~np.isnan(values)
+    total = np.zeros((len(bins), values.shape[1]))
+    count = np.zeros_like(total)
+    np.add.at(total, column, np.where(known, values, 0.0))
+    np.add.at(count, column, known)
+    with np.errstate(invalid="ignore"):
+        means = total / count
+    return [[number(value) for value in row] for row in means.T.tolist()]
+
+
+def _axis(sensor: Sensor, dimension: int, bins: Sequence[int], vocabulary: Vocabulary) -> dict[str, Any]:
+    unit = f" ({sensor.unit})" if sensor.unit else ""
+    return {
+        "title": f"{sensor.name}{unit}",
+        "centres": [number(sum(_edges(sensor, b, b)) / 2) for b in bins],
+        "names": [vocabulary.bin(dimension, b) for b in bins],
+        "ticks": None if sensor.numeric else [vocabulary.value(dimension, b) for b in bins],
+        "outside": sensor.bins is not None and (bins[0] < 0 or bins[-1] >= sensor.bins),
+    }
+
+
+def _edges(sensor: Sensor, first: int, last: int) -> tuple[float, float]:
+    """Return where bins begin and end on the axis; the open ones at either end are drawn one bin wide."""
+    if sensor.bins is None or sensor.low is None or sensor.high is None:
+        return first - 0.5, last + 0.5
+    width = (sensor.high - sensor.low) / sensor.bins
+    return sensor.low + first * width, sensor.low + (last + 1) * width
+
+
+def _span(indices: Iterable[int]) -> list[int]:
+    found = set(indices)
+    return list(range(min(found), max(found) + 1))
+
+
+def _least(values: Any) -> float | None:
+    known = values[np.isfinite(values)]
+    return number(float(known.min())) if known.size else None
+
+
+def reward_curves(comparison: Comparison) -> list[dict[str, Any]]:
+    """Return Figure 5: the average total reward after each episode of both worlds, every search and the repair."""
+    drift = comparison.drift or "on-line"
+    curves = [
+        _curve("off-line", "offline", comparison.totals.get("offline", ())),
+        _curve(
+            f"on-line ({drift})" if comparison.drift else drift, "online", comparison.totals.get("online", ())
+        ),
+    ]
+    curves += [_curve(f"search: {s.method}", "search", s.totals, s.labels) for s in comparison.searches]
+    curves += [
+        _curve("repaired", "repaired", comparison.totals.get("repaired", ())),
+        _curve("repaired, designed world", "nominal", comparison.totals.get("nominal_repaired", ())),
+    ]
+    return [curve for curve in curves if curve["mean"]]
+
+
+def _curve(name: str, kind: str, totals: Sequence[float], labels: Sequence[str] = ()) -> dict[str, Any]:
+    return {
+        "name": name,
+        "kind": kind,
+        "mean": [number(value) for value in running_mean(totals)],
+        "totals": [number(value) for value in totals],
+        "labels": list(labels),
+    }
+
+
+def number(value: float) -> float | None:
+    """Return a number as the page carries it: a few digits, null where it is not finite."""
+    return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None

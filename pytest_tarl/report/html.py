@@ -1,0 +1,193 @@
+"""The report page: one HTML file with everything in it, for people who were not there when the test ran."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import zlib
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from importlib import import_module, resources
+from pathlib import Path
+from typing import Any
+
+from pytest_tarl.errors import TarlError
+from pytest_tarl.fixture import write_atomically
+from pytest_tarl.model import Comparison, ListComparison
+from pytest_tarl.report import words
+from pytest_tarl.report.figures import MOST_ROWS, plane, reward_curves, utility_figure
+from pytest_tarl.report.slices import chart
+
+NEEDED = ("jinja2", "plotly", "pygments")
+_RANGE = re.compile(r"(?<=\d)-(?=\d)")
+_MINUS = re.compile(r"(?<![\w.])-(?=\d)")
+_IN_SCRIPT = {ord(character): f"\\u{ord(character):04x}" for character in "<>&\u2028\u2029"}
+
+
+def write(comparison: Comparison, path: Path, *, title: str | None = None) -> None:
+    """Write the page; `title` stands in for the test's name.
+
+    Raises:
+        TarlError: a package of the extra `report` is missing, or the file cannot be written.
+    """
+    text = render(comparison, title=title)
+    try:
+        write_atomically(path, text.encode())
+    except OSError as error:
+        raise TarlError(
+            f"The report {path} cannot be written: {error.strerror or error}. "
+            "Make the directory writable, or free some space."
+        ) from error
+
+
+def render(comparison: Comparison, *, title: str | None = None) -> str:
+    """Return the page's text. Raises TarlError where a package of the extra `report` is missing."""
+    _require()
+    import jinja2
+    from markupsafe import Markup
+
+    from pytest_tarl.report import highlight
+
+    environment = jinja2.Environment(
+        loader=jinja2.FunctionLoader(_asset), autoescape=True, trim_blocks=True, lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )  # fmt: skip
+    environment.filters |= {
+        "amount": lambda value: typeset(words.amount(value)),
+        "signed": lambda value: typeset(words.signed(value)),
+        "capitalize_first": lambda text: text[:1].upper() + text[1:],
+        "plain": lambda value: typeset(f"{value:.6g}"),
+        "p": words.p_value,
+        "typeset": typeset,
+        "code": lambda text: Markup(highlight.code_html(words.one_line(text))),
+        "patch": lambda diff: [(line, Markup(line.html)) for line in highlight.patch_lines(diff)],
+    }
+    return environment.get_template("page.html").render(
+        **_context(comparison, title),
+        css=Markup(_asset("page.css")),
+        script=Markup(_asset("page.js")),
+        library=Markup(_library()),
+        data=Markup(in_script(_data(comparison))),
+    )
+
+
+def _require() -> None:
+    for package in NEEDED:
+        try:
+            import_module(package)
+        except ImportError:
+            raise TarlError(
+                f"The report page needs {package}, which is not installed: run "
+                'pip install "tarl[report]". Verdict and patch do not depend on it.'
+            ) from None
+
+
+def _asset(name: str) -> str:
+    return resources.files(__package__).joinpath("page", name).read_text("utf-8")
+
+
+@lru_cache(maxsize=1)
+def _library() -> str:
+    """Return plotly.js as the page carries it: compressed to two fifths, in base64; browsers inflate it."""
+    script = resources.files("plotly").joinpath("package_data", "plotly.min.js").read_bytes()
+    return base64.b64encode(zlib.compress(script, 9)).decode("ascii")
+
+
+def in_script(data: Any) -> str:
+    """Return data as JSON that cannot end the script element it stands in."""
+    return json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")).translate(_IN_SCRIPT)
+
+
+def typeset(text: str) -> str:
+    """Write ranges with a dash and negative numbers with a minus sign."""
+    return _MINUS.sub("−", _RANGE.sub("–", text))
+
+
+def _data(comparison: Comparison) -> dict[str, Any]:
+    return {
+        "world": comparison.drift or "on-line",
+        "utility": [utility_figure(comparison, compared) for compared in comparison.lists],
+        "curves": reward_curves(comparison),
+        "offline": words.atr(comparison, "offline"),
+        "tolerance": comparison.verdict.tolerance,
+    }
+
+
+def _context(comparison: Comparison, title: str | None) -> Mapping[str, Any]:
+    name = title or comparison.test
+    return {
+        "c": comparison,
+        "title": name,
+        "world": comparison.drift or "on-line",
+        "headline": words.verdict_sentence(comparison),
+        "region": words.region_words(comparison),
+        "paper_region": words.paper_region_words(comparison),
+        "atr": {world: words.atr(comparison, world) for world in comparison.totals},
+        "share": _share(comparison),
+        "lists": [_list(comparison, compared) for compared in comparison.lists],
+        "curves": _curves_in_words(comparison),
+        "repair_words": words.repair_words(comparison.repair) if comparison.repair else "",
+        "refusal": words.refusal(comparison.repair) if comparison.repair else "",
+        "command": words.command(comparison),
+        "next_steps": list(words.next_steps(comparison)),
+        "place": lambda site: f"{site.path}:{site.line}",
+    }
+
+
+def _share(comparison: Comparison) -> float | None:
+    """Return the share of the lost reward that the repair brought back, in per cent."""
+    worlds = [words.atr(comparison, world) for world in ("offline", "online", "repaired")]
+    offline, online, repaired = worlds
+    if offline is None or online is None or repaired is None or offline <= online:
+        return None
+    return 100 * (repaired - online) / (offline - online)
+
+
+def _list(comparison: Comparison, compared: ListComparison) -> dict[str, Any]:
+    figure = utility_figure(comparison, compared)
+    return {
+        "name": compared.taint_list.name,
+        "figure": figure,
+        "chart": chart(compared.slices),
+        "peak": words.peak(compared.slices),
+        "captions": list(_captions(comparison, figure)) if figure else [],
+        "summary": _largest_change(figure) if figure else "",
+        "paths": sorted({site.path for site in compared.taint_list.sites}),
+    }
+
+
+def _captions(comparison: Comparison, figure: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what a reader of the figure must know about how it was made."""
+    shown = plane(comparison.sensors)
+    if others := shown.others(comparison.sensors):
+        yield f"Each value is the mean over {' and '.join(others)}."
+    if shown.split is not None and len({cell[shown.split] for cell in comparison.cells}) > MOST_ROWS:
+        yield f"Only the {MOST_ROWS} commonest values of {comparison.sensors[shown.split].name} are shown."
+    if figure["axis"]["outside"]:
+        yield "The outermost columns hold all that lies beyond."
+
+
+def _largest_change(figure: Mapping[str, Any]) -> str:
+    """Say where the on-line utility differs most."""
+    found = [
+        (on - off, row["title"], site, figure["axis"]["names"][column])
+        for row in figure["rows"]
+        for site, before, after in zip(figure["sites"], row["offline"], row["online"], strict=True)
+        for column, (off, on) in enumerate(zip(before, after, strict=True))
+        if off is not None and on is not None
+    ]
+    if not found:
+        return "No cell was visited in both worlds."
+    change, title, (line, code, _), name = max(found, key=lambda one: abs(one[0]))
+    where = f"{name}, {title}" if title else name
+    return f"The largest change, {words.signed(change)}, is at line {line} ({words.one_line(code)}), {where}."
+
+
+def _curves_in_words(comparison: Comparison) -> str:
+    """Say where each curve of the reward figure ends."""
+    ends = [
+        f"{c['name']} {words.amount(c['mean'][-1])} after {len(c['mean'])} episodes"
+        for c in reward_curves(comparison)
+    ]
+    return "; ".join(ends)

@@ -1,0 +1,90 @@
+"""Figure 4: slices beside their code lines, laid out in per cent of the width so that they need no script."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from pytest_tarl.model import SitePlace, Slice
+from pytest_tarl.report.words import peak
+
+MARGIN = 0.05  # of the width, free on either side of the outermost value
+TICKS = 4  # about so many per scale
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """A linear scale from values to per cent of the width; it always shows zero."""
+
+    low: float
+    high: float
+
+    def at(self, value: float) -> float:
+        """Return where a value stands, 0 to 100."""
+        return round(100 * (value - self.low) / (self.high - self.low), 3)
+
+    @property
+    def ticks(self) -> tuple[float, ...]:
+        """Return round values to label, zero among them."""
+        step = _round_step((self.high - self.low) / TICKS)
+        first, last = math.ceil(self.low / step), math.floor(self.high / step)
+        return tuple(step * i for i in range(first, last + 1))
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One site: its slices, and whether its difference is the largest."""
+
+    site: SitePlace
+    offline: float
+    online: float
+    difference: float
+    peak: bool
+
+    @property
+    def known(self) -> bool:
+        """Tell whether there is anything to draw."""
+        return math.isfinite(self.difference)
+
+
+@dataclass(frozen=True, slots=True)
+class Chart:
+    """The slices of one taint list: both worlds on the scale `values`, their difference on `change`."""
+
+    rows: tuple[Row, ...]
+    values: Scale
+    change: Scale
+
+    @property
+    def known(self) -> bool:
+        """Tell whether any slice exists."""
+        return any(row.known for row in self.rows)
+
+
+def chart(slices: Sequence[Slice]) -> Chart:
+    """Lay out the slices of one list."""
+    largest = peak(slices)
+    rows = tuple(
+        Row(one.site, one.offline, one.online, one.difference, one is largest and one.difference != 0)
+        for one in slices
+    )
+    reach = [abs(row.difference) for row in rows]
+    values = [value for row in rows for value in (row.offline, row.online)]
+    return Chart(rows, scale(values), scale([*reach, *(-one for one in reach)]))
+
+
+def scale(values: Iterable[float]) -> Scale:
+    """Return the scale on which zero and all finite values fit with a margin."""
+    known = [0.0, *(value for value in values if math.isfinite(value))]
+    low, high = min(known), max(known)
+    if low == high:
+        return Scale(-1.0, 1.0)
+    free = MARGIN * (high - low)
+    return Scale(low - free, high + free)
+
+
+def _round_step(step: float) -> float:
+    """Return the next larger of 1, 2, 5 times a power of ten."""
+    power = 10.0 ** math.floor(math.log10(step))
+    return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= step * (1 - 1e-9))
