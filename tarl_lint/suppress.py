@@ -1,0 +1,82 @@
+"""Comments that silence a finding: `# tarl: ignore`, `# tarl: ignore[TARL101]`, `# noqa: TARL101`."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from tarl_lint.model import Finding
+
+_COMMENT = re.compile(
+    r"#\s*(?:tarl:\s*ignore(?:\[(?P<own>[^\]]*)\])?|noqa:\s*(?P<noqa>[A-Z]+[0-9]+(?:[\s,]+[A-Z]+[0-9]+)*))",
+    re.IGNORECASE,
+)
+_HINT = re.compile(r"tarl:\s*ignore|noqa:.*TARL", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Suppression:
+    """One rule, or all with an empty `code`, silenced on one line. Lines and columns count from 1."""
+
+    path: str
+    line: int
+    column: int
+    code: str = ""
+
+    def covers(self, finding: Finding) -> bool:
+        """Tell whether the comment stands on a line of the finding and speaks of its rule."""
+        span = finding.span
+        on_it = self.path == span.path and span.line <= self.line <= span.end_line
+        return on_it and self.code in ("", finding.code)
+
+
+def suppressions(path: str, text: str) -> tuple[Suppression, ...]:
+    """Return what the comments of a file silence. A plain `# noqa` belongs to other tools and is not ours."""
+    if not _HINT.search(text):
+        return ()
+    return tuple(
+        Suppression(path, line, column + found.start(), code)
+        for line, column, comment in _comments(text)
+        for found in _COMMENT.finditer(comment)
+        for code in _codes(found)
+    )
+
+
+def _codes(comment: re.Match[str]) -> tuple[str, ...]:
+    """Return the rules that a comment names; "" stands for all. Other tools' rules in a noqa are not ours."""
+    if comment["noqa"] is not None:
+        words = re.split(r"[\s,]+", comment["noqa"].upper())
+        return tuple(word for word in words if word.startswith("TARL"))
+    if comment["own"] is None:
+        return ("",)
+    return tuple(word.strip().upper() for word in comment["own"].split(",") if word.strip())
+
+
+def _comments(text: str) -> Iterator[tuple[int, int, str]]:
+    """Yield (line, column, text) of each comment, as far as the text can be read as tokens."""
+    import tokenize
+
+    try:
+        for token in tokenize.generate_tokens(io.StringIO(text).readline):
+            if token.type == tokenize.COMMENT:
+                yield token.start[0], token.start[1] + 1, token.string
+    except (tokenize.TokenError, SyntaxError):
+        return
+
+
+def apply(
+    findings: Sequence[Finding], texts: Mapping[str, str]
+) -> tuple[tuple[Finding, ...], tuple[Suppression, ...]]:
+    """Return the findings that no comment silences and the comments that silence nothing."""
+    every = {path: suppressions(path, text) for path, text in texts.items()}
+    kept: list[Finding] = []
+    used: set[Suppression] = set()
+    for finding in findings:
+        matching = [s for s in every.get(finding.span.path, ()) if s.covers(finding)]
+        used.update(matching)
+        if not matching:
+            kept.append(finding)
+    unused = tuple(s for found in every.values() for s in found if s not in used)
+    return tuple(kept), unused

@@ -1,0 +1,144 @@
+import json
+from collections import Counter
+from dataclasses import replace
+
+import pytest
+
+from tarl_lint.baseline import Accepted, Baseline, dumps, fingerprint, load, merged, missing, save, subtract
+from tarl_lint.errors import BaselineError
+
+
+@pytest.fixture
+def entry(example):
+    return Accepted(fingerprint(example.flow(), "shuttle"), 1, ("node.py",))
+
+
+def changed(flow, source=None, sink=None, **parts):
+    return replace(
+        flow, source=replace(flow.source, **source or {}), sink=replace(flow.sink, **sink or {}), **parts
+    )
+
+
+def test_lines_steps_and_files_do_not_enter_the_fingerprint(example):
+    flow = example.flow()
+    span = replace(flow.source.span, line=90, path="moved.py")
+    moved = changed(flow, {"span": span, "id": "other"}, {"span": span, "id": "other"}, steps=())
+    assert fingerprint(moved, "shuttle") == fingerprint(flow, "shuttle")
+
+
+@pytest.mark.parametrize(
+    ("source", "sink", "parts"),
+    [
+        ({"topics": ("scan",)}, {}, {}),
+        ({"callback": "other"}, {}, {}),
+        ({"qualname": "Other.__init__"}, {}, {}),
+        ({}, {"topics": ("cmd_vel",)}, {}),
+        ({}, {"qualname": "other"}, {}),
+        ({}, {}, {"kind": "implicit"}),
+    ],
+)
+def test_topic_callback_class_place_and_kind_do(example, source, sink, parts):
+    flow = example.flow()
+    assert fingerprint(changed(flow, source, sink, **parts), "p").digest() != fingerprint(flow, "p").digest()
+
+
+def test_the_package_is_the_ros_one_else_the_python_one_else_the_script(example):
+    flow = example.flow()
+    assert fingerprint(flow, "shuttle").package == "shuttle"
+    assert fingerprint(changed(flow, {"module": "robot.nodes.follow"}), "").package == "robot.nodes"
+    assert fingerprint(changed(flow, {"module": "follow"}), "").package == "follow"
+
+
+def test_a_method_that_subscribes_belongs_to_its_class(example):
+    assert fingerprint(changed(example.flow(), {"qualname": "Node.__init__"}), "").owner == "Node"
+    assert fingerprint(changed(example.flow(), {"qualname": "main"}), "").owner == ""
+
+
+def test_as_many_flows_as_accepted_are_accepted_and_more_report_the_whole_group(example):
+    finding = replace(example.finding(), fingerprint="a")
+    assert [f.status for f in subtract([finding, finding], {"a": 2})] == ["accepted", "accepted"]
+    assert [f.status for f in subtract([finding], {"a": 2})] == ["accepted"]
+    assert [f.status for f in subtract([finding, finding], {"a": 1})] == ["new", "new"]
+    assert [f.status for f in subtract([finding], {})] == ["new"]
+
+
+def test_an_implicit_flow_that_becomes_explicit_is_new(example):
+    implicit, explicit = (replace(example.finding(k), fingerprint=fingerprint(example.flow(k), "p").digest())
+                          for k in ("implicit", "explicit"))  # fmt: skip
+    accepted = {implicit.fingerprint: 1}
+    assert [f.status for f in subtract([implicit, explicit], accepted)] == ["accepted", "new"]
+
+
+def test_flows_that_are_gone_vanish_and_those_of_unseen_files_are_kept(entry):
+    twice = replace(entry, count=2)
+    other = replace(entry, fingerprint=replace(entry.fingerprint, source="scan"), files=("unread.py",))
+    found = Counter([entry.fingerprint.digest()])
+    vanished, kept = missing(Baseline((twice, other)), found, lambda e: e.files == ("node.py",))
+    assert vanished == (entry,)
+    assert kept == (other,)
+
+
+def test_what_is_written_is_read_back_whatever_the_names(entry, tmp_path):
+    odd = replace(
+        entry,
+        fingerprint=replace(entry.fingerprint, source='größe "x" → y', package=""),
+        files=("ä.py", "b.py"),
+    )
+    baseline = merged([odd, entry, entry], ())
+    save(tmp_path / "flows.json", baseline)
+    assert load(tmp_path / "flows.json") == baseline
+    assert {e.count for e in baseline.entries} == {1, 2}
+
+
+def test_the_file_has_one_flow_a_line_in_words_and_the_same_bytes_in_any_order(entry):
+    other = replace(entry, fingerprint=replace(entry.fingerprint, source="scan"))
+    text = dumps(merged([entry, other], ()))
+    assert text == dumps(merged([other, entry], ()))
+    assert text == (
+        '{"format": 1, "tool": "tarl-lint",\n "flows": [\n'
+        '  {"kind": "explicit", "source": "odom", "callback": "callback", "sink": "velocity", "in": "travel", '
+        '"class": "", "package": "shuttle", "count": 1, "files": ["node.py"]},\n'
+        '  {"kind": "explicit", "source": "scan", "callback": "callback", "sink": "velocity", "in": "travel", '
+        '"class": "", "package": "shuttle", "count": 1, "files": ["node.py"]}\n ]}\n'
+    )
+    assert json.loads(dumps(Baseline())) == {"format": 1, "tool": "tarl-lint", "flows": []}
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("{", "damaged"),
+        ("[]", "is no baseline of tarl-lint"),
+        ('{"runs": []}', "is no baseline of tarl-lint"),
+        ('{"format": 9, "tool": "tarl-lint", "flows": []}', "has format 9, this tarl-lint reads 1"),
+        ('{"format": 1, "tool": "tarl-lint"}', "damaged .*lacks 'flows'"),
+        ('{"format": 1, "tool": "tarl-lint", "flows": [{}]}', "damaged .*lacks 'source'"),
+        ('{"format": 1, "tool": "tarl-lint", "flows": 3}', "damaged"),
+    ],
+)
+def test_a_damaged_or_foreign_file_is_named_and_not_used(tmp_path, text, complaint):
+    path = tmp_path / "flows.json"
+    path.write_text(text)
+    with pytest.raises(BaselineError, match=rf"flows\.json.*{complaint}"):
+        load(path)
+
+
+@pytest.mark.parametrize(
+    "part", [{"count": 0}, {"count": "1"}, {"kind": "other"}, {"sink": 3}, {"files": [1]}]
+)
+def test_an_entry_with_an_impossible_value_is_damage(entry, tmp_path, part):
+    document = json.loads(dumps(Baseline((entry,))))
+    document["flows"][0] |= part
+    path = tmp_path / "flows.json"
+    path.write_text(json.dumps(document))
+    with pytest.raises(BaselineError, match="damaged"):
+        load(path)
+
+
+def test_a_place_that_cannot_be_written_is_named_and_nothing_is_left_behind(entry, tmp_path):
+    (tmp_path / "taken").mkdir()
+    with pytest.raises(BaselineError, match="cannot be written"):
+        save(tmp_path / "taken", Baseline((entry,)))
+    with pytest.raises(BaselineError, match="cannot be written"):
+        save(tmp_path / "no/such/flows.json", Baseline((entry,)))
+    assert [p.name for p in tmp_path.iterdir()] == ["taken"]

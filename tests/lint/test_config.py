@@ -1,0 +1,123 @@
+from pathlib import Path
+
+import pytest
+
+from tarl_lint.config import Config, Options, resolve
+from tarl_lint.errors import BaselineError, ConfigError
+
+
+def test_the_default_configuration_wants_every_rule_and_excludes_nothing():
+    config = Config()
+    assert config.enabled("TARL101")
+    assert config.enabled("TARL201")
+    assert config.exclude == ()
+    assert config.fail_on == "explicit"
+
+
+@pytest.mark.parametrize(
+    ("select", "ignore", "code", "wanted"),
+    [
+        (("TARL1",), (), "TARL101", True),
+        (("TARL1",), (), "TARL201", False),
+        ((), ("TARL102",), "TARL102", False),
+        (("TARL1",), ("TARL102",), "TARL102", False),
+        (("TARL1",), ("TARL102",), "TARL101", True),
+    ],
+)
+def test_codes_are_selected_and_ignored_by_their_beginning(select, ignore, code, wanted):
+    assert Config(select=select, ignore=ignore).enabled(code) is wanted
+
+
+def test_settings_come_from_the_nearest_pyproject_with_our_table(in_directory):
+    root = in_directory(
+        {
+            "pyproject.toml": '[tool.tarl-lint]\nselect = ["tarl1"]\nexclude = ["vendor/"]\nfail-on = "implicit"\n',
+            "a/pyproject.toml": "[project]\nname = 'a'\n",
+            "a/b/node.py": "",
+        }
+    )
+    config = resolve(Options(paths=(Path("a/b/node.py"),)))
+    assert config.file == root / "pyproject.toml"
+    assert (config.select, config.exclude, config.fail_on) == (("TARL1",), ("vendor/",), "implicit")
+    assert config.root == root
+    assert dict(config.origins)["select"] == "pyproject.toml"
+
+
+def test_the_command_line_wins_over_the_settings_file(in_directory):
+    in_directory({"pyproject.toml": '[tool.tarl-lint]\nselect = ["TARL1"]\nfail-on = "hazard"\n'})
+    config = resolve(Options(select=("TARL2",)))
+    assert config.select == ("TARL2",)
+    assert config.fail_on == "hazard"
+    assert dict(config.origins) | {"select": "command line", "fail-on": "pyproject.toml"} == dict(
+        config.origins
+    )
+
+
+def test_the_search_for_settings_ends_at_the_top_of_the_repository(in_directory):
+    root = in_directory(
+        {"pyproject.toml": '[tool.tarl-lint]\nselect = ["TARL1"]\n', "repository/node.py": ""}
+    )
+    (root / "repository/.git").mkdir()
+    config = resolve(Options(paths=(Path("repository"),)))
+    assert config.file is None
+    assert config.root == root / "repository"
+
+
+def test_an_unknown_key_is_refused_with_the_key_that_was_meant(in_directory):
+    in_directory({"pyproject.toml": '[tool.tarl-lint]\nigore = ["TARL102"]\n'})
+    with pytest.raises(ConfigError, match=r"pyproject\.toml: .*no key 'igore': did you mean 'ignore'\?"):
+        resolve(Options())
+
+
+@pytest.mark.parametrize(
+    ("line", "complaint"),
+    [
+        ("select = 'TARL101'", r"'select' .* must be a list of rule codes .* not 'TARL101'"),
+        ("ignore = [1]", r"'ignore' .* must be a list of rule codes"),
+        ("exclude = ['']", r"'exclude' .* must be a list of patterns"),
+        ("baseline = false", r"'baseline' .* must be the name of a file"),
+        ("fail-on = 'always'", r"'fail-on' .* must be one of 'never', 'hazard', 'explicit', 'implicit'"),
+    ],
+)
+def test_a_value_of_the_wrong_kind_is_refused_with_what_is_wanted(in_directory, line, complaint):
+    in_directory({"pyproject.toml": f"[tool.tarl-lint]\n{line}\n"})
+    with pytest.raises(ConfigError, match=complaint):
+        resolve(Options())
+
+
+def test_a_settings_file_of_another_name_holds_the_keys_at_its_top_level(in_directory):
+    in_directory({"lint.toml": 'ignore = ["TARL102"]\n'})
+    assert resolve(Options(config=Path("lint.toml"))).ignore == ("TARL102",)
+
+
+def test_a_named_pyproject_without_our_table_is_refused(in_directory):
+    in_directory({"pyproject.toml": "[project]\nname = 'x'\n"})
+    with pytest.raises(ConfigError, match=r"pyproject\.toml has no \[tool\.tarl-lint\] table"):
+        resolve(Options(config=Path("pyproject.toml")))
+
+
+def test_a_settings_file_that_is_missing_or_not_toml_is_named(in_directory):
+    in_directory({"bad.toml": "select = [", "pyproject.toml": "tool.tarl-lint = 3"})
+    with pytest.raises(ConfigError, match=r"missing\.toml cannot be read: No such file"):
+        resolve(Options(config=Path("missing.toml")))
+    with pytest.raises(ConfigError, match=r"bad\.toml is not valid TOML"):
+        resolve(Options(config=Path("bad.toml")))
+    with pytest.raises(ConfigError, match=r"tool\.tarl-lint must be a table"):
+        resolve(Options())
+
+
+def test_the_baseline_beside_the_settings_is_used_when_it_is_there(in_directory):
+    root = in_directory({"pyproject.toml": "[tool.tarl-lint]\n", "src/node.py": ""})
+    assert resolve(Options(paths=(Path("src"),))).baseline is None
+    (root / "tarl-flows.json").write_text("{}")
+    assert resolve(Options(paths=(Path("src"),))).baseline == root / "tarl-flows.json"
+    assert resolve(Options(paths=(Path("src"),), no_baseline=True)).baseline is None
+
+
+def test_a_baseline_that_is_named_must_exist_unless_it_is_being_written(in_directory):
+    root = in_directory({"pyproject.toml": '[tool.tarl-lint]\nbaseline = "ci/flows.json"\n'})
+    with pytest.raises(BaselineError, match=r"ci/flows\.json does not exist: write it with --write-baseline"):
+        resolve(Options())
+    assert resolve(Options(write_baseline=True)).baseline == root / "ci/flows.json"
+    with pytest.raises(BaselineError, match=r"other\.json does not exist"):
+        resolve(Options(baseline=Path("other.json")))
