@@ -36,7 +36,7 @@ class Ignore:
 
 
 def ignored(path: str, ignores: Sequence[Ignore], *, is_directory: bool) -> bool:
-    """Tell whether a path is left out: the nearest file to speak of it decides (`ignores`: farthest first)."""
+    """Tell whether a path is left out: the nearest to speak of it decides (`ignores`: nearest last)."""
     verdicts = (ignore.verdict(path, is_directory=is_directory) for ignore in reversed(ignores))
     return next((v for v in verdicts if v is not None), False)
 
@@ -80,4 +80,6 @@ def _piece(match: re.Match[str]) -> str:
     if kind == "set":
         body = text[1:-1].replace("\\", "\\\\")
         return f"(?!/)[{'^' + body[1:] if body[0] in '!^' else body}]"
+    if text == "[":
+        return "(?!)"  # never closed: git matches nothing with it
     return fixed.get(kind or "") or re.escape(match["escaped"] or text)

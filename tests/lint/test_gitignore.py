@@ -1,0 +1,77 @@
+import subprocess
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from tarl_lint.gitignore import ignored, parse
+
+CASES = [
+    ("*.pyc", "a/b.pyc", True),
+    ("*.pyc", "a/b.py", False),
+    ("build/", "build", True),
+    ("build/", "a/build", True),
+    ("/build", "a/build", False),
+    ("a/b", "a/b", True),
+    ("a/b", "c/a/b", False),
+    ("**/b", "c/a/b", True),
+    ("a/**", "a/x/y", True),
+    ("a/**/z", "a/z", True),
+    ("a/**/z", "a/x/y/z", True),
+    ("a*/z", "ab/c/z", False),
+    ("?.py", "x.py", True),
+    ("?.py", "xy.py", False),
+    ("[ab].py", "b.py", True),
+    ("[!ab].py", "b.py", False),
+    ("[!ab].py", "c.py", True),
+    (r"\#x", "#x", True),
+    (r"\!x", "!x", True),
+    ("# comment", "# comment", False),
+    ("x ", "x", True),
+    ("", "x", False),
+    ("[", "[", False),
+    ("a+b.py", "a+b.py", True),
+    ("a+b.py", "aab.py", False),
+]
+
+
+def left_out(lines: list[str], path: str, *, is_directory: bool = True) -> bool:
+    return ignored(f"/top/{path}", [parse("/top", lines)], is_directory=is_directory)
+
+
+@pytest.mark.parametrize(("pattern", "path", "expected"), CASES)
+def test_patterns_mean_what_git_says(pattern, path, expected):
+    assert left_out([pattern], path) is expected
+
+
+def test_the_last_pattern_that_speaks_of_a_path_decides():
+    assert not left_out(["*.py", "!keep.py"], "keep.py")
+    assert left_out(["!keep.py", "*.py"], "keep.py")
+
+
+def test_a_pattern_for_directories_leaves_files_alone():
+    assert not left_out(["build/"], "build", is_directory=False)
+
+
+def test_the_nearest_file_decides_and_speaks_only_of_its_own_directory():
+    outer, inner = parse("/top", ["*.py"]), parse("/top/a", ["!*.py"])
+    assert ignored("/top/x.py", [outer, inner], is_directory=False)
+    assert not ignored("/top/a/x.py", [outer, inner], is_directory=False)
+    assert ignored("/top/ab/x.py", [outer, inner], is_directory=False)
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(st.text("ab*?/!.", min_size=1, max_size=6), min_size=1, max_size=3))
+def test_git_itself_agrees(tmp_path: Path, lines: list[str]):
+    """Compare with `git check-ignore` on paths whose parents are not ignored (git looks no further below one)."""
+    if not (tmp_path / ".git").exists():
+        subprocess.run(["git", "init", "-q", str(tmp_path)], check=True)
+    (tmp_path / ".gitignore").write_text("\n".join(lines) + "\n")
+    names = ["a", "b", "ab", "a.b", "b.a", "aa.b", "bb"]
+    asked = subprocess.run(
+        ["git", "-c", "core.excludesFile=/dev/null", "check-ignore", "--no-index", *names],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    ours = [n for n in names if ignored(f"{tmp_path}/{n}", [parse(str(tmp_path), lines)], is_directory=False)]
+    assert ours == asked.stdout.split()
