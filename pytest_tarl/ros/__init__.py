@@ -1,0 +1,30 @@
+"""In-process stand-in for rospy and rclpy: virtual clock, synchronous delivery, nothing left behind.
+
+Nothing heavy is imported until `Ros`, `Bus` or `message_type` is used.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pytest_tarl.ros.bus import Bus
+    from pytest_tarl.ros.episode import Ros
+    from pytest_tarl.ros.messages import message_type
+
+__all__ = ["Bus", "Ros", "message_type"]
+
+_HOMES = {
+    "Bus": "pytest_tarl.ros.bus",
+    "Ros": "pytest_tarl.ros.episode",
+    "message_type": "pytest_tarl.ros.messages",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import what was asked for from where it lives."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    return getattr(import_module(_HOMES[name]), name)

@@ -1,0 +1,57 @@
+"""Where in a node something happened: the innermost frame that is the user's own."""
+
+from __future__ import annotations
+
+import sysconfig
+from collections.abc import Iterator
+from pathlib import Path
+from types import FrameType, TracebackType
+
+_HERE = str(Path(__file__).parent)
+_LIBRARIES = tuple({sysconfig.get_path(key) for key in ("stdlib", "platstdlib", "purelib", "platlib")})
+
+Place = tuple[str, int, str]  # file, line, function
+
+
+def of_traceback(traceback: TracebackType | None) -> Place | None:
+    """Return the user's innermost place of an exception."""
+    places = []
+    while traceback is not None:
+        places.append(
+            (traceback.tb_frame.f_code.co_filename, traceback.tb_lineno, traceback.tb_frame.f_code.co_name)
+        )
+        traceback = traceback.tb_next
+    return _innermost(reversed(places))
+
+
+def of_frame(frame: FrameType | None) -> Place | None:
+    """Return the user's innermost place of a running or suspended frame."""
+    return _innermost(_outwards(frame))
+
+
+def describe(place: Place | None) -> str:
+    """Say a place: `traveller.py, line 31, in travel`; the path relative to the working directory if below it."""
+    if place is None:
+        return "an unknown line"
+    file, line, function = place
+    path = Path(file)
+    if path.is_absolute() and path.is_relative_to(Path.cwd()):
+        path = path.relative_to(Path.cwd())
+    return f"{path}, line {line}" + ("" if function == "<module>" else f", in {function}")
+
+
+def _outwards(frame: FrameType | None) -> Iterator[Place]:
+    while frame is not None:
+        yield frame.f_code.co_filename, frame.f_lineno, frame.f_code.co_name
+        frame = frame.f_back
+
+
+def _innermost(places: Iterator[Place]) -> Place | None:
+    fallback = None
+    for place in places:
+        if place[0].startswith(_HERE):
+            continue
+        if not place[0].startswith((*_LIBRARIES, "<")):
+            return place
+        fallback = fallback or place
+    return fallback

@@ -1,0 +1,156 @@
+"""The topics of an episode: who publishes, who listens, in which order messages arrive."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol
+
+from greenlet import getcurrent
+
+from pytest_tarl.errors import RecordingError
+from pytest_tarl.ros.messages.snapshot import FieldError, snapshot, stamp_if_unset, type_name
+from pytest_tarl.ros.names import absolute
+from pytest_tarl.ros.scheduler import Scheduler, Task
+
+if TYPE_CHECKING:
+    from pytest_tarl.ros.process import Process
+
+Listener = Callable[[Any], None]
+
+
+class Subscription(Protocol):
+    """A node's end of a topic."""
+
+    process: Process
+    message_type: type | None  # None takes anything
+
+    def deliver(self, message: Any) -> None:
+        """Take a message that nobody else holds. Called outside of all tasks."""
+
+
+class Publication(Protocol):
+    """A node's end of a topic that it publishes on."""
+
+    process: Process
+    type: str
+
+
+class Topic:
+    """One topic. `kept` is what a later subscriber still gets (latched, transient local)."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.subscriptions: list[Subscription] = []
+        self.publications: list[Publication] = []
+        self.listeners: list[Listener] = []
+        self.latest: Any = None
+        self.kept: dict[Any, Any] = {}
+
+
+class Bus:
+    """What the world publishes and hears. One per episode."""
+
+    def __init__(self, scheduler: Scheduler, run: Callable[[Callable[[], None]], None]) -> None:
+        self._scheduler = scheduler
+        self._run = run
+        self._topics: dict[str, Topic] = {}
+        self._observers: list[Callable[[str, Any], None]] = []
+        self.published: Counter[str] = Counter()
+        self.subscribed: set[str] = set()
+
+    def publish(self, topic: str, message: Any, *, latch: bool = False) -> None:
+        """Publish from the world: every subscriber gets a copy before this returns, if it can take it now.
+
+        A header stamp of zero becomes the present time. `latch` keeps the message for later subscribers.
+        Raises NodeError when a callback ends in an exception, RecordingError for a message of a wrong type.
+        """
+        place = self.topic(topic)
+        try:
+            message = snapshot(message)
+        except FieldError as error:
+            raise RecordingError(f"The message published on {place.name} is not valid: {error}.") from error
+        stamp_if_unset(message, self._scheduler.time)
+        if latch:
+            place.kept[None] = message
+        if isinstance(
+            getcurrent(), Task
+        ):  # the world answers within a node's publish: the node goes on first
+            self._scheduler.later(lambda: self._deliver(place, message))
+            return
+        self._run(lambda: self._deliver(place, message))
+
+    def latest(self, topic: str) -> Any | None:
+        """Return the newest message that a node published on the topic, None before the first."""
+        place = self._topics.get(absolute(topic))
+        return place.latest if place is not None else None
+
+    def subscribe(self, topic: str, callback: Listener) -> None:
+        """Have the world's `callback` called with every message that a node publishes on the topic."""
+        self.topic(topic).listeners.append(callback)
+
+    def observe(self, observer: Callable[[str, Any], None]) -> None:
+        """Have `observer` called with topic and message before any subscriber gets it."""
+        self._observers.append(observer)
+
+    def topic(self, name: str) -> Topic:
+        """Return the topic of that name, made at first use."""
+        name = absolute(name)
+        if name not in self._topics:
+            self._topics[name] = Topic(name)
+        return self._topics[name]
+
+    def topics(self) -> list[Topic]:
+        """List all topics, in the order of their first use."""
+        return list(self._topics.values())
+
+    def publish_from(self, publication: Publication, place: Topic, message: Any, *, keep: int = 0) -> None:
+        """Publish from a node: the world hears it at once, other nodes when this one waits. Copies `message`."""
+        message = snapshot(message)
+        self.published[place.name] += 1
+        place.latest = message
+        if keep:
+            place.kept[publication] = message
+        for listener in place.listeners:
+            try:
+                listener(message)
+            except BaseException as error:  # the world's own error goes to the test, not into the node
+                self._scheduler.failure = self._scheduler.failure or error
+        if place.subscriptions or self._observers:
+            self._scheduler.later(lambda: self._deliver(place, message))
+        if not isinstance(getcurrent(), Task):
+            self._run(lambda: None)
+
+    def advertise(self, publication: Publication, place: Topic) -> None:
+        """Add a node's publication."""
+        place.publications.append(publication)
+
+    def attach(self, subscription: Subscription, place: Topic, *, wants_kept: bool = True) -> None:
+        """Add a node's subscription; what was latched arrives as soon as the node waits."""
+        self.subscribed.add(place.name)
+        place.subscriptions.append(subscription)
+        if wants_kept:
+            for message in place.kept.values():
+                self._scheduler.later(lambda message=message: self._hand(place, subscription, message))
+
+    def disconnect(self, process: Process) -> None:
+        """Forget the publications and subscriptions of a process that has ended."""
+        for place in self._topics.values():
+            place.subscriptions = [s for s in place.subscriptions if s.process is not process]
+            place.publications = [p for p in place.publications if p.process is not process]
+
+    def _deliver(self, place: Topic, message: Any) -> None:
+        for observer in self._observers:
+            observer(place.name, message)
+        for subscription in tuple(place.subscriptions):
+            self._hand(place, subscription, message)
+
+    def _hand(self, place: Topic, subscription: Subscription, message: Any) -> None:
+        try:
+            own = snapshot(message, subscription.message_type)
+        except FieldError as error:
+            raise RecordingError(
+                f"{place.name} carries {type_name(type(message))}, but node {subscription.process.label!r} subscribes "
+                f"to it as {type_name(subscription.message_type)}: {error}."
+            ) from error
+        subscription.deliver(own)

@@ -1,0 +1,145 @@
+"""One episode of the in-process ROS: the test's side of it."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from typing import Any, TypeVar
+
+from greenlet import getcurrent
+
+from pytest_tarl.errors import NodeError
+from pytest_tarl.ros.bus import Bus
+from pytest_tarl.ros.clock import nanoseconds, seconds
+from pytest_tarl.ros.install import standins_installed
+from pytest_tarl.ros.process import Process
+from pytest_tarl.ros.scheduler import Scheduler, Spinning, Task
+from pytest_tarl.ros.watchdog import DEFAULT_LIMIT, WATCHDOG
+
+Part = TypeVar("Part")
+
+
+class Ros:
+    """Nodes, their bus and their clock, for one episode.
+
+    `parameters` are given to every node (`kp`, `~kp` or `/node/kp`), `remappings` are old → new names.
+    `watchdog_limit` is the wall time in seconds after which a node that does not wait is stopped.
+    """
+
+    def __init__(
+        self,
+        *,
+        parameters: Mapping[str, Any] | None = None,
+        remappings: Mapping[str, str] | None = None,
+        watchdog_limit: float = DEFAULT_LIMIT,
+    ) -> None:
+        self.parameters = dict(parameters or {})
+        self.remappings = dict(remappings or {})
+        self.watchdog_limit = watchdog_limit
+        self.scheduler = Scheduler()
+        self.bus = Bus(self.scheduler, self._run)
+        self.processes: list[Process] = []
+        self._parts: dict[Any, Any] = {}
+        self.closed = False
+
+    @property
+    def now(self) -> float:
+        """Virtual seconds since the episode began; the nodes' clock shows the same."""
+        return seconds(self.scheduler.time)
+
+    @property
+    def alive(self) -> bool:
+        """Tell whether the main program of any node is still running."""
+        return any(not process.ended for process in self.processes)
+
+    @property
+    def published(self) -> Counter[str]:
+        """How many messages nodes have published, by topic."""
+        return self.bus.published
+
+    @property
+    def subscribed(self) -> set[str]:
+        """Topics that nodes have subscribed to so far."""
+        return self.bus.subscribed
+
+    @property
+    def shutdown_errors(self) -> tuple[NodeError, ...]:
+        """What nodes raised while they were being ended; they cannot fail an episode that is over."""
+        return tuple(error for process in self.processes for error in process.errors)
+
+    def part(self, kind: Callable[[Ros], Part]) -> Part:
+        """Return this episode's only instance of `kind`: what a ROS master or the network would hold."""
+        if kind not in self._parts:
+            self._parts[kind] = kind(self)
+        found: Part = self._parts[kind]
+        return found
+
+    def start(self, run: Callable[[], None], *, name: str, argv: Sequence[str] = ()) -> None:
+        """Run a node's main program until it first waits. Raises NodeError where it ends in an exception."""
+        process = Process(self, name, (name, *argv))
+        self.processes.append(process)
+        with self._entered(), _argv(process.argv):
+            self.scheduler.spawn(process, run, main=True)
+            self.scheduler.settle()
+
+    def step(self, dt: float) -> None:
+        """Advance virtual time by `dt` seconds, running what falls due, until every node waits again."""
+        with self._entered():
+            self.scheduler.advance(self.scheduler.time + nanoseconds(dt))
+
+    def on_delivery(self, listener: Callable[[str, Any], None]) -> None:
+        """Have `listener(topic, message)` called for every message before any subscriber gets it."""
+        self.bus.observe(listener)
+
+    def installed(self) -> AbstractContextManager[None]:
+        """Put rospy, rclpy and the message packages where imports find them; restore on exit what was there."""
+        return standins_installed(self)
+
+    def close(self) -> None:
+        """End every node as ROS would, then forget everything."""
+        if self.closed:
+            return
+        self.closed = True
+        self.scheduler.failure = None
+        with self._entered():
+            for process in self.processes:
+                process.end()
+                self.scheduler.failure = None
+
+    def _run(self, job: Callable[[], None]) -> None:
+        with self._entered():
+            job()
+            self.scheduler.settle()
+
+    @contextmanager
+    def _entered(self) -> Iterator[None]:
+        """Watch the nodes that run inside and raise what they failed with."""
+        if isinstance(getcurrent(), Task):
+            raise NodeError(
+                "A node called into the episode that runs it: step(), start() and close() belong to the test."
+            )
+        scheduler = self.scheduler
+        WATCHDOG.arm(self.watchdog_limit)
+        try:
+            yield
+        except Spinning:
+            scheduler.failure = scheduler.failure or scheduler.spinning()
+        finally:
+            spun = WATCHDOG.disarm()
+        if spun and scheduler.failure is None:
+            scheduler.failure = scheduler.spinning()
+        if scheduler.failure is not None:
+            failure, scheduler.failure = scheduler.failure, None
+            raise failure
+
+
+@contextmanager
+def _argv(argv: Sequence[str]) -> Iterator[None]:
+    saved = sys.argv
+    sys.argv = list(argv)
+    try:
+        yield
+    finally:
+        sys.argv = saved

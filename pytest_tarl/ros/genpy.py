@@ -1,0 +1,37 @@
+"""What nodes import from genpy: times, the message base class and its errors."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pytest_tarl.ros.messages.ros1 import Message
+from pytest_tarl.ros.messages.times import Duration, Time, TVal
+
+__all__ = [
+    "DeserializationError",
+    "Duration",
+    "Message",
+    "MessageException",
+    "SerializationError",
+    "TVal",
+    "Time",
+]
+
+
+class MessageException(Exception):  # noqa: N818 (named by genpy)
+    """Base of genpy's errors."""
+
+
+class SerializationError(MessageException):
+    """A message cannot be sent."""
+
+
+class DeserializationError(MessageException):
+    """A message cannot be read."""
+
+
+def __getattr__(name: str) -> Any:
+    """Name what is missing."""
+    from pytest_tarl.ros.missing import refuse
+
+    raise refuse("genpy", name)

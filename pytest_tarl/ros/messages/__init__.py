@@ -1,0 +1,60 @@
+"""ROS message and service classes: of an installed ROS where there is one, built from definitions where not."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from pytest_tarl.errors import UnsupportedApiError
+from pytest_tarl.ros.messages import ros1, ros2
+from pytest_tarl.ros.messages.definitions import Kind
+from pytest_tarl.ros.messages.installed import installed_class
+
+_BUILDERS = {
+    ("ros1", "msg"): ros1.message_class,
+    ("ros1", "srv"): ros1.service_class,
+    ("ros2", "msg"): ros2.message_class,
+    ("ros2", "srv"): ros2.service_class,
+}
+
+
+def message_type(name: str) -> type[Any]:
+    """Return a message class by its ROS name.
+
+    `nav_msgs/Odometry` names the ROS 1 class, `nav_msgs/msg/Odometry` the ROS 2 class, as in the two systems
+    themselves. Either can be published to nodes of either kind: subscribers get the class they asked for.
+    """
+    package, *middle, short = name.split("/")
+    if middle not in ([], ["msg"], ["srv"]) or not package or not short:
+        raise UnsupportedApiError(f"{name!r} is not the name of a message type: write 'nav_msgs/msg/Odometry' "
+                                  "(ROS 2) or 'nav_msgs/Odometry' (ROS 1).")  # fmt: skip
+    found = find_class("ros2" if middle else "ros1", package, short, middle[0] if middle else "msg")
+    if found is None:
+        raise unknown_type(package, short)
+    return found
+
+
+@cache
+def find_class(kind: Kind, package: str, name: str, part: str = "msg") -> type[Any] | None:
+    """Return the class of a message (`part` msg) or service (srv) type, None if nobody knows it."""
+    return installed_class(kind, package, name, part) or _BUILDERS[kind, part](package, name)
+
+
+def class_like(own: type, other: type) -> type[Any]:
+    """Return the class of the same message type as `own` in the ROS generation of `other`."""
+    from pytest_tarl.ros.messages.snapshot import type_name
+
+    package, _, short = type_name(own).partition("/")
+    found = find_class("ros1" if hasattr(other, "_slot_types") else "ros2", package, short)
+    if found is None:
+        raise unknown_type(package, short)
+    return found
+
+
+def unknown_type(package: str, name: str) -> UnsupportedApiError:
+    """Say that a type has no definition."""
+    return UnsupportedApiError(
+        f"Message type {package}/{name} is not known here: it is in none of the packages whose definitions come with "
+        f"`rosbags`, and no installed ROS package {package!r} of the right generation was found. Check the spelling, or "
+        "install the package (source your workspace) in the environment that runs pytest."
+    )

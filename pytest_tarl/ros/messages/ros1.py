@@ -1,0 +1,218 @@
+"""ROS 1 message classes: generated from definitions, behaving as genpy's do.
+
+Each class gets a function `_tarl_copy(message)` that does what sending and receiving would do: checks types, rounds
+float32, turns arrays of numbers into tuples (bytes for uint8), and shares nothing with the original.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, ClassVar
+
+from pytest_tarl.ros.messages import values
+from pytest_tarl.ros.messages.definitions import Definition, Field, find_message, find_service
+from pytest_tarl.ros.messages.times import Duration, Time, TVal
+from pytest_tarl.ros.messages.values import FieldError
+
+
+class Message:
+    """Base of all ROS 1 messages: arguments by position (all of them) or by keyword (any of them)."""
+
+    __slots__ = ["_connection_header"]
+    _type: ClassVar[str] = ""
+    _slot_types: ClassVar[list[str]] = []
+    _has_header: ClassVar[bool] = False
+    _tarl_kind: ClassVar[str] = "ros1"
+    _tarl_copy: ClassVar[Callable[[Any], Any]]
+    _tarl_defaults: ClassVar[dict[str, Callable[[], Any]]] = {}
+
+    def __init__(self, *args: Any, **kwds: Any) -> None:
+        slots, defaults = self.__slots__, self._tarl_defaults
+        if args and kwds:
+            raise TypeError("Message constructor may only use args OR keywords, not both")
+        if args and len(args) != len(slots):
+            raise TypeError(f"Invalid number of arguments, args should be {slots} args are{args}")
+        for name in kwds:
+            if name not in slots:
+                raise AttributeError(f"{name} is not an attribute of {type(self).__name__}")
+        given = dict(zip(slots, args, strict=True)) if args else kwds
+        for name in slots:
+            value = given.get(name)
+            setattr(self, name, defaults[name]() if value is None else value)
+
+    def __getstate__(self) -> list[Any]:
+        return [getattr(self, name) for name in self.__slots__]
+
+    def __setstate__(self, state: list[Any]) -> None:
+        for name, value in zip(self.__slots__, state, strict=True):
+            setattr(self, name, value)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, type(self)):
+            return False
+        return all(getattr(self, name) == getattr(other, name) for name in self.__slots__)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __str__(self) -> str:
+        return as_yaml(self)
+
+    __repr__ = __str__
+
+
+def as_yaml(value: Any, indent: str = "") -> str:
+    """Write a message as `rostopic echo` shows it."""
+    if isinstance(value, Message):
+        lines = (
+            f"{indent}{name}: {as_yaml(getattr(value, name), indent + '  ')}" for name in value.__slots__
+        )
+        return ("\n" if indent else "") + "\n".join(lines)
+    if isinstance(value, TVal):
+        return f"\n{indent}secs: {value.secs}\n{indent}nsecs: {value.nsecs:9d}"
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"' if value else "''"
+    if isinstance(value, bytes):
+        return str(list(value))
+    if isinstance(value, list | tuple) and value and isinstance(value[0], Message | TVal):
+        return "\n" + "\n".join(f"{indent}- {as_yaml(item, indent + '  ')}" for item in value)
+    return str(list(value)) if isinstance(value, list | tuple) else str(value)
+
+
+@cache
+def message_class(package: str, name: str) -> type[Message] | None:
+    """Return the class of a message type, built at first use; None if nobody knows the type."""
+    definition = find_message("ros1", package, name)
+    return build(definition, f"{package}.msg") if definition is not None else None
+
+
+@cache
+def service_class(package: str, name: str) -> type | None:
+    """Return the class that stands for a service type; its request and response classes hang on it."""
+    halves = find_service("ros1", package, name)
+    if halves is None:
+        return None
+    request, response = (build(half, f"{package}.srv") for half in halves)
+    namespace = {"_type": f"{package}/{name}", "_request_class": request, "_response_class": response}
+    return type(name, (), {**namespace, "__module__": f"{package}.srv"})
+
+
+def build(definition: Definition, module: str) -> type[Message]:
+    """Build the class of a definition."""
+    scope: dict[str, Any] = {"FieldError": FieldError, "Time": Time, "Duration": Duration, "values": values}
+    defaults: dict[str, Callable[[], Any]] = {}
+    lines = []
+    for position, field in enumerate(definition.fields):
+        defaults[field.name] = scope[f"default{position}"] = _default(field)
+        scope[f"slow{position}"] = _converter(field)
+        lines.append(_copy_lines(field, position, scope))
+    inits = [f"    self.{f.name} = default{i}()" for i, f in enumerate(definition.fields)] or ["    pass"]
+    source = [
+        "def __init__(self, *args, **kwds):",
+        "    if args or kwds:",
+        "        return base_init(self, *args, **kwds)",
+        *inits,
+        "def copy(m):",
+        "    n = new(cls)",
+        *(line for group in lines for line in group),
+        "    return n",
+    ]
+    scope["base_init"], scope["new"] = Message.__init__, object.__new__
+    exec(compile("\n".join(source), f"<message {definition.package}/{definition.name}>", "exec"), scope)  # noqa: S102
+    namespace = {
+        "__slots__": [f.name for f in definition.fields],
+        "__module__": module,
+        "__doc__": f"ROS 1 type {definition.package}/{definition.name}.",
+        "__init__": scope["__init__"],
+        "_type": f"{definition.package}/{definition.name}",
+        "_slot_types": [field.text for field in definition.fields],
+        "_has_header": bool(definition.fields) and definition.fields[0].base == "std_msgs/Header",
+        "_tarl_copy": staticmethod(scope["copy"]),
+        "_tarl_defaults": defaults,
+        **{constant.name: constant.value for constant in definition.constants},
+    }
+    scope["cls"] = built = type(definition.name, (Message,), namespace)
+    return built
+
+
+def _default(field: Field) -> Callable[[], Any]:
+    element = _element_default(field)
+    if field.shape == "one":
+        return element
+    if field.base in ("uint8", "char"):
+        return (lambda: bytes(field.size)) if field.shape == "array" else (lambda: b"")
+    return (lambda: [element() for _ in range(field.size)]) if field.shape == "array" else list
+
+
+def _element_default(field: Field) -> Callable[[], Any]:
+    if field.base == "time":
+        return Time
+    if field.base == "duration":
+        return Duration
+    if not field.primitive:
+        return _nested(field.base)
+    zeros: dict[str, Callable[[], Any]] = {"bool": bool, "string": str, "float32": float, "float64": float}
+    return zeros.get(field.base, int)
+
+
+def _nested(base: str) -> type[Message]:
+    built = message_class(*base.split("/"))
+    if built is None:
+        raise FieldError(f"message type {base} is not known")
+    return built
+
+
+def _copy_lines(field: Field, position: int, scope: dict[str, Any]) -> list[str]:
+    """Write the copying of one field: the usual exact type inline, everything else through `slow`."""
+    name, slow = field.name, f"slow{position}(v, {field.name!r})"
+    if field.shape == "one" and not field.primitive:
+        scope[f"type{position}"] = nested = _nested(field.base)
+        scope[f"copy{position}"] = nested._tarl_copy
+        usual, copied = f"v.__class__ is type{position}", f"copy{position}(v)"
+    else:
+        exact = {"float64": "float", "string": "str", "bool": "bool"}.get(
+            field.base if field.shape == "one" else ""
+        )
+        if exact is None:
+            return [f"    v = m.{name}", f"    n.{name} = {slow}"]
+        usual, copied = f"v.__class__ is {exact}", "v"
+    return [f"    v = m.{name}", f"    n.{name} = {copied} if {usual} else {slow}"]
+
+
+def _converter(field: Field) -> Callable[[Any, str], Any]:
+    size = field.size
+    if field.shape == "one":
+        return _element_converter(field)
+    if field.base in ("uint8", "char"):
+        return lambda value, name: (
+            bytes(value)
+            if not size and isinstance(value, bytes)
+            else bytes(values.as_numbers(value, "uint8", size, name))
+        )
+    if field.base in values.CODES:
+        base = field.base
+        return lambda value, name: tuple(values.as_numbers(value, base, size, name))
+    convert = _element_converter(field)
+    return lambda value, name: values.as_list(value, size, name, convert)
+
+
+def _element_converter(field: Field) -> Callable[[Any, str], Any]:
+    if field.base in ("time", "duration"):
+        return lambda value, name: _as_time(value, Time if field.base == "time" else Duration, name)
+    if field.primitive:
+        return values.scalar_converter(field.base)
+    nested = _nested(field.base)
+
+    def convert(value: Any, name: str) -> Any:
+        if not isinstance(value, nested):
+            shown = getattr(type(value), "_type", type(value).__name__)
+            raise FieldError(f"field {name!r} must be of type {field.base}, not {shown}")
+        return nested._tarl_copy(value)
+
+    return convert
+
+
+def _as_time(value: Any, wanted: type[TVal], name: str) -> TVal:
+    if not isinstance(value, TVal):
+        raise FieldError(f"field {name!r} must be a {wanted.__name__}, not {value!r}")
+    return wanted(value.secs, value.nsecs)

@@ -1,0 +1,176 @@
+"""ROS 1 instants and durations (`genpy.Time`, `genpy.Duration`): whole seconds and nanoseconds."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, TypeVar
+
+NANOSECONDS = 1_000_000_000
+Self = TypeVar("Self", bound="TVal")
+
+
+def _split(seconds: float) -> tuple[int, int]:
+    whole = int(seconds)
+    return whole, int((seconds - whole) * NANOSECONDS)  # truncated, as genpy does
+
+
+class TVal:
+    """Seconds and nanoseconds, kept so that 0 <= nsecs < 1e9."""
+
+    __slots__ = ["secs", "nsecs"]
+    _slot_types: ClassVar[list[str]] = ["int32", "int32"]
+    secs: int
+    nsecs: int
+
+    def __init__(self, secs: float = 0, nsecs: int = 0) -> None:
+        if not isinstance(secs, int):
+            if nsecs:
+                raise ValueError("if secs is a float, nsecs cannot be set")
+            secs, nsecs = _split(secs)
+        carry, self.nsecs = divmod(nsecs, NANOSECONDS)
+        self.secs = secs + carry
+
+    def is_zero(self) -> bool:
+        """Tell whether this is zero."""
+        return self.secs == 0 and self.nsecs == 0
+
+    def set(self, secs: int, nsecs: int) -> None:
+        """Set both parts as they are."""
+        self.secs, self.nsecs = secs, nsecs
+
+    def canon(self) -> None:
+        """Bring the parts into canonical form."""
+        carry, self.nsecs = divmod(self.nsecs, NANOSECONDS)
+        self.secs += carry
+
+    def to_sec(self) -> float:
+        """Return float seconds."""
+        return float(self.secs) + float(self.nsecs) / 1e9
+
+    def to_nsec(self) -> int:
+        """Return nanoseconds."""
+        return self.secs * NANOSECONDS + self.nsecs
+
+    def __getstate__(self) -> list[int]:
+        return [self.secs, self.nsecs]
+
+    def __setstate__(self, state: list[int]) -> None:
+        self.secs, self.nsecs = state
+
+    def __hash__(self) -> int:
+        return hash((self.secs, self.nsecs))
+
+    def __str__(self) -> str:
+        return str(self.to_nsec())
+
+    def __repr__(self) -> str:
+        return f"genpy.{type(self).__name__}[{self.to_nsec()}]"
+
+    def __bool__(self) -> bool:
+        return not self.is_zero()
+
+    def _order(self, other: Any) -> int | None:
+        return self.to_nsec() - other.to_nsec() if isinstance(other, self._family()) else None
+
+    def _family(self) -> type[TVal]:
+        return TVal
+
+    def __eq__(self, other: object) -> bool:
+        return self._order(other) == 0
+
+    def __lt__(self, other: Any) -> bool:
+        order = self._order(other)
+        return NotImplemented if order is None else order < 0
+
+    def __le__(self, other: Any) -> bool:
+        order = self._order(other)
+        return NotImplemented if order is None else order <= 0
+
+    def __gt__(self, other: Any) -> bool:
+        order = self._order(other)
+        return NotImplemented if order is None else order > 0
+
+    def __ge__(self, other: Any) -> bool:
+        order = self._order(other)
+        return NotImplemented if order is None else order >= 0
+
+
+class Time(TVal):
+    """An instant. Negative ones do not exist."""
+
+    __slots__ = ["secs", "nsecs"]
+
+    def __init__(self, secs: float = 0, nsecs: int = 0) -> None:
+        super().__init__(secs, nsecs)
+        if self.secs < 0:
+            raise TypeError("time values must be positive")
+
+    def _family(self) -> type[TVal]:
+        return Time
+
+    @staticmethod
+    def from_sec(float_secs: float) -> Time:
+        """Make an instant from float seconds."""
+        return Time(*_split(float_secs))
+
+    def to_time(self) -> float:
+        """Return float seconds."""
+        return self.to_sec()
+
+    def __add__(self, other: Any) -> Time:
+        if not isinstance(other, Duration):
+            return NotImplemented
+        return Time(self.secs + other.secs, self.nsecs + other.nsecs)
+
+    def __sub__(self, other: Any) -> Any:
+        if isinstance(other, Time):
+            return Duration(self.secs - other.secs, self.nsecs - other.nsecs)
+        if isinstance(other, Duration):
+            return Time(self.secs - other.secs, self.nsecs - other.nsecs)
+        return NotImplemented
+
+
+class Duration(TVal):
+    """A span of time, of either sign."""
+
+    __slots__ = ["secs", "nsecs"]
+
+    def _family(self) -> type[TVal]:
+        return Duration
+
+    @staticmethod
+    def from_sec(float_seconds: float) -> Duration:
+        """Make a span from float seconds."""
+        return Duration(*_split(float_seconds))
+
+    def __neg__(self) -> Duration:
+        return Duration(-self.secs, -self.nsecs)
+
+    def __abs__(self) -> Duration:
+        return self if self.secs >= 0 else -self
+
+    def __add__(self, other: Any) -> Any:
+        if isinstance(other, Time):
+            return other + self
+        if isinstance(other, Duration):
+            return Duration(self.secs + other.secs, self.nsecs + other.nsecs)
+        return NotImplemented
+
+    def __sub__(self, other: Any) -> Duration:
+        if not isinstance(other, Duration):
+            return NotImplemented
+        return Duration(self.secs - other.secs, self.nsecs - other.nsecs)
+
+    def __mul__(self, factor: Any) -> Duration:
+        if isinstance(factor, int):
+            return Duration(self.secs * factor, self.nsecs * factor)
+        return Duration.from_sec(self.to_sec() * factor) if isinstance(factor, float) else NotImplemented
+
+    def __floordiv__(self, divisor: Any) -> Duration:
+        if isinstance(divisor, int):
+            return Duration(self.secs // divisor, self.nsecs // divisor)
+        return Duration.from_sec(self.to_sec() // divisor) if isinstance(divisor, float) else NotImplemented
+
+    def __truediv__(self, divisor: Any) -> Duration:
+        if not isinstance(divisor, int | float):
+            return NotImplemented
+        return Duration.from_sec(self.to_sec() / divisor)

@@ -1,0 +1,93 @@
+"""Names of topics, services and parameters: absolute, relative, private; remapping; what is on a command line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from pytest_tarl.ros.literals import parse_value
+
+
+@dataclass(frozen=True, slots=True)
+class CommandLine:
+    """What a ROS command line sets besides the program's own arguments (`rest`)."""
+
+    remappings: Mapping[str, str] = field(default_factory=dict)
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    name: str | None = None
+    namespace: str | None = None
+    rest: tuple[str, ...] = ()
+
+
+def absolute(name: str) -> str:
+    """Give a name its leading slash and drop doubled and trailing ones: `odom` → `/odom`."""
+    return "/" + "/".join(part for part in name.split("/") if part)
+
+
+def resolve(name: str, node: str, remappings: Mapping[str, str]) -> str:
+    """Resolve a name used in the node with the fully qualified name `node`, as both ROS generations do.
+
+    `~x` is private to the node, `/x` global, `x` relative to the node's namespace. A remapping applies to the
+    resolved name, whichever way its left side is written.
+    """
+    resolved = expand(name, node)
+    for old, new in remappings.items():
+        if expand(old.removeprefix("rostopic://").removeprefix("rosservice://"), node) == resolved:
+            return expand(new, node)
+    return resolved
+
+
+def expand(name: str, node: str) -> str:
+    """Expand `~`, `{node}`, `{ns}` and the namespace; no remapping."""
+    namespace, _, base = node.rpartition("/")
+    name = name.replace("{node}", base).replace("{namespace}", namespace).replace("{ns}", namespace)
+    if name.startswith("~"):
+        return absolute(f"{node}/{name[1:]}")
+    if name.startswith("/"):
+        return absolute(name)
+    return absolute(f"{namespace}/{name}")
+
+
+def parse_ros1(arguments: Iterable[str]) -> CommandLine:
+    """Read `topic:=other`, `_parameter:=value`, `__name:=` and `__ns:=`."""
+    remappings: dict[str, str] = {}
+    parameters: dict[str, Any] = {}
+    special: dict[str, str] = {}
+    rest = []
+    for argument in arguments:
+        left, assigned, right = argument.partition(":=")
+        if not assigned:
+            rest.append(argument)
+        elif left.startswith("__"):
+            special[left] = right
+        elif left.startswith("_"):
+            parameters["~" + left[1:]] = parse_value(right)
+        else:
+            remappings[left] = right
+    return CommandLine(remappings, parameters, special.get("__name"), special.get("__ns"), tuple(rest))
+
+
+def parse_ros2(arguments: Iterable[str]) -> CommandLine:
+    """Read `--ros-args -r old:=new -p name:=value …` up to `--`; node-specific rules keep their `node:` prefix."""
+    remappings: dict[str, str] = {}
+    parameters: dict[str, Any] = {}
+    special: dict[str, str] = {}
+    rest: list[str] = []
+    inside, option = False, ""
+    for argument in arguments:
+        if argument in ("--ros-args", "--"):
+            inside = argument == "--ros-args" or (rest.append(argument) or False if not inside else False)
+        elif not inside:
+            rest.append(argument)
+        elif not option and argument.startswith("-"):
+            option = argument
+        else:
+            left, _, right = argument.partition(":=")
+            if option in ("-p", "--param"):
+                parameters[left] = parse_value(right)
+            elif option in ("-r", "--remap"):
+                (special if left.startswith("__") else remappings)[left] = right
+            option = ""
+    name = special.get("__node", special.get("__name"))
+    return CommandLine(remappings, parameters, name, special.get("__ns"), tuple(rest))

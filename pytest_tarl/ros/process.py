@@ -1,0 +1,141 @@
+"""One started program, as the operating system would run it: argument list, tasks, what is to be ended with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from greenlet import getcurrent
+
+from pytest_tarl.errors import NodeError, TarlError, UnsupportedApiError
+from pytest_tarl.ros import blame
+from pytest_tarl.ros.scheduler import Scheduler, Spinning, Task
+
+if TYPE_CHECKING:
+    from pytest_tarl.ros.bus import Bus
+    from pytest_tarl.ros.episode import Ros
+
+Part = TypeVar("Part")
+
+_ROUNDS = 5  # how often the tasks of an ending process are given the chance to return by themselves
+
+
+class Process:
+    """A program and the state that rospy or rclpy keep in its interpreter (`part`)."""
+
+    def __init__(self, ros: Ros, name: str, argv: Sequence[str]) -> None:
+        self.ros = ros
+        self.name = name
+        self.argv = tuple(argv)
+        self.tasks: list[Task] = []
+        self.main: Task | None = None
+        self.ending = False
+        self.ended = False
+        self._closing = False
+        self.label = name  # what messages call it: the node's name once it has one
+        self.errors: list[NodeError] = []  # what went wrong while it was being ended
+        self._parts: dict[Any, Any] = {}
+        self._at_end: list[Callable[[], None]] = []
+
+    @property
+    def scheduler(self) -> Scheduler:
+        """The episode's clock."""
+        return self.ros.scheduler
+
+    @property
+    def bus(self) -> Bus:
+        """The episode's bus."""
+        return self.ros.bus
+
+    def part(self, kind: Callable[[Process], Part]) -> Part:
+        """Return this process's only instance of `kind`, made at first use."""
+        if kind not in self._parts:
+            self._parts[kind] = kind(self)
+        found: Part = self._parts[kind]
+        return found
+
+    def at_end(self, hook: Callable[[], None]) -> None:
+        """Have `hook` called when the process is asked to end, before its tasks are woken."""
+        self._at_end.append(hook)
+
+    def failed(self, task: Task, error: BaseException) -> None:
+        """Take note of how a task ended: an exception of the node becomes a NodeError."""
+        if self.ending and getattr(error, "tarl_shutdown", False):
+            return
+        if isinstance(error, Spinning):
+            self._fail(self.spins(blame.of_traceback(error.__traceback__)))
+        elif isinstance(error, SystemExit):
+            if task.main and error.code not in (None, 0) and not self.ending:
+                self._fail(self._ended_in(error))
+        elif isinstance(error, TarlError) or not isinstance(error, Exception):
+            self._fail(error)  # for the user, or (KeyboardInterrupt, pytest.fail) for those outside
+        else:
+            self._fail(self._ended_in(error))
+
+    def finished(self, task: Task) -> None:
+        """Forget a task; a process whose main program has returned ends."""
+        if task in self.tasks:
+            self.tasks.remove(task)
+        if task is self.main and not self._closing:
+            self.scheduler.later(self.end)
+
+    def end(self) -> None:
+        """End the process cleanly: hooks, then let every task return, then force the rest. Outside of tasks."""
+        if self._closing:
+            return
+        self._closing = True
+        if not self.ending:
+            self.ask_to_end()
+        for _ in range(_ROUNDS):
+            self.scheduler.settle()
+            if not self.tasks:
+                break
+            for task in tuple(self.tasks):
+                self.scheduler.wake(task)
+        for task in tuple(self.tasks):
+            self.scheduler.kill(task)
+        self.ended = True
+        self.bus.disconnect(self)
+
+    def ask_to_end(self) -> None:
+        """Mark the process as ending, call the hooks and wake every task, which sees it."""
+        self.ending = True
+        for hook in self._at_end:
+            hook()
+        for task in tuple(self.tasks):
+            self.scheduler.wake(task)
+
+    def spins(self, place: blame.Place | None) -> NodeError:
+        """Say that the node never waits."""
+        return NodeError(
+            f"Node {self.label!r} never waits: {self.ros.watchdog_limit:g} s went by while virtual time stood still, "
+            f"at {blame.describe(place)}. Call Rate.sleep(), rospy.sleep() or a spin function in that loop."
+        )
+
+    def _ended_in(self, error: BaseException) -> NodeError:
+        what = (
+            f"exit status {error.code}"
+            if isinstance(error, SystemExit)
+            else f"{type(error).__name__}: {error}"
+        )
+        where = blame.describe(blame.of_traceback(error.__traceback__))
+        failure = NodeError(f"Node {self.label!r} ended in {what} ({where}).")
+        failure.__cause__ = error
+        return failure
+
+    def _fail(self, error: BaseException) -> None:
+        if self.ending and isinstance(error, NodeError):
+            self.errors.append(error)
+        elif self.scheduler.failure is None:
+            self.scheduler.failure = error
+
+
+def current_process(api: str) -> Process:
+    """Return the process whose task is running. Raises UnsupportedApiError outside of all nodes."""
+    task = getcurrent()
+    if isinstance(task, Task):
+        return task.process
+    raise UnsupportedApiError(
+        f"{api} was called outside of a node, or from a thread that the node started: the in-process ROS answers only to "
+        "programs that were started with tarl.start(…), in their own thread. In the test itself use tarl.bus and tarl.step."
+    )

@@ -1,0 +1,179 @@
+"""The node of a process: its name, its life, its end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from greenlet import getcurrent
+
+from pytest_tarl.ros import names
+from pytest_tarl.ros.process import Process, current_process
+from pytest_tarl.ros.rospy.exceptions import ROSException, ROSInitException
+from pytest_tarl.ros.rospy.parameters import ParameterServer
+from pytest_tarl.ros.scheduler import Task
+
+DEBUG, INFO, WARN, ERROR, FATAL = 1, 2, 4, 8, 16
+
+ShutdownHook = Callable[[], Any]
+
+
+class RospyNode:
+    """What rospy keeps in the interpreter of one process."""
+
+    def __init__(self, process: Process) -> None:
+        self.process = process
+        self.command_line = names.parse_ros1(process.argv[1:])
+        self.namespace = names.absolute(self.command_line.namespace or "/")
+        self.name = names.expand("unnamed", names.absolute(f"{self.namespace}/_"))
+        self.initialised = False
+        self.in_hooks = False
+        self.hooks: list[ShutdownHook] = []
+        self.remappings: Mapping[str, str] = {**process.ros.remappings, **self.command_line.remappings}
+        process.at_end(self.run_hooks)
+
+    def resolve(self, name: str) -> str:
+        """Resolve the name of a topic, service or parameter."""
+        return names.resolve(name, self.name, self.remappings)
+
+    def initialise(self, name: str, *, anonymous: bool) -> None:
+        """Take the name, then the private parameters from test and command line."""
+        name = self.command_line.name or name
+        if anonymous and self.command_line.name is None:
+            name = f"{name}_{len(self.process.ros.processes)}_{self.process.scheduler.time // 1_000_000}"
+        self.name = self.process.label = names.absolute(f"{self.namespace}/{name}")
+        self.initialised = True
+        server = self.process.ros.part(ParameterServer)
+        server.enter_node(self.name)
+        for key, value in self.command_line.parameters.items():
+            server.set(names.expand(key, self.name), value)
+
+    def require(self) -> None:
+        """Raise ROSInitException before `init_node`."""
+        if not self.initialised:
+            raise ROSInitException("time is not initialized. Have you called init_node()?")
+
+    def run_hooks(self) -> None:
+        """Call the shutdown hooks, in a task of this process; one that fails does not keep the next from running."""
+        if self.in_hooks:
+            return
+        self.in_hooks = True
+        task = getcurrent()
+        if isinstance(task, Task):
+            self._call_hooks(task)
+            self._hooks_done()
+            return
+        for hook in self.hooks:
+            self.process.scheduler.spawn(self.process, hook)
+        self.process.scheduler.later(self._hooks_done)
+
+    def _call_hooks(self, task: Task) -> None:
+        for hook in self.hooks:
+            try:
+                hook()
+            except Exception as error:  # noqa: PERF203 (rospy prints it and goes on)
+                self.process.failed(task, error)
+
+    def _hooks_done(self) -> None:
+        self.in_hooks = False
+
+
+def this_node(api: str) -> RospyNode:
+    """Return the node whose program is running."""
+    return current_process(f"rospy.{api}").part(RospyNode)
+
+
+def init_node(
+    name: str,
+    argv: Sequence[str] | None = None,
+    anonymous: bool = False,
+    log_level: int | None = None,
+    disable_rostime: bool = False,
+    disable_rosout: bool = False,
+    disable_signals: bool = False,
+    xmlrpc_port: int = 0,
+    tcpros_port: int = 0,
+    **_: Any,
+) -> None:
+    """Register the node under its name."""
+    if not name:
+        raise ValueError("name must not be empty")
+    if "/" in name:
+        raise ValueError("namespaces are not allowed in node names")
+    node = this_node("init_node")
+    if argv is not None:
+        node.command_line = names.parse_ros1(argv)
+    if node.initialised and not anonymous and not node.name.endswith("/" + name):
+        raise ROSException("rospy.init_node() has already been called with different arguments: " + node.name)
+    if not node.initialised:
+        node.initialise(name, anonymous=anonymous)
+
+
+def is_shutdown() -> bool:
+    """Tell whether the node is being shut down."""
+    return current_process("rospy.is_shutdown").ending
+
+
+def signal_shutdown(reason: str) -> None:
+    """Begin the node's shutdown: hooks now, then every wait of the node is interrupted."""
+    process = current_process("rospy.signal_shutdown")
+    if not process.ending:
+        process.part(RospyNode)
+        process.ask_to_end()
+
+
+def on_shutdown(h: ShutdownHook) -> None:
+    """Register a function to be called when the node shuts down."""
+    if not callable(h):
+        raise TypeError(f"shutdown hook [{h}] must be a function or callable object: {type(h)}")
+    this_node("on_shutdown").hooks.append(h)
+
+
+def spin() -> None:
+    """Wait until the node is shut down; callbacks run meanwhile."""
+    node = this_node("spin")
+    if not node.initialised:
+        raise ROSInitException("client code must call rospy.init_node() first")
+    while not node.process.ending:
+        node.process.scheduler.wait()
+
+
+def get_name() -> str:
+    """Return the node's resolved name."""
+    return this_node("get_name").name
+
+
+def get_caller_id() -> str:
+    """Return the node's resolved name."""
+    return this_node("get_caller_id").name
+
+
+def get_namespace() -> str:
+    """Return the node's namespace, with a slash at the end."""
+    namespace = this_node("get_namespace").namespace
+    return namespace if namespace == "/" else namespace + "/"
+
+
+def resolve_name(name: str, caller_id: str | None = None) -> str:
+    """Resolve a name as the node would."""
+    node = this_node("resolve_name")
+    return names.resolve(name, caller_id or node.name, node.remappings)
+
+
+remap_name = resolve_name
+
+
+def myargv(argv: Sequence[str] | None = None) -> list[str]:
+    """Return the command line without what ROS takes from it."""
+    process = current_process("rospy.myargv")
+    return [argument for argument in (process.argv if argv is None else argv) if ":=" not in argument]
+
+
+def get_node_uri() -> str:
+    """Return an address; there is no network behind it."""
+    return "http://localhost:0/"
+
+
+def get_ros_root(required: bool = False, env: Any = None) -> str | None:
+    """Return nothing: no ROS installation is involved."""
+    return None

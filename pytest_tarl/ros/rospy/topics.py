@@ -1,0 +1,243 @@
+"""rospy's publishers and subscribers."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+from pytest_tarl.ros.clock import nanoseconds
+from pytest_tarl.ros.messages.snapshot import is_message, type_name
+from pytest_tarl.ros.messages.values import FieldError
+from pytest_tarl.ros.process import Process
+from pytest_tarl.ros.rospy.exceptions import ROSException, ROSInterruptException, ROSSerializationException
+from pytest_tarl.ros.rospy.node import this_node
+from pytest_tarl.ros.scheduler import current_task
+
+Callback = tuple[Callable[..., Any], Any]
+
+
+class AnyMsg:
+    """Subscribe with this class to get whatever is published."""
+
+    _type = "*"
+    _slot_types: tuple[str, ...] = ()
+
+
+class Inbox:
+    """All subscriptions of one process to one topic: messages are handled one after the other, as by one thread."""
+
+    def __init__(self, process: Process, message_type: type | None) -> None:
+        self.process = process
+        self.message_type = message_type
+        self.callbacks: list[Callback] = []
+        self.capacity: int | None = None
+        self._waiting: deque[Any] = deque()
+        self._busy = False
+
+    def deliver(self, message: Any) -> None:
+        """Run the callbacks, or queue the message while they still work on an earlier one."""
+        if self.process.ending:
+            return
+        if not self._busy:
+            self.process.scheduler.spawn(self.process, self._work, message)
+            return
+        self._waiting.append(message)
+        if self.capacity and len(self._waiting) > self.capacity:
+            self._waiting.popleft()
+
+    def _work(self, message: Any) -> None:
+        self._busy = True
+        try:
+            self._call(message)
+            while self._waiting and not self.process.ending:
+                self._call(self._waiting.popleft())
+        finally:
+            self._busy = False
+
+    def _call(self, message: Any) -> None:
+        for callback, arguments in tuple(self.callbacks):
+            if arguments is None:
+                callback(message)
+            else:
+                callback(message, arguments)
+
+
+class Inboxes:
+    """The inboxes of a process, by topic."""
+
+    def __init__(self, process: Process) -> None:
+        self._process = process
+        self._by_topic: dict[str, Inbox] = {}
+
+    def open(
+        self, topic: str, message_type: type | None, callback: Callback | None, capacity: int | None
+    ) -> Inbox:
+        """Add a callback to the inbox of a topic, connecting it at first use."""
+        inbox = self._by_topic.get(topic)
+        new = inbox is None
+        if inbox is None:
+            inbox = self._by_topic[topic] = Inbox(self._process, message_type)
+        if callback is not None:
+            inbox.callbacks.append(callback)
+        inbox.capacity = capacity or inbox.capacity
+        if new:
+            self._process.bus.attach(inbox, self._process.bus.topic(topic))
+        return inbox
+
+
+class Topic:
+    """What publishers and subscribers have in common."""
+
+    def __init__(self, name: str, data_class: Any, api: str) -> None:
+        if not name or not isinstance(name, str):
+            raise ValueError("topic name is empty" if not name else "topic name is not a string")
+        _require_message_class(data_class)
+        self._node = this_node(api)
+        self._process = self._node.process
+        self.name = self.resolved_name = self._node.resolve(name)
+        self.type = type_name(data_class) if data_class is not AnyMsg else "*"
+        self.data_class = data_class
+        self._place = self._process.bus.topic(self.name)
+        self._closed = False
+
+    @property
+    def closed(self) -> bool:
+        """Tell whether it was unregistered or its node is gone."""
+        return self._closed or (self._process.ending and not self._node.in_hooks)
+
+    def get_num_connections(self) -> int:
+        """Return how many are connected. The simulated world counts as one: it hears and feeds every topic."""
+        return 1 + len(self._peers())
+
+    def _peers(self) -> list[Any]:
+        raise NotImplementedError
+
+
+def _require_message_class(data_class: Any) -> None:
+    if data_class is None:
+        raise ValueError("topic parameter 'data_class' is not initialized")
+    if not isinstance(data_class, type):
+        raise ValueError(f"data_class [{data_class}] is not a class")
+    if data_class is not AnyMsg and not hasattr(data_class, "_slot_types"):
+        raise ValueError(f"data_class [{data_class.__class__.__name__}] is not a message data class")
+
+
+class Publisher(Topic):
+    """Publishes messages of one type on a topic."""
+
+    def __init__(
+        self,
+        name: str,
+        data_class: Any,
+        subscriber_listener: Any = None,
+        tcp_nodelay: bool = False,
+        latch: bool = False,
+        headers: Any = None,
+        queue_size: int | None = None,
+    ) -> None:
+        super().__init__(name, data_class, "Publisher")
+        self.process = self._process
+        self._latch = int(latch)
+        self._process.bus.advertise(self, self._place)
+
+    def publish(self, *args: Any, **kwds: Any) -> None:
+        """Publish a message, or one made from its fields by position or by keyword."""
+        if self.closed:
+            raise ROSException("publish() to a closed topic")
+        message = (
+            args[0] if len(args) == 1 and isinstance(args[0], self.data_class) else self._make(args, kwds)
+        )
+        try:
+            self._process.bus.publish_from(self, self._place, message, keep=self._latch)
+        except FieldError as error:
+            raise ROSSerializationException(f"{error} (publishing {self.type} on {self.name})") from error
+
+    def unregister(self) -> None:
+        """Stop publishing."""
+        self._closed = True
+        if self in self._place.publications:
+            self._place.publications.remove(self)
+            self._place.kept.pop(self, None)
+
+    def _make(self, args: tuple[Any, ...], kwds: dict[str, Any]) -> Any:
+        if len(args) == 1 and is_message(args[0]) and len(self.data_class.__slots__) != 1:
+            raise TypeError(f"expected [{self.type}] but got [{type_name(type(args[0]))}]")
+        try:
+            return self.data_class(*args, **kwds)
+        except (TypeError, AttributeError) as error:
+            raise ROSSerializationException(str(error)) from error
+
+    def _peers(self) -> list[Any]:
+        return list(self._place.subscriptions)
+
+
+class Subscriber(Topic):
+    """Has `callback(message)`, or `callback(message, callback_args)`, called for every message on a topic."""
+
+    def __init__(
+        self,
+        name: str,
+        data_class: Any,
+        callback: Callable[..., Any] | None = None,
+        callback_args: Any = None,
+        queue_size: int | None = None,
+        buff_size: int = 65536,
+        tcp_nodelay: bool = False,
+    ) -> None:
+        super().__init__(name, data_class, "Subscriber")
+        self.callback, self.callback_args = callback, callback_args
+        self._entry = (callback, callback_args) if callback is not None else None
+        wanted = None if data_class is AnyMsg else data_class
+        self._inbox = self._process.part(Inboxes).open(self.name, wanted, self._entry, queue_size)
+
+    def unregister(self) -> None:
+        """Stop calling the callback."""
+        self._closed = True
+        if self._entry in self._inbox.callbacks:
+            self._inbox.callbacks.remove(self._entry)
+
+    def _peers(self) -> list[Any]:
+        return list(self._place.publications)
+
+
+class SubscribeListener:
+    """Base class for those who want to know about subscribers. Nobody is announced here."""
+
+    def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
+        """Do nothing by default."""
+
+    def peer_unsubscribe(self, topic_name: str, num_peers: int) -> None:
+        """Do nothing by default."""
+
+
+def wait_for_message(topic: str, topic_type: Any, timeout: float | None = None) -> Any:
+    """Wait for the next message. Raises ROSException after `timeout` seconds, ROSInterruptException at shutdown."""
+    node = this_node("wait_for_message")
+    clock = node.process.scheduler
+    task = current_task()
+    received: list[Any] = []
+
+    def receive(message: Any) -> None:
+        received.append(message)
+        clock.wake(task)
+
+    until = None if timeout is None else clock.time + nanoseconds(timeout)
+    subscriber = Subscriber(topic, topic_type, receive)
+    try:
+        while not received and not node.process.ending and (until is None or clock.time < until):
+            clock.wait(until)
+    finally:
+        subscriber.unregister()
+    if received:
+        return received[0]
+    if node.process.ending:
+        raise ROSInterruptException("rospy shutdown")
+    raise ROSException(f"timeout exceeded while waiting for message on topic {subscriber.name}")
+
+
+def get_published_topics(namespace: str = "/") -> list[list[str]]:
+    """List topics that nodes publish on, with their types."""
+    bus = this_node("get_published_topics").process.bus
+    return [[place.name, place.publications[0].type] for place in bus.topics() if place.publications
+            and place.name.startswith(namespace)]  # fmt: skip
