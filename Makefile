@@ -11,7 +11,7 @@ INSTALLED := $(VENV)/.installed
 demo: setup
 	@BIN="$(abspath $(BIN))" sh examples/demo.sh
 
-test: check unit demo
+test: check demo unit
 
 check: setup
 	$(BIN)/ruff format --check .

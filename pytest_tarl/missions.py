@@ -8,6 +8,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from tarl_lint.api import Analysis, analyse
+
 from pytest_tarl import fixture as fixtures
 from pytest_tarl.comparing import Online, run_online
 from pytest_tarl.errors import AnalysisError, FixtureError, TarlError
@@ -19,7 +21,6 @@ from pytest_tarl.report import json_result, terminal
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.settings import Designation, Options
 from pytest_tarl.sites import Plan, plan
-from tarl_lint.api import Analysis, analyse
 
 Positions = Mapping[Path, Mapping[tuple[int, int], int]]
 

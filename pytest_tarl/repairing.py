@@ -8,6 +8,8 @@ from functools import cached_property
 from pathlib import Path
 from statistics import fmean, stdev
 
+from tarl_lint.api import Analysis
+
 from pytest_tarl import candidates, localize, patch, seeds
 from pytest_tarl.accept import LOOKS, Acceptance, Outcome, Reference, accept
 from pytest_tarl.comparing import Online
@@ -19,11 +21,10 @@ from pytest_tarl.recording import Progress, sound
 from pytest_tarl.rollout import EpisodePlan, Rollout
 from pytest_tarl.search import BudgetSpentError, Candidate, EpsilonGreedy, Goal, Pair, Sweep, Trials
 from pytest_tarl.settings import Options
-from tarl_lint.api import Analysis
 from tarl_lint.model import Operand
 
-QUICK = 3                               # seeds on which a guard is looked at before it is tested on fresh ones
-MOST_ACCEPTANCES = 5                    # candidates that are tested on fresh seeds
+QUICK = 3  # seeds on which a guard is looked at before it is tested on fresh ones
+MOST_ACCEPTANCES = 5  # candidates that are tested on fresh seeds
 
 
 @dataclass(frozen=True)
@@ -40,12 +41,12 @@ class RepairShop:
 
     rollout: Rollout
     analysis: Analysis
-    root: Path                          # what the analysis' paths are relative to
+    root: Path  # what the analysis' paths are relative to
     fixture: Fixture
     online: Online
     options: Options
     progress: Progress
-    patches: Path                       # the folder that patches are written to
+    patches: Path  # the folder that patches are written to
     spent: dict[str, int] = field(default_factory=lambda: {"search": 0, "acceptance": 0})
     tested: int = 0
     reason: Reason = "no operand helps"
@@ -106,7 +107,9 @@ def repair(shop: RepairShop) -> Comparison:
     searches: list[SearchTrace] = []
     effects: dict[str, list[OperandEffect]] = {}
     for method in shop.options.searches:
-        trials = Trials(lambda candidate, seed: shop.run(candidate, seed, comparison.drift), shop.options.budget)
+        trials = Trials(
+            lambda candidate, seed: shop.run(candidate, seed, comparison.drift), shop.options.budget
+        )
         for guard in dict.fromkeys((widest, candidates.ALWAYS)):
             strategy = _strategy(shop, method, guard, trials)
             found = _first_accepted(shop, strategy.candidates(), guards, wanted=accepted is None)
@@ -117,66 +120,6 @@ def repair(shop: RepairShop) -> Comparison:
         searches.append(SearchTrace(method, tuple(trials.totals), tuple(trials.labels)))
         shop.spent["search"] += trials.spent
     return _concluded(shop, accepted, effects, searches)
-
-
-def goal(self) -> Goal:
-        """Return what the search is after."""
-        online = self.online.recorded.sample
-        pairs = [Pair(seed, total) for seed, total in zip(online.seeds, online.total.tolist(), strict=True)]
-        return goal(pairs, self.reference, self.comparison.verdict.loss)
-
-    @cached_property
-    def operands(self) -> tuple[Operand, ...]:
-        """Return all operands of the analysed flows, those of the sites that the slices rank first in front."""
-        rank = {culprit.site.id: i for i, culprit in enumerate(self.comparison.culprits)}
-        steps = sorted(self.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
-        return tuple(dict.fromkeys(o for step in steps for o in self.analysis.operands(step.site)))
-
-    def mutate(self, operand: Operand, factor: float) -> Mutation | None:
-        """Return one sweep step of an operand."""
-        return mutations(operand, factor, is_integral(self.analysis, operand))
-
-    def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
-        """Run one episode of a candidate. Raises RepairError when it cannot be written into the source."""
-        run = sound(self.rollout(EpisodePlan(seed, drift, self.mutant(candidate))))
-        return Outcome(float(run.trace.reward.sum()), run.passed)
-
-    def mutant(self, candidate: Candidate) -> Mapping[Path, str]:
-        """Return the candidate as source: path → text of every file that it changes."""
-        if candidate not in self._mutants:
-            texts = rewrite(self.analysis, candidate.mutations, candidate.guard, self.fixture.topics)
-            self._mutants[candidate] = {self.root / path: text for path, text in texts.items()}
-        return self._mutants[candidate]
-
-
-def repair(shop: RepairShop) -> Comparison:
-    """Search, guard, accept; return the comparison with culprits, curves and the repair in it."""
-    comparison = shop.comparison
-    worlds = (shop.fixture.sample, shop.online.recorded.sample)
-    guards = candidates.candidate_guards(comparison.region, comparison.sensors, worlds)
-    widest = candidates.widest(guards, worlds[1], comparison.sensors)
-    accepted: Accepted | None = None
-    searches: list[SearchTrace] = []
-    effects: dict[str, list[OperandEffect]] = {}
-    for method in shop.options.searches:
-        trials = Trials(lambda candidate, seed: shop.run(candidate, seed, comparison.drift), shop.options.budget)
-        for guard in dict.fromkeys((widest, candidates.ALWAYS)):
-            strategy = _strategy(shop, method, guard, trials)
-            found = _first_accepted(shop, strategy.candidates(), guards, wanted=accepted is None)
-            effects = effects or strategy.effects()
-            accepted = accepted or found
-            if found is not None or trials.spent >= trials.budget:
-                break
-        searches.append(SearchTrace(method, tuple(trials.totals), tuple(trials.labels)))
-        shop.spent["search"] += trials.spent
-    return _concluded(shop, accepted, effects, searches)
-
-
-def ranked_operands(analysis: Analysis, comparison: Comparison) -> tuple[Operand, ...]:
-    """Return all operands of the analysed flows, those of the sites that the slices rank first in front."""
-    rank = {culprit.site.id: i for i, culprit in enumerate(comparison.culprits)}
-    steps = sorted(analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
-    return tuple(dict.fromkeys(operand for step in steps for operand in analysis.operands(step.site)))
 
 
 def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:
@@ -193,7 +136,15 @@ def _strategy(shop: RepairShop, method: str, guard: Guard, trials: Trials) -> Sw
     if method == "sweep":
         return Sweep(shop.operands, shop.mutate, guard, trials, shop.goal)
     fresh = seeds.episode_seeds(shop.options.seed, "search", trials.budget)
-    return EpsilonGreedy(shop.operands, shop.mutate, guard, trials, shop.goal, fresh, seeds.generator(shop.options.seed, method))
+    return EpsilonGreedy(
+        shop.operands,
+        shop.mutate,
+        guard,
+        trials,
+        shop.goal,
+        fresh,
+        seeds.generator(shop.options.seed, method),
+    )
 
 
 def _first_accepted(
@@ -285,7 +236,10 @@ def _concluded(
 def _unranked(shop: RepairShop) -> list[tuple[SitePlace, float]]:
     """Return the sites as they stand, where no slice ranks them."""
     return [
-        (SitePlace(str(step.site), step.span.path, step.span.line, step.code, step.dependence, step.role), 0.0)
+        (
+            SitePlace(str(step.site), step.span.path, step.span.line, step.code, step.dependence, step.role),
+            0.0,
+        )
         for step in shop.analysis.sites
     ]
 
@@ -308,7 +262,9 @@ def _repair(shop: RepairShop, accepted: Accepted | None) -> Repair:
 
 def _edit(mutation: Mutation) -> Edit:
     operand = mutation.operand
-    return Edit(operand.span.path, operand.span.line, operand.code, float(mutation.value), not operand.literal)
+    return Edit(
+        operand.span.path, operand.span.line, operand.code, float(mutation.value), not operand.literal
+    )
 
 
 def _evidence(shop: RepairShop, accepted: Accepted, guard: str) -> list[str]:
@@ -322,7 +278,8 @@ def _evidence(shop: RepairShop, accepted: Accepted, guard: str) -> list[str]:
         f"when: {guard or 'always'}",
         f"reward per episode: off-line {fmean(totals['offline']):.4g}, on-line {fmean(totals['online']):.4g}, "
         f"repaired {fmean(repaired):.4g} ({len(repaired)} fresh episodes)",
-        f"designed world: {fmean(nominal):.4g} ({len(nominal)} fresh episodes)" if nominal
+        f"designed world: {fmean(nominal):.4g} ({len(nominal)} fresh episodes)"
+        if nominal
         else "designed world: the guard never holds there",
     ]
     return [*lines, f"episodes spent: search {shop.spent['search']}, acceptance {shop.spent['acceptance']}"]

@@ -74,9 +74,8 @@ class Sensor:
                 return None
             if number == self.high:
                 return self.bins - 1
-            return max(
-                -1, min(self.bins, math.floor((number - self.low) / (self.high - self.low) * self.bins))
-            )
+            place = (number - self.low) / (self.high - self.low) * self.bins
+            return math.floor(max(-1.0, min(float(self.bins), place)))
         if self.categories:
             if value not in self.categories:
                 raise SettingsError(

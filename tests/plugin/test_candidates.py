@@ -1,0 +1,99 @@
+"""Candidate guards: proposals from region and novelty, and how often each holds."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from pytest_tarl import Sensor
+from pytest_tarl.candidates import ALWAYS, candidate_guards, firing_episodes, holds, share, widest
+from pytest_tarl.model import Conjunct, Guard, Region
+from pytest_tarl.sensors import Cell
+from pytest_tarl.statistics import Sample, merge, sample
+from pytest_tarl.trace import Trace
+
+X = Sensor("x", topic="/odom", field="x", low=0, high=10, bins=10)
+WET = Sensor("wet", topic="/wet", field="data")
+SEEN = Sensor("seen")  # observed only: no guard can read it
+
+
+def world(seed: int, cells: list[Cell]) -> Sample:
+    distinct = tuple(dict.fromkeys(cells))
+    steps = len(cells)
+    trace = Trace(
+        cells=distinct,
+        site=np.zeros(0, np.int32),
+        flow=np.zeros(0),
+        event_cell=np.zeros(0, np.int32),
+        event_step=np.zeros(0, np.int32),
+        step_cell=np.array([distinct.index(cell) for cell in cells], np.int32),
+        reward=np.zeros(steps),
+        parts={},
+    )
+    return sample(trace, seed, True, ())
+
+
+def drive(seed: int, wet: range, sensors: int = 2) -> Sample:
+    return world(seed, [(x, int(x in wet), 0)[:sensors] for x in range(10)])
+
+
+OFFLINE = merge([drive(1, range(0)), drive(2, range(4, 7))])
+ONLINE = drive(3, range(4, 7))
+REGION = Region(tuple((x, 1) for x in (4, 5, 6)))
+
+
+def test_single_sensors_come_before_pairs_and_narrow_before_wide() -> None:
+    guards = candidate_guards(REGION, (X, WET), (OFFLINE, ONLINE))
+    assert guards[0] == ALWAYS
+    assert guards[1] == Guard((Conjunct(WET, 1.0, 1.0),))
+    assert guards[2] == Guard((Conjunct(X, 4.0, 7.0),))
+    sizes = [len(guard.conjuncts) for guard in guards]
+    assert sizes == sorted(sizes)
+    assert max(sizes) == 2
+
+
+def test_the_sweep_takes_the_widest_that_has_a_condition() -> None:
+    guards = candidate_guards(REGION, (X, WET), (OFFLINE, ONLINE))
+    chosen = widest(guards, OFFLINE, (X, WET))
+    assert share(chosen, OFFLINE, (X, WET)) == max(share(g, OFFLINE, (X, WET)) for g in guards if g.conjuncts)
+    assert widest([ALWAYS], ONLINE, (X, WET)) == ALWAYS
+
+
+def test_a_sensor_that_no_node_can_read_is_in_no_guard() -> None:
+    online = drive(3, range(4, 7), 3)
+    guards = candidate_guards(Region(((4, 1, 0),)), (X, WET, SEEN), (online, online))
+    assert all(conjunct.sensor != SEEN for guard in guards for conjunct in guard.conjuncts)
+
+
+def test_a_region_that_is_everywhere_proposes_no_condition() -> None:
+    everywhere = Region(tuple(ONLINE.cells))
+    dry = drive(1, range(0))
+    guards = candidate_guards(everywhere, (X, WET), (dry, drive(4, range(0, 10))))
+    assert all(conjunct.sensor == WET for guard in guards for conjunct in guard.conjuncts)
+
+
+def test_an_interval_is_open_where_nothing_lies_beyond() -> None:
+    guards = candidate_guards(Region(((8, 0), (9, 0))), (X, WET), (OFFLINE, ONLINE))
+    assert Guard((Conjunct(X, 8.0, math.inf),)) in guards
+
+
+def test_novel_cells_propose_their_own_value() -> None:
+    guards = candidate_guards(Region(((2, 0), (3, 0)), ((5, 1),)), (X, WET), (drive(1, range(0)), ONLINE))
+    assert Guard((Conjunct(WET, 1.0, 1.0),)) in guards
+
+
+@pytest.mark.parametrize(
+    ("cell", "expected"), [((4, 1), True), ((6, 1), True), ((7, 1), False), ((4, 0), False)]
+)
+def test_a_guard_holds_in_the_cells_of_its_bins(cell: Cell, expected: bool) -> None:
+    guard = Guard((Conjunct(X, 4.0, 7.0), Conjunct(WET, 1.0, 1.0)))
+    assert holds(guard, cell, (X, WET)) is expected
+
+
+def test_share_and_firing_episodes_count_steps_and_seeds() -> None:
+    guard = Guard((Conjunct(WET, 1.0, 1.0),))
+    assert share(guard, OFFLINE, (X, WET)) == 3 / 20
+    assert firing_episodes(guard, OFFLINE, (X, WET)) == (2,)
+    assert firing_episodes(ALWAYS, OFFLINE, (X, WET)) == (1, 2)

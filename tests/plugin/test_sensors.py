@@ -1,0 +1,79 @@
+"""Sensors: every value has a bin, every bin a name, every mistake a sentence."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pytest_tarl import Sensor
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.sensors import field_value
+
+X = Sensor("x", topic="/odom", field="pose.x", low=-1.0, high=3.0, bins=8, unit="m")
+
+
+@given(st.floats(-10, 10))
+def test_a_value_lies_in_the_interval_of_its_bin(value: float) -> None:
+    index = X.bin(value)
+    assert index is not None
+    low, high = X.interval(index, index)
+    assert low - 1e-9 <= value <= high + 1e-9
+
+
+@pytest.mark.parametrize(
+    ("value", "index"), [(-1.0, 0), (-0.5, 1), (3.0, 7), (3.0001, 8), (-1.1, -1), (math.inf, 8)]
+)
+def test_edges_belong_to_the_upper_bin_but_the_last(value: float, index: int) -> None:
+    assert X.bin(value) == index
+
+
+def test_nan_tells_nothing() -> None:
+    assert X.bin(math.nan) is None
+
+
+def test_booleans_integers_and_categories_are_taken_as_they_are() -> None:
+    assert [Sensor("terrain").bin(value) for value in (False, True, 7)] == [0, 1, 7]
+    assert Sensor("mode", categories=("dry", "wet")).bin("wet") == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"name": "not a name"}, "not a Python identifier"),
+        ({"name": "x", "topic": "/odom"}, "topic or a field but not both"),
+        ({"name": "x", "low": 0.0, "bins": 3}, "low, high and bins together"),
+        ({"name": "x", "low": 2.0, "high": 1.0, "bins": 3}, "low must be below high"),
+        ({"name": "x", "low": 0.0, "high": 1.0, "bins": 0}, "bins at least 1"),
+        ({"name": "x", "low": 0.0, "high": 1.0, "bins": 2, "categories": ("a",)}, "either numeric"),
+    ],
+)
+def test_a_wrong_declaration_says_what_to_mend(arguments: dict[str, object], words: str) -> None:
+    with pytest.raises(SettingsError, match=words):
+        Sensor(**arguments)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("value", [0.5, "wet"])
+def test_a_measurement_needs_bins_and_a_text_categories(value: object) -> None:
+    with pytest.raises(SettingsError, match="low, high and bins for a measurement"):
+        Sensor("x").bin(value)
+
+
+def test_an_unknown_category_is_named() -> None:
+    with pytest.raises(SettingsError, match="'icy'.*'dry', 'wet'"):
+        Sensor("mode", categories=("dry", "wet")).bin("icy")
+
+
+def test_fields_are_followed_through_attributes_items_and_indices() -> None:
+    message = SimpleNamespace(pose=SimpleNamespace(x=2.0), ranges=[5.0, 6.0])
+    assert field_value(message, "pose.x") == 2.0
+    assert field_value(message, "ranges.1") == 6.0
+    assert field_value({"a": {"b": 3}}, "a.b") == 3
+
+
+def test_bins_have_names_for_people() -> None:
+    assert X.label(2) == "0-0.5 m"
+    assert Sensor("mode", categories=("dry", "wet")).label(1) == "wet"

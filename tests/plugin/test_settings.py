@@ -1,0 +1,86 @@
+"""Markers and flags: every mistake is a sentence that says how to mend it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from pytest_tarl import Sensor
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.settings import designation, options
+
+GOOD: dict[str, Any] = {"nodes": ["a.py"], "sensors": [Sensor("x")]}
+FLAGS: dict[str, Any] = {
+    "record": False,
+    "online": True,
+    "repair": False,
+    "drift": None,
+    "seed": 0,
+    "episodes": None,
+    "alpha": 0.05,
+    "search": None,
+    "budget": 300,
+    "utility": "batch",
+    "strict": False,
+}
+
+
+def test_a_good_marker_has_its_defaults() -> None:
+    marked = designation("t.py::test", (), GOOD | {"drifts": {"mud": 0.15}})
+    assert (marked.episodes, marked.min_success, marked.tolerance) == (200, 1.0, None)
+    assert marked.drifts == {"mud": 0.15}
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"nodes": "a.py"}, r"nodes=\["),
+        ({"nodes": []}, r"nodes=\["),
+        ({"sensors": []}, "declare what the node is told"),
+        ({"sensors": ["x"]}, "declare what the node is told"),
+        ({"sensors": [Sensor("x"), Sensor("x")]}, "'x' is used twice"),
+        ({"drifts": ["mud"]}, "drifts maps names"),
+        ({"episodes": 0}, "episodes must be a whole number"),
+        ({"episodes": 2.5}, "episodes must be a whole number"),
+        ({"min_success": 1.5}, "min_success must be a number from 0 to 1"),
+        ({"tolerance": -1}, "tolerance must be a number"),
+        ({"sensor": []}, "did you mean 'sensors'"),
+        ({"colour": 1}, "no argument 'colour'"),
+    ],
+)
+def test_a_wrong_marker_is_explained(change: dict[str, Any], words: str) -> None:
+    with pytest.raises(SettingsError, match=words) as raised:
+        designation("t.py::test", (), GOOD | change)
+    assert str(raised.value).startswith("t.py::test")
+
+
+def test_positional_arguments_are_refused() -> None:
+    with pytest.raises(SettingsError, match="named arguments only"):
+        designation("t.py::test", (["a.py"],), GOOD)
+
+
+@pytest.mark.parametrize(
+    ("change", "mode"),
+    [({}, "online"), ({"record": True, "online": False}, "record"), ({"repair": True}, "repair")],
+)
+def test_flags_choose_the_mode(change: dict[str, Any], mode: str) -> None:
+    assert options(FLAGS | change).mode == mode
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"record": True}, "two runs"),
+        ({"online": False, "repair": True}, "goes with --tarl-online"),
+        ({"online": False, "record": True, "drift": "mud"}, "goes with --tarl-online"),
+        ({"search": ["sweeep"]}, "did you mean 'sweep'"),
+        ({"utility": "q"}, "batch or sarsa"),
+        ({"alpha": 0.0}, "--tarl-alpha"),
+        ({"budget": 0}, "--tarl-budget"),
+        ({"episodes": 1}, "--tarl-episodes"),
+    ],
+)
+def test_wrong_flags_are_explained(change: dict[str, Any], words: str) -> None:
+    with pytest.raises(SettingsError, match=words):
+        options(FLAGS | change)
