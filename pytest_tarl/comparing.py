@@ -104,8 +104,10 @@ def lost_sites(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
     named = [f"{site.path}:{site.line} `{site.code}`" for site in gone.values()][:MOST_NAMED]
     more = f" and {len(gone) - MOST_NAMED} more" if len(gone) > MOST_NAMED else ""
     return (
-        f"the node was edited since the recording: the slices of {', '.join(named)}{more} are lost; verdict and "
-        "region stand. Record again with --tarl-record once the change is meant to stay.",
+        (
+            f"the node was edited since the recording: the slices of {', '.join(named)}{more} are lost; verdict and "
+            "region stand. Record again with --tarl-record once the change is meant to stay."
+        ),
     )
 
 

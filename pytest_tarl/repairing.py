@@ -13,14 +13,17 @@ from tarl_lint.api import Analysis
 from pytest_tarl import candidates, localize, patch, seeds
 from pytest_tarl.accept import LOOKS, Acceptance, Outcome, Reference, accept
 from pytest_tarl.comparing import Online
+from pytest_tarl.epsilon_greedy import EpsilonGreedy
 from pytest_tarl.errors import RepairError
 from pytest_tarl.fixture import Fixture
 from pytest_tarl.model import Comparison, Edit, Guard, OperandEffect, Reason, Repair, SearchTrace, SitePlace
 from pytest_tarl.mutate import Mutation, guard_text, is_integral, mutations, rewrite
 from pytest_tarl.recording import Progress, sound
+from pytest_tarl.report.words import world_name
 from pytest_tarl.rollout import EpisodePlan, Rollout
-from pytest_tarl.search import BudgetSpentError, Candidate, EpsilonGreedy, Goal, Pair, Sweep, Trials
+from pytest_tarl.search import BudgetSpentError, Candidate, Goal, Pair, Strategy, Trials
 from pytest_tarl.settings import Options
+from pytest_tarl.sweep import Sweep
 from tarl_lint.model import Operand
 
 QUICK = 3  # seeds on which a guard is looked at before it is tested on fresh ones
@@ -132,10 +135,10 @@ def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:
     return Goal(tuple(lost) or tuple(online), near, enough)
 
 
-def _strategy(shop: RepairShop, method: str, guard: Guard, trials: Trials) -> Sweep | EpsilonGreedy:
+def _strategy(shop: RepairShop, method: str, guard: Guard, trials: Trials) -> Strategy:
     if method == "sweep":
         return Sweep(shop.operands, shop.mutate, guard, trials, shop.goal)
-    fresh = seeds.episode_seeds(shop.options.seed, "search", trials.budget)
+    fresh = seeds.episode_seeds(shop.options.seed, "search", EpsilonGreedy.episodes(trials.budget))
     return EpsilonGreedy(
         shop.operands,
         shop.mutate,
@@ -274,10 +277,12 @@ def _evidence(shop: RepairShop, accepted: Accepted, guard: str) -> list[str]:
     repaired = [outcome.total for outcome in acceptance.drifted]
     nominal = [outcome.total for outcome in acceptance.nominal]
     lines = [
-        f"Repair of {shop.fixture.test} under the drift {shop.comparison.drift or '(on-line)'}, seed {shop.options.seed}",
+        f"Repair of {shop.fixture.test} under {world_name(shop.comparison)}, seed {shop.options.seed}",
         f"when: {guard or 'always'}",
-        f"reward per episode: off-line {fmean(totals['offline']):.4g}, on-line {fmean(totals['online']):.4g}, "
-        f"repaired {fmean(repaired):.4g} ({len(repaired)} fresh episodes)",
+        (
+            f"reward per episode: off-line {fmean(totals['offline']):.4g}, on-line {fmean(totals['online']):.4g}, "
+            f"repaired {fmean(repaired):.4g} ({len(repaired)} fresh episodes)"
+        ),
         f"designed world: {fmean(nominal):.4g} ({len(nominal)} fresh episodes)"
         if nominal
         else "designed world: the guard never holds there",
