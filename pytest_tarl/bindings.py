@@ -1,0 +1,255 @@
+"""What a module itself stores in its variables: where a name is bound, and what it holds before the first message."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+
+from pytest_tarl.document import Document, Function
+
+Constant = float | int | bool | str | None
+Scope = Function | ast.Lambda
+
+
+@dataclass(frozen=True, slots=True)
+class Binding:
+    """A place that gives `target` a value: constants, if it is one, or a new object with its defaults."""
+
+    node: ast.AST
+    target: str
+    constants: tuple[Constant, ...] = ()
+    fresh: bool = False
+
+
+@cache
+def bindings(source: Document) -> tuple[Binding, ...]:
+    """Return every binding of a name or an attribute in the module."""
+    return tuple(found for node in ast.walk(source.tree) for found in _bindings(node))
+
+
+def prefixes(code: str) -> tuple[str, ...]:
+    """Return the prefixes of `a.b.c` or `a.b[0].c`, shortest first; nothing for any other expression."""
+    node, found = ast.parse(code, mode="eval").body, list[str]()
+    while isinstance(node, ast.Attribute | ast.Subscript):
+        if isinstance(node, ast.Subscript) and not isinstance(node.slice, ast.Constant):
+            return ()
+        found.append(ast.unparse(node))
+        node = node.value
+    return (node.id, *reversed(found)) if isinstance(node, ast.Name) else ()
+
+
+def scope(source: Document, place: ast.AST, name: str) -> Scope | None:
+    """Return the function or lambda around a place in which a name is local, or None for a global name."""
+    for around in source.ancestors(place):
+        if isinstance(around, Scope) and name in local_names(source, around):
+            return around
+    return None
+
+
+@cache
+def local_names(source: Document, function: Scope) -> frozenset[str]:
+    """Return the names that are local to a function, its parameters among them."""
+    arguments = function.args
+    every = [
+        *arguments.posonlyargs,
+        *arguments.args,
+        *arguments.kwonlyargs,
+        arguments.vararg,
+        arguments.kwarg,
+    ]
+    names = {each.arg for each in every if each is not None}
+    inside = list(ast.walk(function))
+    names |= {
+        found.target
+        for node in inside
+        for found in _bindings(node)
+        if source.function(found.node) is function
+    }
+    return frozenset(
+        names.difference(*(node.names for node in inside if isinstance(node, ast.Global | ast.Nonlocal)))
+    )
+
+
+def is_bound(source: Document, place: ast.AST, code: str) -> bool:
+    """Tell whether asking for `a.b.c` at a place cannot fail where the code around it would not."""
+    chain = prefixes(code)
+    read = {ast.unparse(node) for node in _read_at(place)}
+    if code in read:
+        return True
+    if any("[" in prefix and prefix not in read for prefix in chain):
+        return False
+    return _has_name(source, place, chain[0]) and _has_attribute(source, place, chain)
+
+
+def initial(source: Document, place: ast.AST, code: str) -> tuple[set[Constant], bool]:
+    """Return the constants that the module stores in `a.b.c`, and whether it also stores new objects there."""
+    local = scope(source, place, code) if code.isidentifier() else None
+    constants: set[Constant] = set()
+    fresh = False
+    for binding in bindings(source):
+        here = binding.target == code and (
+            not code.isidentifier() or scope(source, binding.node, code) is local
+        )
+        inherited = _in_class(source, binding.node) and code == f"{code.partition('.')[0]}.{binding.target}"
+        if here or inherited:
+            constants.update(binding.constants)
+            fresh |= binding.fresh
+    return constants, fresh
+
+
+def is_checked(source: Document, place: ast.AST, code: str) -> bool:
+    """Tell whether the code around a place has made sure that `code` is not None."""
+    inner = place
+    for outer in source.ancestors(place):
+        if isinstance(outer, Scope):
+            return _checked_before(source, inner, code)
+        if isinstance(inner, ast.stmt) and _checked_before(source, inner, code):
+            return True
+        if (
+            isinstance(outer, ast.If | ast.While)
+            and inner in outer.body
+            and _implies(outer.test, code, present=True)
+        ):
+            return True
+        inner = outer
+    return False
+
+
+def _checked_before(source: Document, statement: ast.AST, code: str) -> bool:
+    """Tell whether an earlier statement of the same block fails, leaves it, or waits, while `code` is None."""
+    if not isinstance(statement, ast.stmt):
+        return False
+    block = source.block(statement)
+    for earlier in block[: next(i for i, each in enumerate(block) if each is statement)]:
+        if _relies_on(earlier, code):
+            return True
+        if not isinstance(earlier, ast.If | ast.While):
+            continue
+        leaves = isinstance(earlier.body[-1], ast.Return | ast.Raise | ast.Continue | ast.Break)
+        decides = leaves if isinstance(earlier, ast.If) else not _breaks(earlier)
+        if decides and _implies(earlier.test, code, present=False):
+            return True
+    return False
+
+
+def _relies_on(statement: ast.stmt, code: str) -> bool:
+    """Tell whether a statement certainly calculates with `code`, which it could not do with None."""
+    if hasattr(statement, "body"):
+        return False
+    waiting: list[ast.AST] = [statement]
+    while waiting:
+        node = waiting.pop()
+        if any(ast.unparse(each) == code for each in _calculated(node)):
+            return True
+        if isinstance(node, ast.BoolOp):
+            waiting.append(node.values[0])
+        elif isinstance(node, ast.IfExp):
+            waiting.append(node.test)
+        elif not isinstance(node, ast.Lambda | ast.ListComp | ast.SetComp | ast.DictComp | ast.GeneratorExp):
+            waiting += ast.iter_child_nodes(node)
+    return False
+
+
+def _calculated(node: ast.AST) -> Iterator[ast.expr]:
+    """Yield the parts of an expression that cannot be None."""
+    if isinstance(node, ast.BinOp):
+        yield from (node.left, node.right)
+    elif isinstance(node, ast.UnaryOp) and not isinstance(node.op, ast.Not):
+        yield node.operand
+    elif isinstance(node, ast.Attribute | ast.Subscript):
+        yield node.value
+    elif isinstance(node, ast.Compare) and all(
+        isinstance(op, ast.Lt | ast.LtE | ast.Gt | ast.GtE) for op in node.ops
+    ):
+        yield node.left
+        yield node.comparators[0]
+
+
+def _breaks(loop: ast.While) -> bool:
+    return any(isinstance(node, ast.Break) for node in ast.walk(loop))
+
+
+def _implies(test: ast.expr, code: str, present: bool) -> bool:
+    """Tell whether a test that holds (fails, for `present=False`) shows that `code` is not None."""
+    if isinstance(test, ast.BoolOp):
+        decisive = ast.And if present else ast.Or
+        return isinstance(test.op, decisive) and any(_implies(each, code, present) for each in test.values)
+    if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
+        return _implies(test.operand, code, not present)
+    if isinstance(test, ast.Compare) and len(test.ops) == 1 and isinstance(test.comparators[0], ast.Constant):
+        asked = ast.IsNot if present else ast.Is
+        none = test.comparators[0].value is None
+        return none and isinstance(test.ops[0], asked) and ast.unparse(test.left) == code
+    return present and ast.unparse(test) == code
+
+
+def _read_at(place: ast.AST) -> Iterator[ast.expr]:
+    """Yield what a statement reads, of a compound statement only its header."""
+    waiting = [place]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.Name | ast.Attribute | ast.Subscript):
+            yield node
+        waiting += [each for each in ast.iter_child_nodes(node) if isinstance(each, ast.expr | ast.keyword)]
+
+
+def _has_name(source: Document, place: ast.AST, name: str) -> bool:
+    """Tell whether a name is local at a place, or given a value when the module is loaded."""
+    if scope(source, place, name) is not None:
+        return True
+    return any(each.target == name and source.function(each.node) is None for each in bindings(source))
+
+
+def _has_attribute(source: Document, place: ast.AST, chain: tuple[str, ...]) -> bool:
+    """Tell whether an attribute of the instance is there from the beginning; other objects are trusted."""
+    method = source.method(place)
+    if method is None or len(chain) < 2 or chain[0] != method[2]:
+        return True
+    for binding in bindings(source):
+        if method[0] in source.ancestors(binding.node):
+            function = source.function(binding.node)
+            early = function is not None and function.name == "__init__" and binding.target == chain[1]
+            if early or (_in_class(source, binding.node) and chain[1] == f"{chain[0]}.{binding.target}"):
+                return True
+    return False
+
+
+def _in_class(source: Document, node: ast.AST) -> bool:
+    return isinstance(source.parents.get(node), ast.ClassDef)
+
+
+def _bindings(node: ast.AST) -> Iterator[Binding]:
+    if isinstance(node, ast.Assign):
+        for target in node.targets:
+            yield from _pairs(node, target, node.value)
+    elif isinstance(node, ast.AnnAssign) and node.value is not None:
+        yield from _pairs(node, node.target, node.value)
+    elif isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Store):
+        yield Binding(node, ast.unparse(node))
+    elif isinstance(node, ast.Import | ast.ImportFrom):
+        for alias in node.names:
+            yield Binding(node, alias.asname or alias.name.partition(".")[0])
+    elif isinstance(node, Function | ast.ClassDef):
+        yield Binding(node, node.name)
+
+
+def _pairs(node: ast.stmt, target: ast.expr, value: ast.expr) -> Iterator[Binding]:
+    """Pair targets with what they are given, through tuples of equal length."""
+    if isinstance(target, ast.Tuple | ast.List) and isinstance(value, ast.Tuple | ast.List):
+        if len(target.elts) == len(value.elts):
+            for left, right in zip(target.elts, value.elts, strict=True):
+                yield from _pairs(node, left, right)
+    else:
+        constant = _constant(value)
+        fresh = isinstance(value, ast.Call) and not value.args and not value.keywords
+        yield Binding(node, ast.unparse(target), constant, fresh)
+
+
+def _constant(value: ast.expr) -> tuple[Constant, ...]:
+    try:
+        found = ast.literal_eval(value)
+    except ValueError:
+        return ()
+    return (found,) if found is None or isinstance(found, float | int | bool | str) else ()

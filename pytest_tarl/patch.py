@@ -1,0 +1,182 @@
+"""Patches: a unified diff that `git apply` and `patch -p1` take, on any line ending and encoding."""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import io
+import os
+import re
+import shlex
+import shutil
+import tempfile
+import tokenize
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+from pytest_tarl.errors import RepairError
+
+Opcode = tuple[str, int, int, int, int]
+CONTEXT = 3  # unchanged lines around a change
+_BASE = "# paths are relative to: "
+_FILE = re.compile(r"^--- a/([^\t\n]+)", re.MULTILINE)
+_NO_NEWLINE = "\\ No newline at end of file\n"
+
+
+def unified_diff(
+    originals: Mapping[Path, bytes], changed: Mapping[Path, str], root: Path, header: Sequence[str]
+) -> str:
+    """Return the diff from the files' bytes to their new text, with comment lines in front.
+
+    Paths are relative to the top of the git repository that holds the files, else to `root`: git passes over
+    others in silence. Bytes that are not UTF-8 are kept as surrogates; `readable` shows them.
+    Raises RepairError when the files have no common base, or cannot hold the new text in their encoding.
+    """
+    base = _base([path.resolve() for path in changed], root.resolve())
+    comments = [f"# {line}".rstrip() + "\n" for text in header for line in text.splitlines() or [""]]
+    comments.append(f"{_BASE}{_shown(base, root.resolve())}\n")
+    for path, text in sorted(changed.items()):
+        name = path.resolve().relative_to(base).as_posix()
+        comments.append(_file_diff(name, originals[path], _encoded(path, originals[path], text)))
+    return "".join(comments)
+
+
+def readable(diff: str) -> str:
+    """Return a diff that can be printed: bytes of other encodings than UTF-8 become replacement characters."""
+    return diff.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
+
+
+def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
+    """Write a patch as `<test>-<drift>-<hash of its content>.patch`, completely or not at all."""
+    content = diff.encode("utf-8", "surrogateescape")
+    digest = hashlib.sha256(content).hexdigest()[:8]
+    path = folder / f"{slug(test)}-{slug(drift or 'online')}-{digest}.patch"
+    folder.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=folder, prefix=".patch-")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        Path(temporary).chmod(0o644)
+        Path(temporary).replace(path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+    return path
+
+
+def apply_command(patch: Path, cwd: Path) -> str:
+    """Return the shell command that applies a patch of `<root>/.tarl/patches` when it is run in `cwd`."""
+    here = cwd.resolve()
+    text = patch.read_bytes().decode("utf-8", "surrogateescape")
+    base = (patch.resolve().parents[2] / _stated_base(text)).resolve()
+    if shutil.which("git") is None:
+        return shlex.join(["patch", "-p1", "-d", _shown(base, here), "-i", str(patch.resolve())])
+    files = [base / name for name in _FILE.findall(text)]
+    within = (base / ".git").exists() and all(file.is_relative_to(here) for file in files)
+    if within or base == here:
+        return shlex.join(["git", "apply", _shown(patch.resolve(), here)])
+    return shlex.join(["git", "-C", _shown(base, here), "apply", _shown(patch.resolve(), base)])
+
+
+def slug(text: str) -> str:
+    """Return a text as part of a file name."""
+    return re.sub(r"[^A-Za-z0-9]+", "-", text.replace(".py", "")).strip("-")[:60]
+
+
+def _base(files: Sequence[Path], root: Path) -> Path:
+    """Return the folder that the paths of a patch are relative to."""
+    tops = {_git_top(file) for file in files}
+    if len(tops) > 1:
+        names = ", ".join(str(file) for file in files)
+        raise RepairError(
+            f"One patch cannot change files of several repositories ({names}): repair them one by one."
+        )
+    top = tops.pop()
+    if top is not None:
+        return top
+    return (
+        root if all(file.is_relative_to(root) for file in files) else Path(os.path.commonpath(files)).parent
+    )
+
+
+def _git_top(file: Path) -> Path | None:
+    return next((folder for folder in file.parents if (folder / ".git").exists()), None)
+
+
+def _shown(path: Path, start: Path) -> str:
+    """Return a path as one types it in `start`."""
+    return Path(os.path.relpath(path, start)).as_posix()
+
+
+def _stated_base(text: str) -> str:
+    """Return what the header says that the paths are relative to."""
+    stated = (line.removeprefix(_BASE) for line in text.split("\n") if line.startswith(_BASE))
+    return next(stated, ".")
+
+
+def _encoded(path: Path, original: bytes, text: str) -> bytes:
+    """Return the bytes of a file's new text, in the encoding and with the line endings that the file has."""
+    encoding, _ = tokenize.detect_encoding(io.BytesIO(original).readline)
+    text = text.removeprefix("\ufeff")
+    if b"\r\n" in original and "\r\n" not in text:
+        text = _with_endings(original.decode(encoding), text)
+    try:
+        return text.encode(encoding)
+    except UnicodeEncodeError as error:
+        raise RepairError(
+            f"{path} is encoded in {encoding}, which has no {text[error.start]!r}: rename the topic or sensor, or "
+            "save the file as UTF-8."
+        ) from error
+
+
+def _with_endings(original: str, text: str) -> str:
+    """Give lines their old endings back; new ones take the ending that most lines have."""
+    before, after = _lines(original), _lines(text)
+    usual = "\r\n" if original.count("\r\n") * 2 > original.count("\n") else "\n"
+    bare = [line.replace("\r\n", "\n") for line in before]
+    result: list[str] = []
+    for tag, start, end, first, last in difflib.SequenceMatcher(
+        None, bare, after, autojunk=False
+    ).get_opcodes():
+        new = [line.replace("\n", usual) for line in after[first:last]]
+        result += before[start:end] if tag == "equal" else new
+    return "".join(result)
+
+
+def _file_diff(name: str, before: bytes, after: bytes) -> str:
+    """Return the diff of one file, with its two header lines and the one that git reads."""
+    old, new = (_lines(content.decode("utf-8", "surrogateescape")) for content in (before, after))
+    end = "\t" if " " in name else ""
+    lines = [f"diff --git a/{name} b/{name}\n", f"--- a/{name}{end}\n", f"+++ b/{name}{end}\n"]
+    matcher = difflib.SequenceMatcher(None, old, new, autojunk=False)
+    for group in matcher.get_grouped_opcodes(CONTEXT):
+        lines.append(_hunk_header(group))
+        lines += _hunk(group, old, new)
+    return "".join(lines)
+
+
+def _hunk_header(group: Sequence[Opcode]) -> str:
+    (_, old_start, _, new_start, _), (_, _, old_end, _, new_end) = group[0], group[-1]
+    return f"@@ -{_range(old_start, old_end)} +{_range(new_start, new_end)} @@\n"
+
+
+def _range(start: int, end: int) -> str:
+    return f"{start + (end > start)},{end - start}"
+
+
+def _hunk(group: Sequence[Opcode], old: Sequence[str], new: Sequence[str]) -> Iterator[str]:
+    for tag, old_start, old_end, new_start, new_end in group:
+        if tag == "equal":
+            yield from (_line(" ", line) for line in old[old_start:old_end])
+        else:
+            yield from (_line("-", line) for line in old[old_start:old_end])
+            yield from (_line("+", line) for line in new[new_start:new_end])
+
+
+def _line(sign: str, line: str) -> str:
+    return f"{sign}{line}" if line.endswith("\n") else f"{sign}{line}\n{_NO_NEWLINE}"
+
+
+def _lines(text: str) -> list[str]:
+    """Split where git does: behind line feeds only."""
+    return re.findall(r"[^\n]*\n|[^\n]+", text)
