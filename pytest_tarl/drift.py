@@ -163,7 +163,7 @@ def _labels(rows: int, first: int, generator: np.random.Generator) -> Floats:
 
 
 def _sum_by(row: Ints, column: Ints, weights: Floats, shape: tuple[int, int]) -> Floats:
-    flat = np.bincount(row * shape[1] + column, weights=weights, minlength=shape[0] * shape[1])
+    flat = np.bincount(row * shape[1] + column, weights=weights, minlength=shape[0] * shape[1]).astype(np.float64, copy=False)
     return flat.reshape(shape)
 
 

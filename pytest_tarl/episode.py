@@ -72,9 +72,13 @@ class Tarl:
         path = (self._folder / script).resolve()
         if not path.is_file():
             raise SettingsError(f"tarl.start: there is no file {script!r} in {self._folder}.")
-        imports = self._imports
         self.drives_ros = True
-        self.ros.start(lambda: imports.run_script(path), name=name or path.stem, argv=argv)
+        imports = self._imports
+
+        def program() -> None:
+            imports.run_script(path)
+
+        self.ros.start(program, name=name or path.stem, argv=argv)
 
     def step(self, dt: float) -> None:
         """Let the nodes run and virtual time advance by `dt` seconds, until every node waits again."""

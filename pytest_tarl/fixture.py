@@ -157,7 +157,7 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
         for one in header["lists"]
     )
     sensors = tuple(Sensor(**one | {"categories": tuple(one["categories"])}) for one in header["sensors"])
-    wide = {n: c.astype(np.int64) if c.dtype.kind == "i" else c for n, c in columns.items()}
+    wide: dict[str, Any] = {n: c.astype(np.int64) if c.dtype.kind == "i" else c for n, c in columns.items()}
 
     def chain() -> Chain:
         return Chain(**{f.name: wide[f"chain.{f.name}"] for f in fields(Chain)})

@@ -17,12 +17,11 @@ from pytest_tarl.fixture import Fixture
 from pytest_tarl.model import Comparison
 from pytest_tarl.recording import Progress, record
 from pytest_tarl.repairing import RepairShop, repair
+from pytest_tarl.repeating import Instruments
 from pytest_tarl.report import json_result, terminal
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.settings import Designation, Options
 from pytest_tarl.sites import Plan, plan
-
-Positions = Mapping[Path, Mapping[tuple[int, int], int]]
 
 IGNORED = "# Only the recorded utility is worth committing.\n*\n!.gitignore\n!utility/\n!utility/**\n"
 
@@ -48,12 +47,13 @@ class Mission:
     width: int
     progress: Progress
 
-    def run(self, rollout_with: Callable[[Positions], Rollout]) -> Account:
+    def run(self, rollout_with: Callable[[Instruments], Rollout]) -> Account:
         """Do the mode's work. Raises TarlError with a sentence where it cannot be done."""
         fixture = None if self.options.mode == "record" else self._fixture()
         analysis = self._analysis()
         sites = plan(analysis)
-        rollout = rollout_with({self.root / path: at for path, at in sites.positions.items()})
+        positions = {self.root / path: at for path, at in sites.positions.items()}
+        rollout = rollout_with(Instruments(positions, sites.publishes))
         self._ignore()
         if fixture is None:
             return self._record(rollout, sites)

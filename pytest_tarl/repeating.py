@@ -22,8 +22,19 @@ from pytest_tarl.settings import Designation, designation
 
 if TYPE_CHECKING:
     from pytest_tarl.episode import Tarl
+    from pytest_tarl.sites import Positions
+    from pytest_tarl.trace import Trace
 
-Positions = Mapping[Path, Mapping[tuple[int, int], int]]
+
+@dataclass(frozen=True)
+class Instruments:
+    """What is recorded of the nodes: by file the position of every site, and the sites that publish."""
+
+    positions: Mapping[Path, Positions] = field(default_factory=dict)
+    publishes: frozenset[int] = frozenset()
+
+
+NOTHING = Instruments()
 
 
 @dataclass
@@ -32,10 +43,9 @@ class Episode:
 
     plan: EpisodePlan
     designation: Designation
-    positions: Positions = field(default_factory=dict)
-    tarl: Tarl | None = None
+    instruments: Instruments = NOTHING
     error: BaseException | None = None
-    trace: Any = None
+    trace: Trace | None = None
     topics: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -57,7 +67,14 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
 
     episode = _episode(item)
     recorder = Recorder()
-    imports = NodeImports(item.path.parent, episode.positions, recorder.hook, episode.plan.overlay)
+    imports = NodeImports(
+        item.config.rootpath,
+        episode.instruments.positions,
+        recorder.hook,
+        episode.plan.overlay,
+        publishes=episode.instruments.publishes,
+        bind=recorder.bind,
+    )
     tarl = Tarl(episode.plan.seed, episode.designation.sensors, item.path.parent, recorder, imports)
     try:
         yield tarl
@@ -102,14 +119,15 @@ class ItemRollout:
 
     item: pytest.Function
     designation: Designation
-    positions: Positions
+    instruments: Instruments
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
         """Run one episode. Raises TarlError where the test cannot be run as asked, pytest's Exit on Ctrl-C."""
-        episode = Episode(plan, self.designation, self.positions if plan.record else {})
+        episode = Episode(plan, self.designation, self.instruments if plan.record else NOTHING)
         self.item.stash[EPISODE] = episode
         try:
-            reports = runtestprotocol(self.item, log=False, nextitem=self.item.parent)
+            # An item's parent keeps all that is wider than the item itself; pytest asks it for no more than that.
+            reports = runtestprotocol(self.item, log=False, nextitem=self.item.parent)  # type: ignore[arg-type]
         finally:
             del self.item.stash[EPISODE]
         return _outcome(episode, reports)
@@ -133,8 +151,9 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
     mission = isinstance(episode.error, (AssertionError, pytest.fail.Exception, NodeError))
     failed = [report for report in reports if report.failed]
     broken = [report for report in failed if report.when != "call" or not mission]
-    if episode.trace is None and not broken:
-        raise TarlError("The test does not use the fixture `tarl`: take it as an argument.")
+    if episode.trace is None:
+        lost = "\n".join(report.longreprtext for report in broken)
+        raise TarlError(lost or "The test does not use the fixture `tarl`: take it as an argument.")
     return EpisodeRun(
         plan=episode.plan,
         trace=episode.trace,

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from _pytest.terminal import TerminalReporter
 
     from pytest_tarl.missions import Account
+    from pytest_tarl.recording import Progress
 
 ACCOUNT = "tarl_account"  # attribute of a report: lines for the summary
 
@@ -67,7 +68,7 @@ class TarlSession:
         call = pytest.CallInfo.from_call(
             lambda: self._run(item), when="call", reraise=(pytest.exit.Exception, KeyboardInterrupt)
         )
-        report = pytest.TestReport.from_item_and_call(item, call)
+        report = pytest.TestReport.from_item_and_call(item, call)  # type: ignore[arg-type]  # keeps no result
         account = call.result if call.excinfo is None else None
         if account is not None:
             setattr(report, ACCOUNT, list(account.lines))
@@ -110,7 +111,7 @@ class TarlSession:
             progress=self._progress(item),
         )
         try:
-            return mission.run(lambda positions: ItemRollout(item, marked, positions))
+            return mission.run(lambda instruments: ItemRollout(item, marked, instruments))
         except NoFixtureError as missing:
             if self.options.strict:
                 raise
@@ -119,12 +120,11 @@ class TarlSession:
     def _width(self) -> int:
         return self.config.get_terminal_writer().fullwidth
 
-    def _progress(self, item: pytest.Function):
+    def _progress(self, item: pytest.Function) -> Progress:
         reporter = self.config.pluginmanager.get_plugin("terminalreporter")
-        live = reporter is not None and reporter.isatty
 
         def show(done: int, total: int, what: str) -> None:
-            if live and done % 5 == 0:
+            if reporter is not None and reporter.isatty and done % 5 == 0:
                 reporter.rewrite(f"{item.nodeid} {what} {done}/{total} ", erase=True)
 
         return show
