@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,7 @@ from pytest_tarl.report.words import running_mean
 from pytest_tarl.sensors import Cell, Sensor
 
 if TYPE_CHECKING:
-    from pytest_tarl.model import Matrix
+    from pytest_tarl.model import Matrix, Vector
 
 MOST_ROWS = 6  # values of the splitting sensor that get a row of their own
 DIGITS = 5  # significant digits of a number on the page
@@ -33,18 +33,26 @@ class Plane:
         return tuple(s.name for d, s in enumerate(sensors) if d not in (self.position, self.split))
 
 
-def plane(sensors: Sequence[Sensor]) -> Plane:
-    """Choose the first numeric sensor as position and the first other one that is not numeric as split."""
+def plane(comparison: Comparison) -> Plane:
+    """Choose the first numeric sensor as position, and the category that tells most about the region as split."""
+    sensors = comparison.sensors
     position = next((d for d, sensor in enumerate(sensors) if sensor.numeric), 0)
-    split = next((d for d, sensor in enumerate(sensors) if d != position and not sensor.numeric), None)
-    return Plane(position, split)
+    categories = [d for d, sensor in enumerate(sensors) if d != position and not sensor.numeric]
+    return Plane(position, min(categories, key=lambda d: _covered(comparison, d), default=None))
+
+
+def _covered(comparison: Comparison, dimension: int) -> float:
+    """Return the share of a sensor's values that the region takes in: 1 where the sensor tells nothing about it."""
+    seen = {cell[dimension] for cell in comparison.cells}
+    region = (*comparison.region.cells, *comparison.region.novel)
+    return len({cell[dimension] for cell in region} & seen) / len(seen) if region and seen else 1.0
 
 
 def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str, Any] | None:
     """Return Figures 2 and 3 and their difference: utility over position and site; None without a visited cell."""
     if not comparison.sensors or not comparison.cells:
         return None
-    shown = plane(comparison.sensors)
+    shown = plane(comparison)
     vocabulary = Vocabulary(comparison.sensors, comparison.cells)
     bins = _span(cell[shown.position] for cell in comparison.cells)
     rows = [
@@ -57,12 +65,12 @@ def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str
         "sites": [[site.line, site.code, site.path] for site in compared.taint_list.sites],
         "axis": _axis(comparison.sensors[shown.position], shown.position, bins, vocabulary),
         "rows": rows,
-        "range": [_least(values), -_least(-values)],
-        "reach": -_least(-np.abs(change)),
+        "range": [_extreme(np.min, values), _extreme(np.max, values)],
+        "reach": _extreme(np.max, np.abs(change)),
     }
 
 
-def split_values(comparison: Comparison, shown: Plane) -> list[int | None]:
+def split_values(comparison: Comparison, shown: Plane) -> Sequence[int | None]:
     """Return the values that get rows, those of the most cells if there are too many; [None] for a single row."""
     if shown.split is None:
         return [None]
@@ -70,7 +78,7 @@ def split_values(comparison: Comparison, shown: Plane) -> list[int | None]:
     for cell in comparison.cells:
         counted[cell[shown.split]] = counted.get(cell[shown.split], 0) + 1
     chosen = sorted(counted, key=lambda value: (-counted[value], value))[:MOST_ROWS]
-    return list(sorted(chosen))
+    return sorted(chosen)
 
 
 def _row(
@@ -136,9 +144,9 @@ def _span(indices: Iterable[int]) -> list[int]:
     return list(range(min(found), max(found) + 1))
 
 
-def _least(values: Any) -> float | None:
+def _extreme(choose: Callable[[Vector], np.float64], values: Vector) -> float | None:
     known = values[np.isfinite(values)]
-    return number(float(known.min())) if known.size else None
+    return number(float(choose(known))) if known.size else None
 
 
 def reward_curves(comparison: Comparison) -> list[dict[str, Any]]:

@@ -8,7 +8,8 @@ import re
 import zlib
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from importlib import import_module, resources
+from importlib import resources
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +46,6 @@ def render(comparison: Comparison, *, title: str | None = None) -> str:
     """Return the page's text. Raises TarlError where a package of the extra `report` is missing."""
     _require()
     import jinja2
-    from markupsafe import Markup
 
     from pytest_tarl.report import highlight
 
@@ -60,43 +60,47 @@ def render(comparison: Comparison, *, title: str | None = None) -> str:
         "plain": lambda value: typeset(f"{value:.6g}"),
         "p": words.p_value,
         "typeset": typeset,
-        "code": lambda text: Markup(highlight.code_html(words.one_line(text))),
-        "patch": lambda diff: [(line, Markup(line.html)) for line in highlight.patch_lines(diff)],
+        "parts": parts,
+        "code": lambda text: highlight.code_html(words.one_line(text)),
+        "patch": highlight.patch_lines,
     }
     return environment.get_template("page.html").render(
         **_context(comparison, title),
-        css=Markup(_asset("page.css")),
-        script=Markup(_asset("page.js")),
-        library=Markup(_library()),
-        data=Markup(in_script(_data(comparison))),
+        css=_asset("page.css"),
+        script=_asset("page.js"),
+        library=_library(),
+        data=in_script(_data(comparison)),
     )
 
 
 def _require() -> None:
-    for package in NEEDED:
-        try:
-            import_module(package)
-        except ImportError:
-            raise TarlError(
-                f"The report page needs {package}, which is not installed: run "
-                'pip install "tarl[report]". Verdict and patch do not depend on it.'
-            ) from None
+    missing = [package for package in NEEDED if find_spec(package) is None]
+    if missing:
+        raise TarlError(
+            f"The report page needs {' and '.join(missing)}, which is not installed: run "
+            'pip install "tarl[report]". Verdict and patch do not depend on it.'
+        )
 
 
 def _asset(name: str) -> str:
-    return resources.files(__package__).joinpath("page", name).read_text("utf-8")
+    return resources.files(__package__).joinpath("page").joinpath(name).read_text("utf-8")
 
 
 @lru_cache(maxsize=1)
 def _library() -> str:
     """Return plotly.js as the page carries it: compressed to two fifths, in base64; browsers inflate it."""
-    script = resources.files("plotly").joinpath("package_data", "plotly.min.js").read_bytes()
+    script = resources.files("plotly").joinpath("package_data").joinpath("plotly.min.js").read_bytes()
     return base64.b64encode(zlib.compress(script, 9)).decode("ascii")
 
 
 def in_script(data: Any) -> str:
     """Return data as JSON that cannot end the script element it stands in."""
     return json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")).translate(_IN_SCRIPT)
+
+
+def parts(text: str) -> list[str]:
+    """Split a path or test id where a line may be broken."""
+    return re.findall(r".+?(?:::|[/_.]|$)", text)
 
 
 def typeset(text: str) -> str:
@@ -123,7 +127,7 @@ def _context(comparison: Comparison, title: str | None) -> Mapping[str, Any]:
         "headline": words.verdict_sentence(comparison),
         "region": words.region_words(comparison),
         "paper_region": words.paper_region_words(comparison),
-        "atr": {world: words.atr(comparison, world) for world in comparison.totals},
+        "atr": {world: words.atr(comparison, world) for world, totals in comparison.totals.items() if totals},
         "share": _share(comparison),
         "lists": [_list(comparison, compared) for compared in comparison.lists],
         "curves": _curves_in_words(comparison),
@@ -159,7 +163,7 @@ def _list(comparison: Comparison, compared: ListComparison) -> dict[str, Any]:
 
 def _captions(comparison: Comparison, figure: Mapping[str, Any]) -> Iterator[str]:
     """Yield what a reader of the figure must know about how it was made."""
-    shown = plane(comparison.sensors)
+    shown = plane(comparison)
     if others := shown.others(comparison.sensors):
         yield f"Each value is the mean over {' and '.join(others)}."
     if shown.split is not None and len({cell[shown.split] for cell in comparison.cells}) > MOST_ROWS:
@@ -180,14 +184,14 @@ def _largest_change(figure: Mapping[str, Any]) -> str:
     if not found:
         return "No cell was visited in both worlds."
     change, title, (line, code, _), name = max(found, key=lambda one: abs(one[0]))
-    where = f"{name}, {title}" if title else name
-    return f"The largest change, {words.signed(change)}, is at line {line} ({words.one_line(code)}), {where}."
+    where = typeset(f"{name}, {title}" if title else name)
+    return f"The largest change, {typeset(words.signed(change))}, is at line {line}, {words.one_line(code)}: {where}."
 
 
 def _curves_in_words(comparison: Comparison) -> str:
     """Say where each curve of the reward figure ends."""
-    ends = [
-        f"{c['name']} {words.amount(c['mean'][-1])} after {len(c['mean'])} episodes"
-        for c in reward_curves(comparison)
-    ]
+    ends = []
+    for curve in reward_curves(comparison):
+        end = typeset(words.amount(curve["mean"][-1]))
+        ends.append(f"{curve['name']} {end} after {len(curve['mean'])} episodes")
     return "; ".join(ends)

@@ -69,9 +69,8 @@ def chart(slices: Sequence[Slice]) -> Chart:
         Row(one.site, one.offline, one.online, one.difference, one is largest and one.difference != 0)
         for one in slices
     )
-    reach = [abs(row.difference) for row in rows]
     values = [value for row in rows for value in (row.offline, row.online)]
-    return Chart(rows, scale(values), scale([*reach, *(-one for one in reach)]))
+    return Chart(rows, scale(values), scale(row.difference for row in rows))
 
 
 def scale(values: Iterable[float]) -> Scale:

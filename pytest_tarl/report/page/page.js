@@ -7,7 +7,7 @@
   };
   const WORLDS = ["offline", "online", "difference"];
   const WIDE = 760;                       // px from which the three panels stand side by side
-  const HEADROOM = 46, GAP = 18, ROW_GAP = 34, FOOT = 44, RIGHT = 10;
+  const HEADROOM = 46, GAP = 26, ROW_GAP = 34, FOOT = 44, RIGHT = 10, WORLD_GAP = 44;
   const HALF_SITE = 0.5;
 
   const page = JSON.parse(document.getElementById("tarl-data").textContent);
@@ -71,12 +71,12 @@
   /** Where the panels stand, in pixels from the top left: three side by side, or one below the other. */
   function panels(figure, width, left) {
     const wide = width >= WIDE;
-    const height = Math.max(84, Math.min(figure.sites.length * 24, 640));
+    const height = Math.max(84, Math.min(figure.sites.length * 24, Math.max(640, figure.sites.length * 13)));
     const across = wide ? (width - left - RIGHT - 2 * GAP) / 3 : width - left - RIGHT;
     const placed = [];
     WORLDS.forEach((world, i) => figure.rows.forEach((row, j) => {
       const rank = wide ? j : i * figure.rows.length + j;
-      const top = HEADROOM + rank * (height + ROW_GAP) + (wide ? 0 : i * 16);
+      const top = HEADROOM + rank * (height + ROW_GAP) + (wide ? 0 : i * WORLD_GAP);
       placed.push({ world, row, top, height, first: j === 0, last: j === figure.rows.length - 1,
                     left: left + (wide ? i * (across + GAP) : 0), across, leftmost: !wide || i === 0 });
     }));
@@ -126,14 +126,14 @@
             ...box(panel.row.region, { color: colour("ink"), width: 2 }, 0)];
   }
 
-  function axes(figure, panel, labels, layout, k, wide) {
+  function axes(figure, panel, labels, layout, k) {
     const { width, height } = layout;
     const edge = figure.axis.centres.length > 1 ? (figure.axis.centres[1] - figure.axis.centres[0]) / 2 : 0.5;
     const shared = { zeroline: false, showgrid: false, fixedrange: true, ticks: "" };
     layout[`xaxis${k}`] = {
       ...shared, anchor: `y${k}`, domain: [panel.left / width, (panel.left + panel.across) / width],
       range: [figure.axis.centres[0] - edge, figure.axis.centres.at(-1) + edge], nticks: 6,
-      showticklabels: panel.last || !wide, tickfont: { size: 11.5 },
+      showticklabels: panel.last, tickfont: { size: 11.5 },
       title: { text: panel.last ? safe(figure.axis.title) : "", standoff: 6, font: { size: 12.5 } },
       ...(figure.axis.ticks && { tickmode: "array", tickvals: figure.axis.centres, ticktext: figure.axis.ticks.map(safe) }),
     };
@@ -141,7 +141,7 @@
       ...shared, anchor: `x${k}`, domain: [1 - (panel.top + panel.height) / height, 1 - panel.top / height],
       range: [figure.sites.length - HALF_SITE, -HALF_SITE], showticklabels: panel.leftmost,
       tickmode: "array", tickvals: figure.sites.map((_, n) => n), ticktext: labels,
-      tickfont: { family: colour("mono"), size: 11.5, color: colour("ink") },
+      tickfont: { family: colour("mono"), size: Math.min(11.5, (0.85 * panel.height) / figure.sites.length), color: colour("ink") },
     };
   }
 
@@ -164,7 +164,7 @@
     const traces = [];
     placed.forEach((panel, i) => {
       const k = i === 0 ? "" : i + 1;
-      axes(figure, panel, labels, layout, k, wide);
+      axes(figure, panel, labels, layout, k);
       layout.annotations.push(...panelTitles(panel, layout, wide));
       traces.push(heat(figure, panel, k));
       if (panel.world !== "offline" && panel.row.novel.length) traces.push(novelMarks(figure, panel, k));
@@ -198,7 +198,8 @@
   }
 
   function drawCurves(element, width) {
-    const longest = Math.max(...page.curves.map(curve => curve.mean.length));
+    const lengths = kind => page.curves.filter(kind).map(curve => curve.mean.length);
+    const longest = Math.max(...lengths(curve => curve.kind !== "offline")) || Math.max(...lengths(() => true));
     const layout = {
       ...baseLayout(width), height: width >= WIDE ? 400 : 440, margin: { l: 52, r: 12, t: 12, b: 48 }, showlegend: true,
       legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: { size: 12.5, color: colour("ink") }, itemsizing: "constant" },
