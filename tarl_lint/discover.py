@@ -1,10 +1,10 @@
 """Which files are analysed, what they are called, and what is left out (counted, so that it can be said)."""
 
-# ruff: noqa: PTH - paths are texts here: trees are large, and Path objects cost five times as much
+# ruff: noqa: PTH100, PTH110, PTH112, PTH120, PTH123
+# Paths are texts here: trees are large, and Path objects cost several times as much.
 
 from __future__ import annotations
 
-import difflib
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -33,7 +33,7 @@ _ENOUGH = 200_000  # bytes read of a file that only is to be counted
 
 
 class SourceFile(NamedTuple):
-    """A file to analyse: where it is, its path as people see it, its dotted name, whether it is `__init__.py`."""
+    """A file to analyse: where it is, its path for people, its dotted name, whether it is `__init__.py`."""
 
     path: Path
     shown: str
@@ -60,7 +60,7 @@ class Discovery:
 
 
 def find(paths: Sequence[Path], config: Config) -> Discovery:
-    """Return the Python files at and below `paths`; what is named itself is taken even if a pattern excludes it.
+    """Return the Python files at and below `paths`; what is named itself is taken even if excluded.
 
     Raises UsageError for a path that does not exist.
     """
@@ -165,7 +165,7 @@ def _absolute(path: Path) -> str:
 
 
 def _not_ours(path: str, name: str) -> bool:
-    """Tell whether a directory holds what tools made or installed: hidden, environment, colcon's, catkin's."""
+    """Tell whether a directory holds what tools made or installed: hidden, environments, colcon's."""
     if name.startswith(".") or name in _NEVER:
         return True
     if name in _COLCON and not os.path.exists(f"{path}/__init__.py"):
@@ -225,6 +225,8 @@ def _above(directory: str) -> Iterator[str]:
 
 def _missing(path: Path) -> str:
     """Say that a path does not exist, and which neighbour may have been meant."""
+    import difflib  # only mistakes need it
+
     parent = path.parent
     if not parent.is_dir():
         return f"There is no {path.as_posix()}: the directory {parent.as_posix()} does not exist either."

@@ -1,0 +1,75 @@
+"""What a rule is about, from the rule's own file: for `--explain` and for its page in docs/rules."""
+
+from __future__ import annotations
+
+import inspect
+import pkgutil
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+from typing import Final
+
+from tarl_lint import rules
+from tarl_lint.config import suggestion
+from tarl_lint.errors import UsageError
+from tarl_lint.report.line import Line
+
+_HEADINGS: Final = (("INVALID", "Reported"), ("VALID", "Not reported"))
+
+
+def known_rules() -> Mapping[str, ModuleType]:
+    """Return code → file of the rule, sorted by code. Every file in `rules` that has a `CODE` is a rule."""
+    files = (import_module(f"{rules.__name__}.{m.name}") for m in pkgutil.iter_modules(rules.__path__))
+    return dict(sorted((file.CODE, file) for file in files if hasattr(file, "CODE")))
+
+
+def check_codes(codes: Sequence[str], where: str) -> None:
+    """Raise UsageError for a code, or beginning of one, that no rule has."""
+    known = list(known_rules())
+    for code in codes:
+        if not any(k.startswith(code) for k in known):
+            meant = suggestion(code, known)
+            raise UsageError(f"{where} names {code!r}, which is no rule{meant} Rules are {', '.join(known)}.")
+
+
+def explanation(code: str) -> Iterator[Line]:
+    """Yield what a rule is about, for the terminal. Raises UsageError for an unknown code."""
+    for line in page(code.upper()).splitlines():
+        if line.startswith("#"):
+            yield ((line.lstrip("# "), "strong"),)
+        elif not line.startswith("```"):
+            yield ((line, ""),)
+
+
+def page(code: str) -> str:
+    """Return a rule's page in Markdown. Raises UsageError for an unknown code."""
+    known = known_rules()
+    if code not in known:
+        raise UsageError(
+            f"There is no rule {code}{suggestion(code, list(known))} Rules are {', '.join(known)}."
+        )
+    rule = known[code]
+    title, _, text = (inspect.getdoc(rule) or "").partition("\n")
+    return f"# {title.rstrip('.')}\n\n{text.strip()}\n{_examples(rule)}"
+
+
+def _examples(rule: ModuleType) -> str:
+    """Return the snippets that are the rule's tests, as code blocks below headings."""
+    parts = (
+        f"\n## {heading}\n\n```python\n{inspect.cleandoc(snippet)}\n```\n"
+        for name, heading in _HEADINGS
+        for snippet in getattr(rule, name, ())
+    )
+    return "".join(parts)
+
+
+def write_pages(directory: Path) -> None:
+    """Write the page of every rule into a directory of the documentation."""
+    for code in known_rules():
+        (directory / f"{code}.md").write_text(page(code), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write_pages(Path(sys.argv[1]))

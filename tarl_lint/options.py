@@ -1,0 +1,121 @@
+"""The command line: what can be typed, what it means, and what to say when it is mistyped."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Final, NoReturn
+
+from tarl_lint import __version__
+from tarl_lint.config import BASELINE_NAME, FAIL_ON, Options, suggestion
+from tarl_lint.errors import UsageError
+from tarl_lint.report import FORMATS
+
+_DESCRIPTION: Final = (
+    "Find every flow from a subscribed ROS topic to a published one, with the statements on its path."
+)
+_EPILOG: Final = (
+    "Exit code: 0 nothing to fail on, 1 findings to fail on (--fail-on), 2 the command line, the settings or "
+    "the baseline cannot be used, 130 interrupted. Settings are read from [tool.tarl-lint] in pyproject.toml."
+)
+
+
+class _Parser(argparse.ArgumentParser):
+    """Raises UsageError with a sentence instead of printing the usage and leaving."""
+
+    def error(self, message: str) -> NoReturn:
+        known = [option for action in self._actions for option in action.option_strings]
+        raise UsageError(f"{_sentence(message, known)} Run tarl-lint --help for all options.")
+
+
+def _sentence(message: str, known: Sequence[str]) -> str:
+    """Say what argparse says in words of ours, with what was probably meant."""
+    if found := re.fullmatch(r"unrecognized arguments: (.*)", message):
+        option = found[1].split()[0].split("=")[0]
+        return f"There is no option {option}{suggestion(option, [k for k in known if k.startswith('--')])}"
+    if found := re.fullmatch(r"argument (\S+): invalid choice: '([^']*)' \(choose from (.*)\)", message):
+        choices = re.findall(r"[\w-]+", found[3])
+        return f"{found[1]} cannot be {found[2]!r}{suggestion(found[2], choices)} It can be {', '.join(choices)}."
+    if found := re.fullmatch(r"argument (\S+): expected one argument", message):
+        return f"{found[1]} needs a value."
+    return message[:1].upper() + message[1:] + "."
+
+
+def _codes(text: str) -> tuple[str, ...]:
+    return tuple(code.strip().upper() for code in text.split(",") if code.strip())
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    made = _Parser(prog="tarl-lint", description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False)
+    made.add_argument(
+        "paths", nargs="*", type=Path, metavar="PATH", help="files and directories (default: .)"
+    )
+    made.add_argument("--version", action="version", version=f"tarl-lint {__version__}")
+    made.add_argument("--explain", metavar="CODE", help="explain a rule, with examples, and stop")
+    made.add_argument("--show-settings", action="store_true", help="show the settings in use and stop")
+    _add_output(made.add_argument_group("what is shown"))
+    _add_choice(made.add_argument_group("what is reported"))
+    _add_policy(made.add_argument_group("when to fail"))
+    return made
+
+
+def _add_output(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--format", choices=tuple(FORMATS), default="text", help="text (default), concise or json"
+    )
+    group.add_argument("--show-paths", action="store_true", help="list the statements of every flow")
+    group.add_argument("--statistics", action="store_true", help="count what was found")
+    group.add_argument(
+        "--output-file", type=Path, metavar="FILE", help="write the report there, not to the screen"
+    )
+
+
+def _add_choice(group: argparse._ArgumentGroup) -> None:
+    group.add_argument("--select", type=_codes, metavar="CODES", help="only these rules: TARL101,TARL2 …")
+    group.add_argument("--ignore", type=_codes, metavar="CODES", help="not these rules")
+    group.add_argument(
+        "--exclude",
+        action="append",
+        metavar="PATTERN",
+        help="leave out paths, as .gitignore does; may be repeated",
+    )
+    group.add_argument(
+        "--config", type=Path, metavar="FILE", help="settings file (default: nearest pyproject.toml)"
+    )
+
+
+def _add_policy(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--fail-on",
+        choices=FAIL_ON,
+        help="fail on hazards, on new explicit flows too (default), on new implicit ones too, or never",
+    )
+    group.add_argument(
+        "--exit-zero", action="store_const", const="never", dest="fail_on", help="--fail-on never"
+    )
+    group.add_argument(
+        "--baseline", type=Path, metavar="FILE", help=f"accepted flows (default: {BASELINE_NAME})"
+    )
+    group.add_argument("--no-baseline", action="store_true", help="report accepted flows too")
+    group.add_argument("--write-baseline", action="store_true", help="accept all present flows")
+
+
+def options(typed: argparse.Namespace) -> Options:
+    """Return what the user typed, as far as it decides what is found. Raises UsageError for contradictions."""
+    if typed.no_baseline and (typed.write_baseline or typed.baseline):
+        other = "--write-baseline" if typed.write_baseline else "--baseline"
+        raise UsageError(f"--no-baseline and {other} contradict each other: leave one out.")
+    return Options(
+        paths=tuple(typed.paths) or (Path(),),
+        config=typed.config,
+        select=typed.select,
+        ignore=typed.ignore,
+        exclude=tuple(typed.exclude) if typed.exclude else None,
+        baseline=typed.baseline,
+        no_baseline=typed.no_baseline,
+        write_baseline=typed.write_baseline,
+        fail_on=typed.fail_on,
+    )

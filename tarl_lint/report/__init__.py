@@ -1,0 +1,23 @@
+"""What a run found, for people and for programs. A format is one file with `report(result, view)`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from typing import Final, cast
+
+from tarl_lint.report.line import Line, View
+from tarl_lint.runner import Result
+
+FORMATS: Final[Mapping[str, str]] = {
+    "text": "tarl_lint.report.text:report",
+    "concise": "tarl_lint.report.text:concise",
+    "json": "tarl_lint.report.json:report",
+}
+FOR_PEOPLE: Final = frozenset({"text", "concise"})
+
+
+def render(name: str, result: Result, view: View) -> Iterator[Line]:
+    """Return the lines of a report in one of the `FORMATS`; only that format's file is imported."""
+    module, _, function = FORMATS[name].partition(":")
+    return cast("Iterator[Line]", getattr(import_module(module), function)(result, view))

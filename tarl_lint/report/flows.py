@@ -1,0 +1,120 @@
+"""Flows for people: one code frame for each publish call, its sources below it, and their taint lists."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
+from typing import Final
+
+from tarl_lint.model import Dependence, Finding, Flow, Sink, Source, Span, Step
+from tarl_lint.report.frame import frame
+from tarl_lint.report.line import Glyphs, Line, Style, View, columns, crop, tabs
+
+_STYLES: Final[Mapping[Dependence, Style]] = {"data": "data", "control": "control", "context": "quiet"}
+
+
+def publish_calls(findings: Sequence[Finding]) -> Iterator[tuple[tuple[Finding, Flow], ...]]:
+    """Yield the flows that end in the same publish call, in the order of `findings`."""
+    pairs = ((finding, finding.flow) for finding in findings if finding.flow)
+    for _, group in groupby(pairs, key=lambda pair: (pair[1].sink.span, pair[1].sink.id)):
+        yield tuple(group)
+
+
+def publish_call(
+    group: Sequence[tuple[Finding, Flow]], source: Sequence[str], view: View, *, paths: bool
+) -> Iterator[Line]:
+    """Yield one publish call: heading, code frame, then each flow that ends in it (with its taint list)."""
+    sink = group[0][1].sink
+    explicit = any(flow.kind == "explicit" for _, flow in group)
+    yield _heading(sink)
+    yield from frame(source, sink.span, "explicit" if explicit else "implicit", view)
+    names = _aligned([describe(flow.source.topics, flow.source.type) for _, flow in group])
+    yield ()
+    for name, (finding, flow) in zip(names, group, strict=True):
+        yield _flow(finding, flow, name)
+        if paths:
+            yield from _taint_list(flow, view)
+            yield ()
+    if not paths:
+        yield ()
+
+
+def describe(topics: Sequence[str], message: str) -> str:
+    """Name what is subscribed or published: `odom (Odometry)`."""
+    topic = " or ".join(topics) or "unknown topic"
+    return f"{topic} ({message})" if message else topic
+
+
+def _heading(sink: Sink) -> Line:
+    place = f" in {sink.qualname}" if sink.qualname else ""
+    name = describe(sink.topics, sink.type)
+    return ((location(sink.span), "place"), (" publishes ", ""), (name, "strong"), (place, ""))
+
+
+def location(span: Span) -> str:
+    """Write where a span begins, so that terminals and editors can go there."""
+    return f"{span.path}:{span.line}:{span.column}"
+
+
+def _aligned(texts: Sequence[str]) -> list[str]:
+    widest = max(map(columns, texts), default=0)
+    return [text + " " * (widest - columns(text)) for text in texts]
+
+
+def _flow(finding: Finding, flow: Flow, name: str) -> Line:
+    return (
+        ("    ", ""),
+        (f"{finding.code} {flow.kind}", flow.kind),
+        (" from ", ""),
+        (name, "strong"),
+        (f"  {_subscription(flow.source, flow.sink.span.path)}", "quiet"),
+    )
+
+
+def _subscription(source: Source, beside: str) -> str:
+    """Say where a message comes in: `line 36, callback`."""
+    place = f"line {source.span.line}"
+    if source.span.path != beside:
+        place = f"{source.span.path}:{source.span.line}"
+    return f"{place}, {source.callback}" if source.callback else place
+
+
+def _taint_list(flow: Flow, view: View) -> Iterator[Line]:
+    """Yield the steps of a flow: where, what the step does, how it depends on the source, code."""
+    beside = flow.sink.span.path
+    places = [_where(step, beside) for step in flow.steps]
+    margin = max(map(columns, places), default=0)
+    roles = max((len(step.role) for step in flow.steps), default=0)
+    for place, step in zip(places, flow.steps, strict=True):
+        start = f"      {' ' * (margin - columns(place))}{place}  {step.role:<{roles}}  "
+        style = _STYLES[step.dependence]
+        room = view.width - columns(start) - 2 if view.width else 0
+        text: Style = "quiet" if step.dependence == "context" else ""
+        code = crop(_one_line(step.code, view.glyphs.dots), room, view.glyphs.dots)
+        yield ((start, "quiet"), (_mark(step.dependence, view.glyphs), style), (" ", ""), (code, text))
+
+
+def _where(step: Step, beside: str) -> str:
+    return str(step.span.line) if step.span.path == beside else f"{step.span.path}:{step.span.line}"
+
+
+def _one_line(code: str, dots: str) -> str:
+    first, *more = tabs(code).strip().splitlines() or [""]
+    return f"{first} {dots}" if more else first
+
+
+def _mark(dependence: Dependence, glyphs: Glyphs) -> str:
+    return {"data": glyphs.data, "control": glyphs.control, "context": glyphs.context}[dependence]
+
+
+def legend(view: View) -> Line:
+    """Explain the marks of taint lists."""
+    glyphs = view.glyphs
+    return (
+        ("      ", ""),
+        (glyphs.data, "data"),
+        (" carries the value   ", "quiet"),
+        (glyphs.control, "control"),
+        (" decides   ", "quiet"),
+        (f"{glyphs.context} surroundings", "quiet"),
+    )

@@ -1,0 +1,97 @@
+"""The report for programs: one document, frozen in `findings.schema.json`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from typing import Any, Final
+
+from tarl_lint import __version__
+from tarl_lint.model import Finding, Flow, Sink, Source, Span, Step
+from tarl_lint.report.line import Line, View
+from tarl_lint.runner import Result
+
+FORMAT_VERSION: Final = 1  # 1: first format
+
+
+def report(result: Result, _view: View) -> Iterator[Line]:
+    """Yield the document, indented, in ASCII, so that no terminal or pipe can spoil it."""
+    yield ((json.dumps(document(result), indent=1), ""),)
+
+
+def document(result: Result) -> dict[str, Any]:
+    """Return everything that was found, accepted flows included, in the frozen order of keys."""
+    return {
+        "format": FORMAT_VERSION,
+        "tool": {"name": "tarl-lint", "version": __version__},
+        "files": result.statistics.files,
+        "errors": [{"path": e.path, "line": e.line, "message": e.message} for e in result.errors],
+        "diagnostics": [_diagnostic(finding) for finding in result.findings],
+    }
+
+
+def _diagnostic(finding: Finding) -> dict[str, Any]:
+    flow = {"flow": _flow(finding.flow)} if finding.flow else {}
+    return {
+        "code": finding.code,
+        **_extent(finding.span),
+        "message": finding.message,
+        "fingerprint": finding.fingerprint,
+        "status": finding.status,
+        **flow,
+    }
+
+
+def _flow(flow: Flow) -> dict[str, Any]:
+    return {
+        "kind": flow.kind,
+        "source": _source(flow.source),
+        "sink": _sink(flow.sink),
+        "steps": [_step(step) for step in flow.steps],
+    }
+
+
+def _source(source: Source) -> dict[str, Any]:
+    return {
+        "id": source.id,
+        **_point(source.span),
+        "topics": list(source.topics),
+        "type": source.type,
+        "callback": source.callback,
+        "api": source.api,
+        "registered": _points(source.registered),
+        "via": _points(source.via),
+    }
+
+
+def _sink(sink: Sink) -> dict[str, Any]:
+    return {
+        "id": sink.id,
+        **_point(sink.span),
+        "topics": list(sink.topics),
+        "type": sink.type,
+        "api": sink.api,
+    }
+
+
+def _step(step: Step) -> dict[str, Any]:
+    return {
+        **_extent(step.span),
+        "qualname": step.site.qualname,
+        "site": str(step.site),
+        "code": step.code,
+        "role": step.role,
+        "dependence": step.dependence,
+    }
+
+
+def _points(spans: Sequence[Span]) -> list[dict[str, Any]]:
+    return [_point(span) for span in spans]
+
+
+def _point(span: Span) -> dict[str, Any]:
+    return {"path": span.path, "line": span.line, "column": span.column}
+
+
+def _extent(span: Span) -> dict[str, Any]:
+    return {**_point(span), "end_line": span.end_line, "end_column": span.end_column}

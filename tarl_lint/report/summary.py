@@ -1,0 +1,151 @@
+"""The end of a report, in words: how much was found, what is no longer there, what was not analysed."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any, Final
+
+from tarl_lint.baseline import Accepted
+from tarl_lint.config import shown
+from tarl_lint.model import Finding
+from tarl_lint.report.line import Line, View
+from tarl_lint.runner import UNREADABLE, Result
+
+_SHOWN: Final = 20  # vanished flows listed by name
+
+
+def closing(result: Result) -> Iterator[Line]:
+    """Yield what was found, then what was not analysed."""
+    yield ((_count_flows(result), "strong"),)
+    hazards = Counter(f.code for f in result.new if not f.flow)
+    if hazards:
+        yield ((f"{many(sum(hazards.values()), 'hazard')}: {_listed(hazards)}.", "strong"),)
+    yield from not_analysed(result)
+
+
+def hints(result: Result, view: View) -> Iterator[Line]:
+    """Yield what to do next, where flows were found that nobody has accepted yet."""
+    flows = [f for f in result.new if f.flow]
+    if not flows or result.baseline:
+        return
+    if len(flows) > 1 and not view.show_paths:
+        yield (("--show-paths lists the statements on the way of each flow.", "quiet"),)
+    yield (
+        ("--write-baseline accepts these flows, so that from then on only new ones are reported.", "quiet"),
+    )
+
+
+def not_analysed(result: Result) -> Iterator[Line]:
+    """Yield one line that says what the analysis did not see, none when it saw everything."""
+    missed = list(_missed(result))
+    if missed:
+        yield ((f"Not analysed: {', '.join(missed)}.", "quiet"),)
+
+
+def _count_flows(result: Result) -> str:
+    flows = [f for f in result.new if f.flow]
+    files = result.statistics.files
+    known = sum(f.status == "accepted" for f in result.findings)
+    accepted = f" ({known} accepted in {shown(result.baseline)})" if result.baseline and known else ""
+    new = "new " if result.baseline else ""
+    if not flows:
+        what = "flow" if result.baseline else "flow from a subscription to a publish call"
+        return f"No {new}{what} in {many(files, 'file')}{accepted}."
+    kinds = Counter(f.flow.kind for f in flows if f.flow)
+    return f"{many(len(flows), new + 'flow')} in {_share(flows, files)}: {_listed(kinds)}{accepted}."
+
+
+def _share(flows: list[Finding], files: int) -> str:
+    """Say in how many of the files flows end: `1 file`, `2 of 12 files`."""
+    hit = len({f.span.path for f in flows})
+    return many(files, "file") if hit == files else f"{hit} of {many(files, 'file')}"
+
+
+def _listed(counts: Counter[Any]) -> str:
+    return ", ".join(f"{count} {name}" for name, count in sorted(counts.items()))
+
+
+def many(count: int, noun: str) -> str:
+    """Write a count with its noun: `1 flow`, `2 flows`."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def _missed(result: Result) -> Iterator[str]:
+    notes = result.statistics.notes
+    if result.errors:
+        verb = "is" if len(result.errors) == 1 else "are"
+        yield f"{many(len(result.errors), 'file')} that {verb} not readable as Python 3 ({UNREADABLE})"
+    if notes.unreadable:
+        yield f"{many(len(notes.unreadable), 'unreadable place')} ({', '.join(notes.unreadable[:3])})"
+    if notes.cpp_nodes:
+        yield many(notes.cpp_nodes, "C++ node")
+    if notes.remapping_launch_files:
+        yield f"remaps in {many(notes.remapping_launch_files, 'launch file')}"
+    if unknown := unknown_topics(result):
+        yield f"the names of {many(unknown, 'topic')} computed at run time"
+
+
+def unknown_topics(result: Result) -> int:
+    """Count the subscriptions and publish calls in flows whose topic is not known."""
+    flows = [f.flow for f in result.findings if f.flow]
+    ends = {e.span for flow in flows for e in (flow.source, flow.sink) if not e.topics}
+    return len(ends)
+
+
+def vanished(result: Result, view: View) -> Iterator[Line]:
+    """Yield the accepted flows that are no longer there."""
+    if not result.vanished or not result.baseline:
+        return
+    yield ((f"No longer there, though accepted in {shown(result.baseline)}:", "strong"),)
+    for entry in result.vanished[:_SHOWN]:
+        yield ((f"  {in_words(entry, view.glyphs.arrow)}", ""),)
+    if len(result.vanished) > _SHOWN:
+        yield ((f"  and {len(result.vanished) - _SHOWN} more", "quiet"),)
+    yield (("  Run --write-baseline to forget them.", "quiet"),)
+    yield ()
+
+
+def in_words(entry: Accepted, arrow: str) -> str:
+    """Describe an accepted flow: `odom → cmd_vel, explicit, by callback, published in travel (shuttle)`."""
+    key = entry.fingerprint
+    by = f", heard by {key.callback}" if key.callback else ""
+    place = f", published in {key.place}" if key.place else ""
+    times = f", {entry.count} times" if entry.count > 1 else ""
+    return f"{key.source} {arrow} {key.sink}, {key.kind}{by}{place} ({key.package}){times}"
+
+
+def unused(result: Result) -> Iterator[Line]:
+    """Yield the comments that silence nothing."""
+    for comment in result.unused:
+        what = f"no {comment.code}" if comment.code else "no finding"
+        yield (
+            (f"{comment.path}:{comment.line}:{comment.column}", "place"),
+            (f" note: there is {what} here for this comment to silence: take it out.", ""),
+        )
+    if result.unused:
+        yield ()
+
+
+def statistics(result: Result) -> Iterator[Line]:
+    """Yield the counts of a run, one a line."""
+    flows = [f.flow for f in result.findings if f.flow]
+    steps = Counter(step.dependence for flow in flows for step in flow.steps)
+    lengths = sorted(sum(s.dependence != "context" for s in flow.steps) for flow in flows)
+    rows = [
+        *sorted(Counter(f.code for f in result.findings).items()),
+        (UNREADABLE, len(result.errors)),
+        ("silenced by comments", result.statistics.silenced),
+        ("accepted in the baseline", sum(f.status == "accepted" for f in result.findings)),
+        ("subscriptions that reach a publish call", len({flow.source.id for flow in flows})),
+        ("publish calls reached", len({flow.sink.id for flow in flows})),
+        ("steps that carry the value", steps["data"]),
+        ("steps that decide", steps["control"]),
+        ("steps of a flow, median", lengths[len(lengths) // 2] if lengths else 0),
+        ("files analysed", result.statistics.files),
+        ("lines analysed", result.statistics.lines),
+    ]
+    width = max(len(str(number)) for _, number in rows)
+    for name, number in rows:
+        yield ((f"{number:>{width}}", "strong"), (f"  {name}", ""))
+    yield ()

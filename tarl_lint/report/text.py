@@ -1,0 +1,67 @@
+"""The report for people, in full and concise (one finding a line)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tarl_lint.model import Finding
+from tarl_lint.report import summary
+from tarl_lint.report.flows import legend, location, publish_call, publish_calls
+from tarl_lint.report.frame import frame, lines_of
+from tarl_lint.report.line import Line, Style, View
+from tarl_lint.runner import UNREADABLE, Result
+
+
+def report(result: Result, view: View) -> Iterator[Line]:
+    """Yield unreadable files, flows by publish call, hazards, and the closing words."""
+    yield from _errors(result)
+    yield from _flows(result, view)
+    for finding in result.new:
+        if finding.flow is None:
+            yield _heading(finding)
+            yield from frame(lines_of(result.texts.get(finding.span.path, "")), finding.span, "hazard", view)
+            yield ()
+    yield from summary.vanished(result, view)
+    yield from summary.unused(result)
+    if view.statistics:
+        yield from summary.statistics(result)
+    yield from summary.closing(result)
+    yield from summary.hints(result, view)
+
+
+def concise(result: Result, view: View) -> Iterator[Line]:
+    """Yield each finding on a line of its own, then the closing words."""
+    for error in result.errors:
+        yield ((f"{error.path}:{error.line}:1", "place"), (f" {UNREADABLE} ", "error"), (error.message, ""))
+    for finding in result.new:
+        yield _heading(finding)
+    for line in summary.unused(result):
+        if line:
+            yield line
+    if view.statistics:
+        yield from summary.statistics(result)
+    yield from summary.closing(result)
+
+
+def _errors(result: Result) -> Iterator[Line]:
+    for error in result.errors:
+        yield ((f"{error.path}:{error.line}", "place"), (f" {UNREADABLE} ", "error"), (error.message, ""))
+    if result.errors:
+        yield ()
+
+
+def _flows(result: Result, view: View) -> Iterator[Line]:
+    """Yield every publish call; a flow that is the only one is shown with its taint list."""
+    flows = [f for f in result.new if f.flow]
+    paths = view.show_paths or len(flows) == 1
+    for group in publish_calls(flows):
+        source = lines_of(result.texts.get(group[0][1].sink.span.path, ""))
+        yield from publish_call(group, source, view, paths=paths)
+    if flows and paths:
+        yield legend(view)
+        yield ()
+
+
+def _heading(finding: Finding) -> Line:
+    style: Style = finding.flow.kind if finding.flow else "hazard"
+    return ((location(finding.span), "place"), (f" {finding.code} ", style), (finding.message, ""))

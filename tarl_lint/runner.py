@@ -1,0 +1,222 @@
+"""One run: discover, parse, analyse, silence, subtract the baseline. A file that fails is an error entry."""
+
+from __future__ import annotations
+
+import os
+import traceback
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Final
+
+from tarl_lint import baseline, discover, suppress
+from tarl_lint.baseline import Accepted, Baseline, Fingerprint
+from tarl_lint.config import Config, Options
+from tarl_lint.discover import Notes, SourceFile
+from tarl_lint.errors import AnalysisBug, UsageError
+from tarl_lint.layout import Layout
+from tarl_lint.model import Finding, Kind
+from tarl_lint.source import Module, SourceError, parse
+from tarl_lint.suppress import Suppression
+
+UNREADABLE: Final = "TARL001"
+CODES: Final[Mapping[Kind, str]] = {"explicit": "TARL101", "implicit": "TARL102"}
+
+
+@dataclass(frozen=True, slots=True)
+class Statistics:
+    """Counts of one run: files and lines analysed, findings silenced by comments, what was left out."""
+
+    files: int = 0
+    lines: int = 0
+    silenced: int = 0
+    notes: Notes = field(default_factory=Notes)
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """Everything that a run found: what all reports are made from.
+
+    `findings` are sorted by place and carry fingerprint and status. `found` are the same flows as a baseline
+    holds them, `vanished` and `kept` what the baseline holds beyond that. `texts` are the analysed files.
+    """
+
+    findings: tuple[Finding, ...] = ()
+    errors: tuple[SourceError, ...] = ()
+    found: tuple[Accepted, ...] = ()
+    vanished: tuple[Accepted, ...] = ()
+    kept: tuple[Accepted, ...] = ()
+    unused: tuple[Suppression, ...] = ()
+    texts: Mapping[str, str] = field(default_factory=dict)
+    statistics: Statistics = field(default_factory=Statistics)
+    baseline: Path | None = None
+
+    @property
+    def new(self) -> tuple[Finding, ...]:
+        """Return the findings that the baseline does not hold."""
+        return tuple(f for f in self.findings if f.status == "new")
+
+
+def run(options: Options, config: Config) -> Result:
+    """Lint the files at and below the paths.
+
+    Raises UsageError when there is nothing to lint, BaselineError when the baseline is unusable, AnalysisBug
+    when the analysis crashed.
+    """
+    discovery = discover.find(options.paths, config)
+    if not discovery.files:
+        raise UsageError(_nothing(options.paths, discovery.notes))
+    known = _accepted(options, config)
+    modules, errors = read(discovery.files)
+    texts = {module.path: module.text for module in modules}
+    identities = _Identities(discovery.files, config)
+    wanted = tuple(identities.mark(f) for f in _analyse(modules, config) if config.enabled(f.code))
+    heard, unused = suppress.apply(wanted, texts)
+    findings = baseline.subtract(heard, known.counts())
+    judged = _judge(discovery.files, errors, config)
+    vanished, kept = baseline.missing(known, Counter(f.fingerprint for f in wanted), judged)
+    silenced = len(wanted) - len(heard)
+    lines = sum(text.count("\n") for text in texts.values())
+    return Result(
+        findings=tuple(sorted(findings, key=_place)),
+        errors=errors,
+        found=identities.entries(findings),
+        vanished=vanished,
+        kept=kept,
+        unused=tuple(s for s in unused if config.enabled(s.code or "TARL")),
+        texts=texts,
+        statistics=Statistics(len(modules), lines, silenced, discovery.notes),
+        baseline=config.baseline if known.entries else None,
+    )
+
+
+def exceeds(result: Result, config: Config) -> bool:
+    """Tell whether the findings are what `fail_on` fails on: each level includes the ones before it."""
+    codes = {f.code for f in result.new}
+    hazards = {code for code in codes if code.startswith("TARL2")}
+    levels = {
+        "never": set[str](),
+        "hazard": hazards,
+        "explicit": hazards | (codes & {CODES["explicit"]}),
+        "implicit": hazards | (codes & set(CODES.values())),
+    }
+    return bool(levels[config.fail_on])
+
+
+def read(files: Sequence[SourceFile]) -> tuple[tuple[Module, ...], tuple[SourceError, ...]]:
+    """Parse the files. One that cannot be read, or on which the parser fails, becomes an error."""
+    parsed = [_read(file) for file in files]
+    modules = tuple(p for p in parsed if isinstance(p, Module))
+    return modules, tuple(p for p in parsed if isinstance(p, SourceError))
+
+
+def _read(file: SourceFile) -> Module | SourceError:
+    try:
+        found = parse(file.shown, file.path.read_bytes(), file.name)
+    except OSError as error:
+        return SourceError(file.shown, 1, f"This file cannot be read: {error.strerror}.")
+    except Exception as error:
+        if _debugging():
+            raise
+        what = f"{type(error).__name__}: {error}".rstrip(": ")
+        return SourceError(file.shown, 1, f"tarl-lint failed on this file ({what}); the fault is ours.")
+    if isinstance(found, Module) and found.is_package != file.is_package:
+        return replace(found, is_package=file.is_package)
+    return found
+
+
+def _analyse(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
+    from tarl_lint import engine  # --help and mistyped commands need not wait for it
+
+    try:
+        return engine.findings(engine.analyse(modules, config))
+    except Exception as error:
+        if _debugging():
+            raise
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        what = f"{type(error).__name__}: {error}".rstrip(": ")
+        raise AnalysisBug(
+            f"tarl-lint has a bug and could not finish ({what}, {Path(last.filename).name}:{last.lineno}). "
+            "Run it with TARL_DEBUG=1 for the traceback and report that, please; --exclude helps meanwhile."
+        ) from None
+
+
+def _debugging() -> bool:
+    return os.environ.get("TARL_DEBUG", "") not in ("", "0")
+
+
+def _accepted(options: Options, config: Config) -> Baseline:
+    """Load the baseline, if there is one; one that is about to be written may still be missing."""
+    path = config.baseline
+    if path is None or (options.write_baseline and not path.exists()):
+        return Baseline()
+    return baseline.load(path)
+
+
+class _Identities:
+    """Knows each flow's fingerprint, by way of the ROS package and of where the baseline is."""
+
+    def __init__(self, files: Sequence[SourceFile], config: Config) -> None:
+        self._paths = {file.shown: file.path for file in files}
+        self._layout = Layout()
+        self._directory = _home(config)
+        self._by_digest: dict[str, Fingerprint] = {}
+
+    def mark(self, finding: Finding) -> Finding:
+        """Return a flow's finding with its fingerprint."""
+        if finding.flow is None:
+            return finding
+        place = self._paths.get(finding.flow.source.span.path)
+        package = self._layout.ros_package(str(place)) if place else ""
+        fingerprint = baseline.fingerprint(finding.flow, package)
+        digest = fingerprint.digest()
+        self._by_digest[digest] = fingerprint
+        return replace(finding, fingerprint=digest)
+
+    def entries(self, findings: Sequence[Finding]) -> tuple[Accepted, ...]:
+        """Return the flows as a baseline holds them."""
+        each = (Accepted(self._by_digest[f.fingerprint], 1, self._files(f)) for f in findings if f.flow)
+        return baseline.merged(each, ()).entries
+
+    def _files(self, finding: Finding) -> tuple[str, ...]:
+        if finding.flow is None:
+            return ()
+        shown = {finding.flow.source.span.path, finding.flow.sink.span.path}
+        places = (self._paths.get(path, Path(path)) for path in shown)
+        return tuple(sorted(Path(os.path.relpath(place, self._directory)).as_posix() for place in places))
+
+
+def _home(config: Config) -> Path:
+    """Return the directory that file names in the baseline are relative to."""
+    return config.baseline.absolute().parent if config.baseline else Path.cwd()
+
+
+def _judge(
+    files: Sequence[SourceFile], errors: Sequence[SourceError], config: Config
+) -> Callable[[Accepted], bool]:
+    """Return the test whether this run can know that an accepted flow is gone."""
+    unreadable = {error.path for error in errors}
+    analysed = {os.path.realpath(f.path) for f in files if f.shown not in unreadable}
+    home = _home(config)
+
+    def settled(name: str) -> bool:
+        place = home / name
+        return os.path.realpath(place) in analysed or not place.exists()
+
+    def judged(entry: Accepted) -> bool:
+        return config.enabled(CODES[entry.fingerprint.kind]) and all(map(settled, entry.files))
+
+    return judged
+
+
+def _place(finding: Finding) -> tuple[object, ...]:
+    """Sort by publish call, then rule, then subscription."""
+    source = (finding.flow.source.span,) if finding.flow else ()
+    return (finding.span, finding.code, source, finding.message)
+
+
+def _nothing(paths: Sequence[Path], notes: Notes) -> str:
+    places = ", ".join(path.as_posix() for path in paths)
+    nodes = f" (there are {notes.cpp_nodes} C++ nodes, which it does not read)" if notes.cpp_nodes else ""
+    return f"There is no Python file to lint in {places}{nodes}: name a file or a directory that holds some."

@@ -1,0 +1,232 @@
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from tarl_lint import __version__, runner
+from tarl_lint.cli import main
+from tarl_lint.report import paint
+
+
+@pytest.fixture
+def node(example, in_directory) -> Path:
+    return in_directory({"node.py": example.text}) / "node.py"
+
+
+def lint(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    code = main(arguments)
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def test_an_explicit_flow_is_shown_and_fails(node, capsys):
+    code, out, err = lint(capsys, "node.py")
+    assert code == 1
+    assert out.startswith("node.py:18:9 publishes velocity (Float64) in travel\n")
+    assert "1 flow in 1 file: 1 explicit.\n" in out
+    assert err == ""
+
+
+def test_without_paths_the_working_directory_is_linted(node, capsys):
+    assert lint(capsys) == lint(capsys, ".")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (["--exit-zero"], 0),
+        (["--fail-on", "never"], 0),
+        (["--fail-on", "hazard"], 0),
+        (["--fail-on", "implicit"], 1),
+        (["--ignore", "TARL101"], 0),
+        (["--select", "TARL102"], 0),
+    ],
+)
+def test_options_decide_when_to_fail(node, capsys, arguments, code):
+    assert lint(capsys, *arguments)[0] == code
+
+
+def test_json_is_the_document_of_the_schema(node, capsys):
+    code, out, _ = lint(capsys, "--format", "json", "--exit-zero")
+    schema = json.loads((Path(runner.__file__).parent / "report/findings.schema.json").read_text())
+    jsonschema.validate(json.loads(out), schema)
+    assert code == 0
+    assert json.loads(out)["diagnostics"][0]["path"] == "node.py"
+
+
+def test_the_report_goes_to_a_file_when_asked(node, capsys):
+    code, out, _ = lint(capsys, "--format", "json", "--output-file", "report.json")
+    assert (code, out) == (1, "")
+    assert json.loads(Path("report.json").read_text())["files"] == 1
+    code, _, err = lint(capsys, "--output-file", "no/such/report.txt")
+    assert code == 2
+    assert (
+        err == "tarl-lint: The report cannot be written to no/such/report.txt: No such file or directory.\n"
+    )
+
+
+def test_accepted_flows_pass_until_the_baseline_is_left_out(node, capsys):
+    code, out, _ = lint(capsys, "--write-baseline")
+    assert (code, out) == (0, "tarl-flows.json: 1 flow accepted (1 new, 0 forgotten).\n")
+    code, out, _ = lint(capsys)
+    assert (code, out) == (0, "No new flow in 1 file (1 accepted in tarl-flows.json).\n")
+    assert lint(capsys, "--no-baseline")[0] == 1
+    node.write_text("x = 1\n")
+    code, out, err = lint(capsys)
+    assert code == 0
+    assert "No longer there, though accepted in tarl-flows.json:\n  odom → velocity, explicit" in out
+    code, out, err = lint(capsys, "--format", "json")
+    assert json.loads(out)["diagnostics"] == []
+    assert "odom → velocity" in err
+    assert lint(capsys, "--write-baseline")[1] == "tarl-flows.json: 0 flows accepted (0 new, 1 forgotten).\n"
+
+
+def test_unreadable_files_are_said_when_the_baseline_is_written(node, capsys):
+    lint(capsys, "--write-baseline")
+    node.write_text("def f(:\n")
+    out = lint(capsys, "--write-baseline")[1]
+    assert out == (
+        "tarl-flows.json: 1 flow accepted (0 new, 0 forgotten, 1 kept of files that were not read).\n"
+        "Not analysed: 1 file that is not readable as Python 3 (TARL001).\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--fromat", "json"], "There is no option --fromat: did you mean '--format'?"),
+        (["--show-path"], "There is no option --show-path: did you mean '--show-paths'?"),
+        (
+            ["--format", "jsno"],
+            "--format cannot be 'jsno': did you mean 'json'? It can be text, concise, json.",
+        ),
+        (["--fail-on", "all"], "--fail-on cannot be 'all'. It can be never, hazard, explicit, implicit."),
+        (["--baseline"], "--baseline needs a value."),
+        (["nod.py"], "There is no nod.py: did you mean node.py?"),
+        (["empty"], "There is no Python file to lint in empty"),
+        (["--config", "none.toml"], "The settings file none.toml cannot be read: No such file or directory."),
+        (["--config", "bad.toml"], "bad.toml: [tool.tarl-lint] has no key 'selcet': did you mean 'select'?"),
+        (
+            ["--baseline", "none.json"],
+            "The baseline none.json does not exist: write it with --write-baseline",
+        ),
+        (["--baseline", "bad.toml"], "The baseline bad.toml is damaged"),
+        (["--no-baseline", "--write-baseline"], "--no-baseline and --write-baseline contradict each other"),
+        (["--select", "TARL9"], "--select names 'TARL9', which is no rule"),
+        (["--ignore", "E501"], "--ignore names 'E501', which is no rule"),
+        (["--explain", "TARL110"], "There is no rule TARL110: did you mean 'TARL101'?"),
+    ],
+)
+def test_what_cannot_be_used_is_one_sentence_and_exit_code_2(node, capsys, arguments, sentence):
+    (node.parent / "empty").mkdir()
+    (node.parent / "bad.toml").write_text("selcet = []\n")
+    code, out, err = lint(capsys, *arguments)
+    assert (code, out) == (2, "")
+    assert err.startswith(f"tarl-lint: {sentence}")
+    assert err.count("\n") == 1
+
+
+def test_version_and_help_are_there(capsys):
+    for option, expected in (("--version", f"tarl-lint {__version__}\n"), ("--help", "usage: tarl-lint")):
+        with pytest.raises(SystemExit) as stop:
+            main([option])
+        assert stop.value.code == 0
+        assert capsys.readouterr().out.startswith(expected)
+
+
+def test_settings_are_shown_as_they_would_be_written(node, capsys):
+    (node.parent / "pyproject.toml").write_text('[tool.tarl-lint]\nexclude = ["vendor/"]\n')
+    code, out, _ = lint(capsys, "--show-settings", "--fail-on", "implicit")
+    assert code == 0
+    assert "# settings file: pyproject.toml\n" in out
+    lines = [" ".join(line.split()) for line in out.splitlines()]
+    assert 'exclude = ["vendor/"] # pyproject.toml' in lines
+    assert 'fail-on = "implicit" # command line' in lines
+    assert "select = [] # default" in lines
+
+
+def test_a_bug_of_ours_is_one_sentence(node, capsys, monkeypatch):
+    monkeypatch.setattr("tarl_lint.engine.analyse", lambda modules, config: 1 / 0)
+    code, out, err = lint(capsys)
+    assert (code, out) == (2, "")
+    assert "tarl-lint has a bug and could not finish (ZeroDivisionError" in err
+
+
+def test_interruption_is_one_line(node, capsys, monkeypatch):
+    def interrupt(chosen, config):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(runner, "run", interrupt)
+    assert lint(capsys) == (130, "", "tarl-lint: interrupted.\n")
+
+
+def test_colours_are_for_terminals_that_want_them():
+    class Terminal:
+        def isatty(self):
+            return True
+
+    class Pipe:
+        def isatty(self):
+            return False
+
+    assert paint.wants_colour(Terminal(), {"TERM": "xterm"})
+    assert not paint.wants_colour(Pipe(), {})
+    assert not paint.wants_colour(Terminal(), {"NO_COLOR": "1"})
+    assert not paint.wants_colour(Terminal(), {"TERM": "dumb"})
+    assert paint.wants_colour(Terminal(), {"NO_COLOR": ""})
+    assert paint.wants_colour(Pipe(), {"FORCE_COLOR": "1"})
+
+
+def run(node: Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[bytes]:
+    return subprocess.run(
+        [sys.executable, "-m", "tarl_lint", *arguments],
+        cwd=node.parent, capture_output=True, check=False, env={**os.environ, **environment},
+    )  # fmt: skip
+
+
+def test_forced_colours_change_nothing_but_colours(node):
+    import re
+
+    coloured = run(node, FORCE_COLOR="1", NO_COLOR="", TERM="xterm-256color").stdout
+    assert b"\x1b[" in coloured
+    assert re.sub(rb"\x1b\[[0-9;]*m", b"", coloured) == run(node, NO_COLOR="1").stdout
+
+
+def test_a_terminal_that_only_knows_ascii_is_no_problem(node):
+    node.rename(node.parent / "nöde.py")
+    done = run(node, PYTHONIOENCODING="ascii", NO_COLOR="1")
+    assert done.returncode == 1
+    assert done.stdout.startswith(b"n\\xf6de.py:18:9 publishes velocity")
+    assert done.stderr == b""
+
+
+def test_a_reader_that_goes_away_is_no_error(node):
+    node.write_text(node.read_text() + "# filler\n" * 10)
+    command = f"{sys.executable} -m tarl_lint --format json --exit-zero; echo code $? >&2"
+    done = subprocess.run(
+        ["bash", "-c", f"({command}) | true"], cwd=node.parent, capture_output=True, check=False
+    )
+    assert done.stderr == b"code 0\n"
+
+
+def test_ctrl_c_ends_a_real_run_with_one_line(node):
+    program = (
+        "import os, signal, sys, tarl_lint.runner as r\n"
+        "from tarl_lint.cli import main\n"
+        "r.run = lambda *a: os.kill(os.getpid(), signal.SIGINT) or signal.pause()\n"
+        "sys.exit(main([]))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], cwd=node.parent, capture_output=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"tarl-lint: interrupted.\n")
+    assert signal.SIGINT
+
+
+def test_the_installed_command_is_there(node):
+    command = Path(sys.executable).parent / "tarl-lint"
+    done = subprocess.run([str(command), "--version"], capture_output=True, check=False, text=True)
+    assert done.stdout == f"tarl-lint {__version__}\n"

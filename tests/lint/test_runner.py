@@ -1,0 +1,219 @@
+import sys
+import types
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import tarl_lint
+from tarl_lint import baseline, runner
+from tarl_lint.config import Options, resolve
+from tarl_lint.errors import AnalysisBug, UsageError
+from tarl_lint.runner import Result, exceeds, run
+
+
+@pytest.fixture
+def lint() -> Callable[..., Result]:
+    def go(*paths: str, **options) -> Result:
+        chosen = Options(paths=tuple(map(Path, paths)) or (Path(),), **options)
+        return run(chosen, resolve(chosen))
+
+    return go
+
+
+@pytest.fixture
+def accept(lint) -> Callable[..., Path]:
+    """Accept what is found, as --write-baseline does, and return the file."""
+
+    def go(*paths: str) -> Path:
+        result = lint(*paths, write_baseline=True)
+        baseline.save(Path("tarl-flows.json"), baseline.merged(result.found, result.kept))
+        return Path("tarl-flows.json")
+
+    return go
+
+
+@pytest.fixture
+def crash(monkeypatch):
+    def analyse(modules, config):
+        raise KeyError("graph")
+
+    broken = types.ModuleType("tarl_lint.engine")
+    broken.analyse = analyse
+    broken.findings = tuple
+    monkeypatch.setitem(sys.modules, "tarl_lint.engine", broken)
+    monkeypatch.setattr(tarl_lint, "engine", broken, raising=False)
+
+
+def test_flows_are_found_with_fingerprint_and_text(example, in_directory, lint):
+    in_directory({"node.py": example.text})
+    result = lint()
+    assert [f.code for f in result.findings] == ["TARL101"]
+    assert len(result.findings[0].fingerprint) == 16
+    assert result.texts == {"node.py": example.text}
+    assert (result.statistics.files, result.statistics.lines) == (1, example.text.count("\n"))
+
+
+def test_a_file_that_cannot_be_parsed_is_an_error_and_the_rest_is_linted(example, in_directory, lint):
+    in_directory({"node.py": example.text, "broken.py": "def f(:\n", "old.py": "print 'x'\n"})
+    result = lint()
+    assert [(e.path, e.line) for e in result.errors] == [("broken.py", 1), ("old.py", 1)]
+    assert len(result.findings) == 1
+    assert result.statistics.files == 1
+
+
+def test_a_file_on_which_the_parser_crashes_is_an_error(example, in_directory, lint, monkeypatch):
+    def parse(path, data, name):
+        if path == "odd.py":
+            raise AssertionError("boom")
+        return original(path, data, name)
+
+    original = runner.parse
+    monkeypatch.setattr(runner, "parse", parse)
+    in_directory({"node.py": example.text, "odd.py": ""})
+    result = lint()
+    assert [e.message for e in result.errors] == [
+        "tarl-lint failed on this file (AssertionError: boom); the fault is ours."
+    ]
+    assert len(result.findings) == 1
+
+
+def test_a_file_that_disappears_meanwhile_is_an_error(example, in_directory, lint, monkeypatch):
+    in_directory({"node.py": example.text, "gone.py": ""})
+    read = Path.read_bytes
+    monkeypatch.setattr(
+        Path, "read_bytes", lambda p: read(p.parent / "nowhere" if p.name == "gone.py" else p)
+    )
+    result = lint()
+    assert [(e.path, e.message) for e in result.errors] == [
+        ("gone.py", "This file cannot be read: No such file or directory.")
+    ]
+
+
+def test_a_crash_of_the_analysis_is_our_bug_in_one_sentence(example, in_directory, lint, crash, monkeypatch):
+    in_directory({"node.py": example.text})
+    with pytest.raises(
+        AnalysisBug, match=r"has a bug .*KeyError: 'graph', test_runner\.py:\d+\).*TARL_DEBUG=1"
+    ):
+        lint()
+    monkeypatch.setenv("TARL_DEBUG", "1")
+    with pytest.raises(KeyError):
+        lint()
+
+
+def test_nothing_to_lint_is_said_with_what_there_is_instead(in_directory, lint):
+    in_directory({"README": "", "node.cpp": "ros::init(argc, argv);"})
+    with pytest.raises(UsageError, match=r"no Python file to lint in \. \(there are 1 C\+\+ nodes"):
+        lint()
+
+
+def test_rules_that_are_ignored_find_nothing(example, in_directory, lint):
+    in_directory({"node.py": example.text})
+    assert lint(ignore=("TARL1",)).findings == ()
+    assert lint(select=("TARL102",)).findings == ()
+
+
+def test_a_silenced_flow_is_counted_and_an_idle_comment_is_reported(example, in_directory, lint):
+    text = example.text.replace("pub.publish(vel)", "pub.publish(vel)  # tarl: ignore[TARL101]")
+    in_directory({"node.py": text, "clean.py": "x = 1  # tarl: ignore\n"})
+    result = lint()
+    assert result.findings == ()
+    assert result.statistics.silenced == 1
+    assert [(s.path, s.line) for s in result.unused] == [("clean.py", 1)]
+
+
+def test_a_comment_for_a_rule_that_did_not_run_is_not_reported(example, in_directory, lint):
+    in_directory({"node.py": example.text.replace("(vel)", "(vel)  # tarl: ignore[TARL101]", 1)})
+    assert lint(select=("TARL102",)).unused == ()
+
+
+def test_accepted_flows_are_not_new_even_when_lines_move(example, in_directory, lint, accept):
+    root = in_directory({"node.py": example.text})
+    accept()
+    (root / "node.py").write_text("#!/usr/bin/env python3\n\n\n" + example.text)
+    result = lint()
+    assert [f.status for f in result.findings] == ["accepted"]
+    assert result.new == ()
+    assert result.vanished == ()
+
+
+def test_another_flow_of_an_accepted_group_reports_the_group(example, in_directory, lint, accept):
+    root = in_directory({"node.py": example.text})
+    accept()
+    twice = example.text.replace(
+        "        pub.publish(vel)\n", "        pub.publish(vel)\n        pub.publish(vel)\n"
+    )
+    (root / "node.py").write_text(twice)
+    assert [f.status for f in lint().findings] == ["new", "new"]
+
+
+def test_a_flow_that_is_gone_has_vanished(example, in_directory, lint, accept):
+    root = in_directory({"node.py": example.text})
+    accept()
+    (root / "node.py").write_text("x = 1\n")
+    assert [e.fingerprint.source for e in lint().vanished] == ["odom"]
+    (root / "node.py").rename(root / "renamed.py")
+    assert [e.fingerprint.source for e in lint().vanished] == ["odom"]
+
+
+def test_flows_of_files_that_were_not_looked_at_or_cannot_be_read_are_kept(
+    example, in_directory, lint, accept
+):
+    root = in_directory({"a/node.py": example.text, "b/other.py": "x = 1\n"})
+    path = accept()
+    before = path.read_bytes()
+    assert lint("b", baseline=path).vanished == ()
+    (root / "a/node.py").write_text("def f(:\n")
+    result = lint(baseline=path)
+    assert result.vanished == ()
+    assert len(result.kept) == 1
+    accept()
+    assert path.read_bytes() == before
+
+
+def test_flows_of_rules_that_did_not_run_are_kept(example, in_directory, lint, accept):
+    in_directory({"node.py": example.text})
+    path = accept()
+    result = lint(baseline=path, select=("TARL102",))
+    assert (len(result.vanished), len(result.kept)) == (0, 1)
+
+
+def test_a_baseline_is_the_same_from_every_directory(example, in_directory, lint, accept, monkeypatch):
+    root = in_directory({"pyproject.toml": "[tool.tarl-lint]\n", "src/node.py": example.text})
+    before = accept().read_bytes()
+    monkeypatch.chdir(root / "src")
+    result = lint()
+    assert [f.status for f in result.findings] == ["accepted"]
+    assert baseline.dumps(baseline.merged(result.found, result.kept)).encode() == before
+
+
+def test_equal_nodes_of_two_ros_packages_are_told_apart(example, in_directory, lint):
+    manifest = "<package><name>{}</name></package>"
+    in_directory(
+        {"a/package.xml": manifest.format("left"), "a/scripts/node.py": example.text,
+         "b/package.xml": manifest.format("right"), "b/scripts/node.py": example.text}
+    )  # fmt: skip
+    assert [e.fingerprint.package for e in lint().found] == ["left", "right"]
+
+
+@pytest.mark.parametrize(
+    ("level", "codes", "fails"),
+    [
+        ("never", ("TARL201", "TARL101", "TARL102"), False),
+        ("hazard", ("TARL101", "TARL102"), False),
+        ("hazard", ("TARL201",), True),
+        ("explicit", ("TARL102",), False),
+        ("explicit", ("TARL101",), True),
+        ("explicit", ("TARL201",), True),
+        ("implicit", ("TARL102",), True),
+        ("implicit", ("TARL101",), True),
+        ("implicit", (), False),
+    ],
+)
+def test_each_level_of_fail_on_includes_the_ones_before(example, in_directory, level, codes, fails):
+    in_directory({})
+    result = Result(findings=tuple(replace(example.finding(), code=code) for code in codes))
+    assert exceeds(result, resolve(Options(fail_on=level))) is fails
+    accepted = Result(findings=tuple(replace(f, status="accepted") for f in result.findings))
+    assert not exceeds(accepted, resolve(Options(fail_on=level)))

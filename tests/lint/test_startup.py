@@ -1,0 +1,70 @@
+"""What a run of the linter imports: little, and nothing that belongs to the plugin."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+HEAVY = (
+    "numpy",
+    "libcst",
+    "rich",
+    "astroid",
+    "pytest",
+    "greenlet",
+    "msgspec",
+    "tomllib",
+    "difflib",
+    "tokenize",
+)
+
+
+def python(directory: Path, program: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=directory,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture
+def place(example, in_directory) -> Path:
+    return in_directory({"node.py": example.text, "clean.py": "import rospy\n\n\ndef f(x):\n    return x\n"})
+
+
+def test_a_run_on_a_clean_file_imports_nothing_heavy(place):
+    program = f"""
+import sys
+from tarl_lint.cli import main
+assert main(["clean.py"]) == 0
+print(sorted(set({HEAVY!r}) & set(sys.modules)), file=sys.stdout)
+"""
+    assert python(place, program).splitlines()[-1] == "[]"
+
+
+def test_it_works_where_the_other_dependencies_are_missing(place):
+    program = """
+import sys
+
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] in {"numpy", "pytest", "_pytest", "greenlet", "libcst", "rich", "msgspec", "astroid"}:
+            raise ModuleNotFoundError(name)
+
+sys.meta_path.insert(0, Missing())
+import os
+os.environ["FORCE_COLOR"] = "1"
+from tarl_lint.cli import main
+assert main(["node.py"]) == 1
+assert main(["--format", "json", "--write-baseline"]) == 0
+assert main([]) == 0
+"""
+    out = python(place, program)
+    assert out.startswith("node.py:18:9 publishes velocity")
+    assert "\x1b" not in out
