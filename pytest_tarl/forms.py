@@ -51,6 +51,16 @@ def where(node: ast.expr | ast.stmt | ast.keyword) -> Where:
     )
 
 
+def start_of(node: ast.expr | ast.stmt) -> Where:
+    """Return where the part of `node` that runs first begins, an empty range.
+
+    A range over several lines would not do: the call of a method stands where its attribute ends.
+    """
+    first = first_evaluated(node) if isinstance(node, ast.expr) else node
+    line, column = first.lineno, first.col_offset
+    return Where(lineno=line, col_offset=column, end_lineno=line, end_col_offset=column)
+
+
 def first_evaluated(node: ast.expr) -> ast.expr:
     """Return the part of an expression that runs first: where a debugger would stop."""
     while True:
@@ -95,7 +105,7 @@ def _derived(hook: str, suffix: str) -> str:
 
 def recorded(value: ast.expr, number: int, names: Names) -> ast.Call:
     """Build `hook(number, value)`, which gives `value` back."""
-    start = where(first_evaluated(value))
+    start = start_of(value)
     return ast.Call(
         func=ast.Name(names.hook, ast.Load(), **start),
         args=[ast.Constant(number, **start), value],

@@ -87,6 +87,7 @@ class NodeImports:
 
     def run_script(self, path: Path, name: str = "__main__") -> ModuleType:
         """Execute a file as `python path` does, in a fresh module that `sys.modules` holds under `name`."""
+        __tracebackhide__ = True
         module = ModuleType(name)
         module.__file__ = str(path)
         module.__loader__ = NodeLoader(name, str(path), self)
@@ -102,9 +103,11 @@ class NodeImports:
 
     def prepare(self, module: ModuleType, path: Path) -> None:
         """Give a module what its instrumented code needs, before it is executed."""
-        self._executed.add(path.resolve())
+        file = path.resolve()
+        self._executed.add(file)
         self._namespaces.append(module.__dict__)
-        self._bind(module.__dict__)
+        if self._code.recorded(file):
+            self._bind(module.__dict__)
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
         """Find a file of the plan or overlay; of all other imports only note whether a node asks for them."""

@@ -9,13 +9,12 @@ from typing import Literal, TypeVar
 from pytest_tarl.forms import (
     Names,
     Where,
-    first_evaluated,
     note,
     note_constant,
     reached,
     recorded,
+    start_of,
     truth,
-    where,
 )
 
 Offset = tuple[int, int]  # line from 1 and column in UTF-8 bytes from 0, as `ast` counts
@@ -122,7 +121,7 @@ class _Recording(ast.NodeTransformer):
             node.body = self._value(node.body, body, publish=publish)
         parameters = _parameters(node.args)
         if receives is not None and parameters and not same:
-            at = where(first_evaluated(node.body))
+            at = start_of(node.body)
             message = recorded(ast.Name(parameters[0].arg, ast.Load(), **at), receives, self._names)
             pair = ast.Tuple([message, node.body], ast.Load(), **at)
             node.body = ast.Subscript(pair, ast.Constant(1, **at), ast.Load(), **at)
@@ -133,7 +132,7 @@ class _Recording(ast.NodeTransformer):
         number = self._number(node)
         self.generic_visit(node)
         if number is not None:
-            node.body[:0] = note_constant(0.0, number, self._names, where(first_statement(node.body)))
+            node.body[:0] = note_constant(0.0, number, self._names, start_of(first_statement(node.body)))
         return node
 
     def visit_match_case(self, node: ast.match_case) -> ast.match_case:
@@ -161,7 +160,7 @@ class _Recording(ast.NodeTransformer):
     def _record_assign(self, node: ast.Assign, number: int) -> list[ast.stmt]:
         target = node.targets[0]
         if len(node.targets) == 1 and isinstance(target, ast.Name) and self._rereadable():
-            return [node, note(target.id, number, self._names, where(target))]
+            return [node, note(target.id, number, self._names, start_of(target))]
         return self._before_or_around(node, node.value, number)
 
     def _record_annassign(self, node: ast.AnnAssign, number: int) -> list[ast.stmt]:
@@ -172,7 +171,7 @@ class _Recording(ast.NodeTransformer):
 
     def _record_augassign(self, node: ast.AugAssign, number: int) -> list[ast.stmt]:
         if isinstance(node.target, ast.Name):
-            return [node, note(node.target.id, number, self._names, where(node.target))]
+            return [node, note(node.target.id, number, self._names, start_of(node.target))]
         return self._before_or_around(node, node.value, number)
 
     def _record_return(self, node: ast.Return, number: int) -> list[ast.stmt]:
@@ -199,16 +198,19 @@ class _Recording(ast.NodeTransformer):
         return [node]
 
     def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:
-        at = where(first_evaluated(node.test))
-        node.body[:0] = note_constant(1.0, number, self._names, at)
-        node.orelse[:0] = note_constant(0.0, number, self._names, at)
+        if isinstance(node.test, ast.Constant):
+            return [node]  # nothing is evaluated, `while True` has no line of its own
+        true = start_of(first_statement(node.body))
+        false = start_of(first_statement(node.orelse) if node.orelse else node.test)
+        node.body[:0] = note_constant(1.0, number, self._names, true)
+        node.orelse[:0] = note_constant(0.0, number, self._names, false)
         return [node]
 
     _record_while = _record_if
 
     def _record_for(self, node: Loop, number: int) -> list[ast.stmt]:
         if isinstance(node.target, ast.Name) and self._rereadable():
-            node.body.insert(0, note(node.target.id, number, self._names, where(node.target)))
+            node.body.insert(0, note(node.target.id, number, self._names, start_of(node.target)))
         else:
             node.iter = recorded(node.iter, number, self._names)
         return [node]
@@ -218,7 +220,7 @@ class _Recording(ast.NodeTransformer):
     def _record_with(self, node: Block, number: int) -> list[ast.stmt]:
         last = node.items[-1]
         if isinstance(last.optional_vars, ast.Name) and self._rereadable():
-            node.body.insert(0, note(last.optional_vars.id, number, self._names, where(last.optional_vars)))
+            node.body.insert(0, note(last.optional_vars.id, number, self._names, start_of(last.optional_vars)))
         else:
             last.context_expr = recorded(last.context_expr, number, self._names)
         return [node]
@@ -239,7 +241,7 @@ class _Recording(ast.NodeTransformer):
         self, node: ast.Assign | ast.AugAssign | ast.Return | ast.Expr, value: ast.expr, number: int
     ) -> list[ast.stmt]:
         if isinstance(value, ast.Name) and self._rereadable() and not isinstance(node, ast.AugAssign):
-            return [note(value.id, number, self._names, where(value)), node]
+            return [note(value.id, number, self._names, start_of(value)), node]
         publish = isinstance(value, ast.Call) and self._publishing(value, number)
         if publish and isinstance(value, ast.Call) and not (value.args or value.keywords):
             return [*self._nothing(node, number), node]
@@ -256,7 +258,7 @@ class _Recording(ast.NodeTransformer):
         return recorded(value, number, self._names)
 
     def _nothing(self, node: ast.stmt, number: int) -> list[ast.stmt]:
-        return note_constant(0.0, number, self._names, where(first_statement([node])))
+        return note_constant(0.0, number, self._names, start_of(first_statement([node])))
 
 
 def first_statement(body: list[ast.stmt]) -> ast.expr | ast.stmt:
@@ -265,7 +267,7 @@ def first_statement(body: list[ast.stmt]) -> ast.expr | ast.stmt:
     decorators: list[ast.expr] = getattr(node, "decorator_list", [])
     for part in (*decorators, *(getattr(node, name, None) for name in ("value", "test", "iter"))):
         if isinstance(part, ast.expr):
-            return first_evaluated(part)
+            return part
     return node
 
 
@@ -277,7 +279,7 @@ def _is_declaration(node: ast.stmt) -> bool:
 
 
 def _entry_place(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Where:
-    return where(first_statement(node.body))
+    return start_of(first_statement(node.body))
 
 
 def _enter(node: ast.FunctionDef | ast.AsyncFunctionDef, statement: ast.stmt) -> None:

@@ -10,9 +10,9 @@ NaN, infinity                  0: "no measurement" (REP 117), also as a part of 
 None, text, bytes, the rest    0
 =============================  =====================================================================
 
-Values above `LIMIT` count as `LIMIT`, so that sums and squares of them stay finite. At most `LEAVES` numbers
-are looked at: larger arrays are sampled evenly and scaled up, what comes later in other
-containers is left out.
+Values above `LIMIT` count as `LIMIT`, so that sums and squares of them stay finite. To stay cheap, sequences
+of plain numbers and arrays are sampled evenly above `SAMPLE` numbers and scaled up; of anything else at most
+`SAMPLE` parts are looked at.
 """
 
 from __future__ import annotations
@@ -21,26 +21,32 @@ import math
 import sys
 from array import array
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 from itertools import islice
 from types import MemberDescriptorType
 from typing import Any
 
 LIMIT = 1e100
-LEAVES = 4096
+SAMPLE = 512
 _LEFT_OUT = ("header", "stamp", "seq", "covariance")
-_PLAIN = frozenset({float, bool})
+_PLAIN = frozenset({float, int, bool})
 _CONTAINERS = (list, tuple, deque, set, frozenset)
 
-Reader = Callable[[Any], float]
+Number = Callable[[Any], float]
 Parts = Callable[[Any], Iterable[Any]]
 
 
 def magnitude(value: object) -> float:
     """Return the flow value of anything: finite, at least 0. Never raises, leaves `value` alone."""
+    if value is None or value is True or value is False or type(value) is str:
+        return 1.0 if value is True else 0.0
     try:
-        return _bounded(_norm(value))
+        kind: Any = type(value)
+        number, parts = _kind(kind)
+        if number is not None:
+            return _size(number, value)
+        return 0.0 if parts is None else _bounded(_norm(value))
     except Exception:  # whatever an object does, the program must not notice
         return 0.0
 
@@ -53,52 +59,63 @@ def _bounded(number: float) -> float:
 
 
 def _norm(value: object) -> float:
-    kind: Any = type(value)
-    reader = _reader(kind)
-    if reader is not None:
-        return reader(value)
-    if _parts(kind) is None:
-        return 0.0
-    if (kind is list or kind is tuple) and _PLAIN.issuperset(map(type, value[:LEAVES])):  # type: ignore[index]
-        size = math.hypot(*value[:LEAVES])  # type: ignore[index]
-        if size < math.inf:
-            return size
-    leaves = [_bounded(leaf) for leaf in islice(_leaves(value), LEAVES)]
-    return math.hypot(*leaves)
-
-
-def _leaves(value: object) -> Iterator[float]:
-    """Yield the magnitudes of the numbers inside, depth first; what holds itself is entered once."""
-    stack = [iter((value,))]
-    entered: set[int] = set()
+    sizes: list[float] = []
+    entered: set[int] = set()  # what holds itself is entered once
+    waiting: list[Any] = [value]
     looked_at = 0
-    while stack and looked_at < 2 * LEAVES:
-        inner = next(stack[-1], stack)
-        if inner is stack:
-            stack.pop()
-            continue
+    while waiting and looked_at < 2 * SAMPLE:
         looked_at += 1
+        inner = waiting.pop()
         kind: Any = type(inner)
-        reader, parts = _reader(kind), _parts(kind)
-        if reader is not None:
-            yield _size(reader, inner)
+        if kind is float:
+            sizes.append(inner)
+            continue
+        number, parts = _kind(kind)
+        if number is not None:
+            sizes.append(_size(number, inner))
         elif parts is not None and id(inner) not in entered:
             entered.add(id(inner))
-            stack.append(iter(parts(inner)))
+            plain = _plain_norm(inner) if kind is list or kind is tuple else None
+            if plain is None:
+                waiting += islice(parts(inner), SAMPLE)
+            else:
+                sizes.append(plain)
+    size = math.hypot(*sizes)
+    return size if size < math.inf else math.hypot(*map(_bounded, sizes))
 
 
-def _size(reader: Reader, value: object) -> float:
+def _size(number: Number, value: object) -> float:
     try:
-        return reader(value)
+        return _bounded(number(value))
+    except OverflowError:
+        return LIMIT
     except Exception:
         return 0.0
 
 
+def _plain_norm(sequence: list[Any] | tuple[Any, ...]) -> float | None:
+    """Return the norm of a sequence of finite plain numbers, None when it holds anything else."""
+    step = max(1, len(sequence) // SAMPLE)
+    sample = sequence[::step] if step > 1 else sequence
+    if not _PLAIN.issuperset(map(type, sample)):
+        return None
+    try:
+        size = math.hypot(*sample) * math.sqrt(len(sequence) / (len(sample) or 1))
+    except OverflowError:
+        return None
+    return size if size < math.inf else None
+
+
 @lru_cache(maxsize=1024)
-def _reader(kind: type) -> Reader | None:
-    """Return what reads a number or an array of numbers; None for everything else."""
+def _kind(kind: Any) -> tuple[Number | None, Parts | None]:
+    """Return what reads objects of a class as a number, else what lists their parts, else nothing."""
+    number = _number(kind)
+    return number, None if number is not None else _parts(kind)
+
+
+def _number(kind: type) -> Number | None:
     if issubclass(kind, int):
-        return _integer
+        return int.__float__
     if issubclass(kind, float):
         return float.__abs__
     if issubclass(kind, complex):
@@ -111,26 +128,12 @@ def _reader(kind: type) -> Reader | None:
     return _EXACT.get((kind.__module__, kind.__qualname__))
 
 
-def _integer(value: int) -> float:
-    try:
-        return abs(int.__float__(value))
-    except OverflowError:
-        return LIMIT
-
-
-def _decimal(value: Any) -> float:
-    return abs(float(value))
-
-
 def _fraction(value: Any) -> float:
-    try:
-        return float(abs(value._numerator / value._denominator))
-    except OverflowError:
-        return LIMIT
+    return float(value._numerator / value._denominator)
 
 
-_EXACT: dict[tuple[str, str], Reader] = {
-    ("decimal", "Decimal"): _decimal,
+_EXACT: dict[tuple[str, str], Number] = {
+    ("decimal", "Decimal"): float,
     ("fractions", "Fraction"): _fraction,
 }
 
@@ -146,19 +149,18 @@ def _numpy(value: Any) -> float:
     import numpy as np
 
     flat = np.asarray(value).reshape(-1)
-    if flat.dtype.kind not in "biufc":
+    if flat.dtype.kind not in "biufc" or not flat.size:
         return 0.0
-    step = max(1, flat.size // LEAVES)
+    sample = flat[:: max(1, flat.size // SAMPLE)]
     with np.errstate(all="ignore"):
-        sizes = np.abs(flat[::step].astype(np.complex128 if flat.dtype.kind == "c" else np.float64))
+        sizes = np.abs(sample.astype(np.complex128 if flat.dtype.kind == "c" else np.float64))
         squares = float(np.dot(sizes, sizes))
         if not math.isfinite(squares):
             sizes = np.minimum(np.where(np.isfinite(sizes), sizes, 0.0), LIMIT)
             squares = float(np.dot(sizes, sizes))
-    return math.sqrt(squares * step)
+    return math.sqrt(squares * (flat.size / sample.size))
 
 
-@lru_cache(maxsize=1024)
 def _parts(kind: type) -> Parts | None:
     """Return what lists the contents of a container or message; None where there is nothing to look into."""
     for container in _CONTAINERS:
@@ -167,9 +169,12 @@ def _parts(kind: type) -> Parts | None:
     if issubclass(kind, dict):
         return dict.values
     names = _fields(kind)
+    slots = [_slot(kind, name) for name in names]
     if not names:
         return None
-    return lambda message: [_field(message, kind, name) for name in names]
+    if all(slot is not None for slot in slots):
+        return lambda message: [slot.__get__(message, kind) for slot in slots if slot is not None]
+    return lambda message: [_stored(message, slot, name) for slot, name in zip(slots, names, strict=True)]
 
 
 def _fields(kind: type) -> tuple[str, ...]:
@@ -187,14 +192,19 @@ def _fields(kind: type) -> tuple[str, ...]:
     return tuple(name for name in names if not name.strip("_").endswith(_LEFT_OUT))
 
 
-def _field(message: object, kind: type, name: str) -> object:
-    """Read a field where it is stored, so that no property runs."""
+def _slot(kind: type, name: str) -> MemberDescriptorType | None:
+    """Return where a field is stored; as `_name` where a property checks assignments to it."""
     for stored in (name, f"_{name}"):
         for base in kind.__mro__:
             slot = base.__dict__.get(stored)
             if isinstance(slot, MemberDescriptorType):
-                return slot.__get__(message, None)
-    state: object = getattr(message, "__dict__", None)
-    if isinstance(state, dict):
-        return state.get(name, state.get(f"_{name}"))
+                return slot
     return None
+
+
+def _stored(message: object, slot: MemberDescriptorType | None, name: str) -> object:
+    """Read a field without running a property."""
+    if slot is not None:
+        return slot.__get__(message, type(message))
+    state: object = getattr(message, "__dict__", None)
+    return state.get(name, state.get(f"_{name}")) if isinstance(state, dict) else None

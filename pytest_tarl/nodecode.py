@@ -43,6 +43,10 @@ class NodeCode:
         text = self._overlay.get(file)
         return None if text is None else text.encode()
 
+    def recorded(self, file: Path) -> bool:
+        """Tell whether a file (a resolved path) holds sites."""
+        return bool(self._plan.get(file))
+
     def compile(self, path: Path) -> CodeType:
         """Compile a file with its sites recorded. Raises SyntaxError and OSError as an import does."""
         file = path.resolve()

@@ -23,6 +23,7 @@ from pytest_tarl.magnitude import magnitude
 from pytest_tarl.sensors import Cell
 from pytest_tarl.trace import Floats, Ints, Trace
 
+EXACT = 2**53  # integers below are floats without loss, which is all that the short way does
 T = TypeVar("T")
 Hook = Callable[[int, Any], Any]
 
@@ -59,13 +60,13 @@ class Recorder:
         self._single = not threads and threading.active_count() == 1
         self._fast = _plain_hook(own), own
         self._profile = threading.getprofile()
-        if self._single:
-            threading.setprofile(self._second_thread)
 
     def bind(self, namespace: dict[str, Any], hook: str = HOOK) -> None:
         """Put the globals of instrumented code into a module's namespace."""
         names = Names(hook)
         namespace[names.type], namespace[names.float] = type, float
+        if self._single and not self._namespaces:
+            threading.setprofile(self._second_thread)
         self._namespaces.append((namespace, names))
         self._put(namespace, names)
 
@@ -169,9 +170,13 @@ def _plain_hook(entries: list[Any]) -> Hook:
     size = magnitude
 
     def hook(number: int, value: Any) -> Any:
-        if type(value) is float:
+        kind = type(value)
+        if kind is float:
             entries.append(number)
             entries.append(value)
+        elif kind is int and -EXACT < value < EXACT:
+            entries.append(number)
+            entries.append(value + 0.0)
         else:
             flow = size(value)
             entries.append(number)
