@@ -4,13 +4,14 @@ import pytest
 from world import LENGTH, World
 
 from pytest_tarl import Sensor
+from pytest_tarl.episode import Tarl
 
 LIGHT = Sensor("light", topic="/light", field="illuminance", low=0, high=1000, bins=10, unit="lx")
 COURSE = Sensor("course", low=0, high=LENGTH, bins=14, unit="m")  # the robot cannot tell: for the report only
 
 
 @pytest.mark.tarl(nodes=["line_follower.py"], sensors=[LIGHT, COURSE], drifts={"dusk": 0.35}, episodes=100)
-def test_follows_the_line(tarl, tarl_drift):
+def test_follows_the_line(tarl: Tarl, tarl_drift: float | None) -> None:
     """Follow the line from end to end."""
     world = World(tarl.rng("world"), dusk=tarl_drift or 1.0)
     tarl.start("line_follower.py")

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
     from pytest_tarl.ros import Bus
 
-Odometry = message_type("nav_msgs/msg/Odometry")
-Bool = message_type("std_msgs/msg/Bool")
-UInt8 = message_type("std_msgs/msg/UInt8")
+Odometry = message_type("nav_msgs/Odometry")
+Bool = message_type("std_msgs/Bool")
+UInt8 = message_type("std_msgs/UInt8")
 
 G1, G2 = 1.0, 11.0
 PATCH = (5.0, 7.0)
@@ -32,7 +32,7 @@ TIME_BOUND = 13.5  # from goal to goal ...
 TURNROUND = 2.0  # ... and for turning round in between
 PRECISION = 0.2  # a delivery needs the robot this close to the goal ...
 HANDOVER = 10  # ... for this many steps
-SUBSTEPS = 10
+SUBSTEPS = 5
 
 
 class World:
