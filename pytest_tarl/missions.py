@@ -112,7 +112,7 @@ class Mission:
                 self.progress,
                 self.tarl / "patches",
             )
-            comparison = repair(shop)
+            comparison = repair(shop).comparison
             episodes |= shop.spent
         return self._told(comparison, online, episodes)
 

@@ -38,6 +38,14 @@ class Accepted:
     acceptance: Acceptance
 
 
+@dataclass(frozen=True)
+class Repaired:
+    """How a repair ended: the comparison with culprits, curves and repair in it, and what was accepted."""
+
+    comparison: Comparison
+    accepted: Accepted | None
+
+
 @dataclass
 class RepairShop:
     """Everything that repairing one test under one drift needs, and what it has cost so far."""
@@ -100,8 +108,8 @@ class RepairShop:
         return self._mutants[candidate]
 
 
-def repair(shop: RepairShop) -> Comparison:
-    """Search, guard, accept; return the comparison with culprits, curves and the repair in it."""
+def repair(shop: RepairShop) -> Repaired:
+    """Search, guard, accept."""
     comparison = shop.comparison
     worlds = (shop.fixture.sample, shop.online.recorded.sample)
     guards = candidates.candidate_guards(comparison.region, comparison.sensors, worlds)
@@ -122,7 +130,7 @@ def repair(shop: RepairShop) -> Comparison:
                 break
         searches.append(SearchTrace(method, tuple(trials.totals), tuple(trials.labels)))
         shop.spent["search"] += trials.spent
-    return _concluded(shop, accepted, effects, searches)
+    return Repaired(_concluded(shop, accepted, effects, searches), accepted)
 
 
 def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:

@@ -1,0 +1,342 @@
+"""Re-derive the paper's figures over many seeds and print one table.
+
+    python benchmarks/paper.py [--seeds 20] [--workers 2]
+
+For every seed the shuttle's transit is recorded off-line (200 episodes), run in mud (40 episodes), run in the off-line
+world as if it were another one (40 episodes), and repaired; then recorded and run in mud with two lines swapped, and with
+gain and wheels in other units (0.5 instead of 5, the same motion). What is mud is asked from the world, not from a sensor.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from statistics import fmean
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pytest_tarl import candidates, localize, seeds
+from pytest_tarl.comparing import run_online
+from pytest_tarl.drift import compare
+from pytest_tarl.fixture import Fixture
+from pytest_tarl.model import Region
+from pytest_tarl.recording import Recorded, mean_flows, run_episodes, sarsa_tables
+from pytest_tarl.repairing import Repaired, RepairShop, repair
+from pytest_tarl.repeating import Instruments, ItemRollout, designated, finish
+from pytest_tarl.rollout import EpisodePlan
+from pytest_tarl.sensors import Cell
+from pytest_tarl.settings import Designation, Options
+from pytest_tarl.sites import Plan, plan
+from pytest_tarl.statistics import aligned
+from pytest_tarl.utility import Floats, batch
+from tarl_lint.api import Analysis, analyse
+
+EXAMPLE = Path(__file__).resolve().parent.parent / "examples" / "shuttle"
+OFFLINE, ONLINE = 200, 40
+UTILITIES = ("batch", "SARSA", "batch, no flow term", "SARSA, no flow term")
+RESTORED = 0.95
+
+
+@dataclass(frozen=True)
+class Variant:
+    """The example as it is, or with some of its text replaced: (file, old, new)."""
+
+    test: str
+    edits: tuple[tuple[str, str, str], ...] = ()
+    whole: bool = False
+
+
+VARIANTS = {
+    "Figure 4(a)": Variant("test_shuttle.py::test_delivers", whole=True),
+    "Figure 4(b), lines swapped": Variant("test_swapped.py::test_delivers_swapped"),
+    "gain 0.5": Variant(
+        "test_shuttle.py::test_delivers",
+        (
+            ("traveller.py", "5 * delta", "0.5 * delta"),
+            ("world.py", "WHEEL_RADIUS = 0.08", "WHEEL_RADIUS = 0.8"),
+            ("world.py", "TOP_SPEED = 55.0", "TOP_SPEED = 5.5"),
+        ),
+    ),
+}
+
+
+@dataclass
+class Study:
+    """A pytest plugin that runs one test's episodes in both worlds and writes down what it saw."""
+
+    seed: int
+    whole: bool
+    found: dict[str, Any] = field(default_factory=dict)
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_protocol(self, item: pytest.Function, nextitem: pytest.Item | None) -> bool:
+        """Study the test instead of running it once."""
+        marked = designated(item)
+        assert marked is not None
+        root = item.config.rootpath
+        analysis = analyse([item.path.parent / node for node in marked.nodes], root=root)
+        sites = plan(analysis)
+        instruments = Instruments({root / p: at for p, at in sites.positions.items()}, sites.publishes)
+        self._study(ItemRollout(item, marked, instruments), marked, analysis, sites, root, _watched_mud())
+        finish(item, nextitem)
+        return True
+
+    def _study(
+        self,
+        rollout: ItemRollout,
+        marked: Designation,
+        analysis: Analysis,
+        sites: Plan,
+        root: Path,
+        mud: list[bool],
+    ) -> None:
+        (drift,) = marked.drifts
+        offline = self._run(rollout, sites, "offline", OFFLINE, None)
+        online = self._run(rollout, sites, "online", ONLINE, drift)
+        self.found["atr"] = {
+            "offline": float(offline.sample.total.mean()),
+            "online": float(online.sample.total.mean()),
+        }
+        self.found["success"] = {"offline": offline.success, "online": online.success}
+        region = self._judged(offline, online).region
+        self.found["peaks"] = _peaks(offline, online, sites, region)
+        if self.whole:
+            same = self._run(rollout, sites, "online", ONLINE, None)
+            self.found["null"] = self._judged(offline, same).verdict.result
+            self.found["muddy"] = _in_mud(rollout, online, drift, mud)
+            self.found["region"] = sorted(map(list, (*region.cells, *region.novel)))
+            self._repaired(rollout, marked, analysis, sites, root, offline, mud)
+
+    def _run(self, rollout: ItemRollout, sites: Plan, stream: str, count: int, drift: str | None) -> Recorded:
+        chosen = seeds.episode_seeds(self.seed, stream, count)
+        return run_episodes(rollout, chosen, drift, sites.members, _quiet)
+
+    def _judged(self, offline: Recorded, online: Recorded) -> Any:
+        draws = seeds.generator(self.seed, "compare")
+        return compare(offline.sample, online.sample, alpha=0.05, tolerance=None, generator=draws)
+
+    def _repaired(
+        self,
+        rollout: ItemRollout,
+        marked: Designation,
+        analysis: Analysis,
+        sites: Plan,
+        root: Path,
+        offline: Recorded,
+        mud: list[bool],
+    ) -> None:
+        (drift,) = marked.drifts
+        tables = sarsa_tables(offline, sites.members, mean_flows(offline.sample))
+        fixture = Fixture(
+            "paper", self.seed, marked.sensors, sites.lists, offline.topics, offline.sample, tables
+        )
+        options = Options(mode="repair", seed=self.seed)
+        online = run_online(rollout, fixture, marked, options, sites, drift, _quiet)
+        shop = RepairShop(
+            rollout, analysis, root, fixture, online, options, _quiet, root / ".tarl" / "patches"
+        )
+        outcome: Repaired = repair(shop)
+        comparison = outcome.comparison
+        fixed = comparison.repair
+        self.found["repair"] = {
+            "accepted": fixed is not None and fixed.accepted,
+            "guard": fixed.guard if fixed else "",
+            "edits": [f"{edit.code} → {edit.value:g}" for edit in fixed.edits] if fixed else [],
+            "episodes": dict(shop.spent),
+            "verdict": comparison.verdict.result,
+            "culprit": comparison.culprits[0].site.code,
+            **{name: fmean(totals) for name, totals in comparison.totals.items()},
+        }
+        if outcome.accepted is not None:
+            guard = outcome.accepted.candidate.guard
+            self.found["guard"] = _guard_hits(rollout, shop, outcome.accepted.candidate, guard, drift, mud)
+
+
+def _quiet(done: int, total: int, what: str) -> None:
+    """Show no progress."""
+
+
+def _watched_mud() -> list[bool]:
+    """Have the world note at every step whether the robot stood on the patch when the step began."""
+    world = sys.modules["world"].World
+    seen: list[bool] = []
+    publish = world.publish
+
+    def noted(self: Any, bus: Any) -> None:
+        seen.append(self.on_patch)
+        publish(self, bus)
+
+    world.publish = noted
+    return seen
+
+
+def _in_mud(rollout: ItemRollout, online: Recorded, drift: str, mud: list[bool]) -> list[list[int]]:
+    """Return the cells in which the robot was in mud on at least half of its steps there."""
+    counts: dict[Cell, list[bool]] = {}
+    for seed in online.sample.seeds:
+        mud.clear()
+        trace = rollout(EpisodePlan(seed, drift)).trace
+        for cell, wet in zip(trace.step_cell, mud, strict=True):
+            if cell >= 0:
+                counts.setdefault(trace.cells[cell], []).append(wet)
+    return sorted(list(cell) for cell, wet in counts.items() if fmean(wet) >= 0.5)
+
+
+def _guard_hits(
+    rollout: ItemRollout, shop: RepairShop, candidate: Any, guard: Any, drift: str, mud: list[bool]
+) -> dict[str, float]:
+    """Return on which share of the steps in mud the guard is true, and on which of the others it is false."""
+    hits: dict[bool, list[bool]] = {True: [], False: []}
+    for seed in seeds.episode_seeds(shop.options.seed, "guard", ONLINE):
+        mud.clear()
+        trace = rollout(EpisodePlan(seed, drift, shop.mutant(candidate))).trace
+        for cell, wet in zip(trace.step_cell, mud, strict=True):
+            on = cell >= 0 and candidates.holds(guard, trace.cells[cell], shop.comparison.sensors)
+            hits[wet].append(on == wet)
+    return {"in mud": fmean(hits[True]), "elsewhere": fmean(hits[False])}
+
+
+def _peaks(offline: Recorded, online: Recorded, sites: Plan, region: Region) -> dict[str, str]:
+    """Return the code of the site at which the slice difference is largest, per way to learn the utility."""
+    before, after = aligned(offline.sample, online.sample)
+    chosen = {*region.cells, *region.novel}
+    rows = np.array([i for i, cell in enumerate(before.cells) if cell in chosen], dtype=np.int64)
+    peaks = {}
+    for name in UTILITIES:
+        flow = mean_flows(before)[0] if "no flow" not in name else np.inf
+        if name.startswith("batch"):
+            tables = [batch(world.lists[0], len(before.cells), flow) for world in (before, after)]
+        else:
+            tables = [_sarsa(world, sites, flow, before.cells) for world in (offline, online)]
+        found = localize.slices(sites.lists[0], tables[0], tables[1], rows)
+        peak = max(found, key=lambda one: abs(one.difference))
+        peaks[name] = "publish" if peak.site.role == "publish" else peak.site.code
+    return peaks
+
+
+def _sarsa(recorded: Recorded, sites: Plan, scale: float, cells: tuple[Cell, ...]) -> Floats:
+    (table,) = sarsa_tables(recorded, sites.members[:1], (scale,))
+    wide = np.full((len(cells), table.shape[1]), np.nan)
+    wide[[cells.index(cell) for cell in recorded.sample.cells]] = table
+    return wide
+
+
+def one(name: str, seed: int) -> dict[str, Any]:
+    """Study one variant with one seed, in this process."""
+    variant = VARIANTS[name]
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / "shuttle"
+        shutil.copytree(EXAMPLE, copy, ignore=shutil.ignore_patterns(".tarl", "__pycache__", ".pytest_cache"))
+        for file, old, new in variant.edits:
+            text = (copy / file).read_text()
+            assert old in text, f"{file} no longer holds {old!r}: mend VARIANTS"
+            (copy / file).write_text(text.replace(old, new))
+        study = Study(seed, variant.whole)
+        code = pytest.main(
+            ["-q", "-p", "no:cacheprovider", "--rootdir", str(copy), str(copy / variant.test)], [study]
+        )
+    assert code == pytest.ExitCode.NO_TESTS_RAN or code == 0, code
+    return study.found
+
+
+def table(results: dict[str, list[dict[str, Any]]]) -> str:
+    """Return what the seeds showed, as a Markdown table."""
+    rows = []
+    for name, found in results.items():
+        for utility in UTILITIES:
+            peaks = [seen["peaks"][utility] for seen in found]
+            rows.append((f"{name}: peak of the slice difference, {utility}", _counted(peaks)))
+    whole = next(found for name, found in results.items() if VARIANTS[name].whole)
+    repaired = [seen["repair"] for seen in whole if seen["repair"]["accepted"]]
+    hit = [seen["guard"] for seen in whole if "guard" in seen]
+    rows += [
+        ("ATR off-line / on-line", f"{_mean(whole, 'offline'):.2f} / {_mean(whole, 'online'):.2f}"),
+        (
+            "on-line below half of off-line",
+            _share(s["atr"]["online"] < s["atr"]["offline"] / 2 for s in whole),
+        ),
+        ("degraded in mud", _share(seen["repair"]["verdict"] == "degraded" for seen in whole)),
+        ("not degraded in the off-line world again", _share(seen["null"] != "degraded" for seen in whole)),
+        ("region holds the muddy cells", _share(all(c in s["region"] for c in s["muddy"]) for s in whole)),
+        ("muddy cells in the region, mean share", f"{fmean(_covered(seen) for seen in whole):.2f}"),
+        ("repair accepted", _share(seen["repair"]["accepted"] for seen in whole)),
+        ("repaired ≥ 95 % of off-line", _share(_restored(seen) for seen in whole)),
+        (
+            "nominal world not worse",
+            _share(r["nominal_repaired"] >= RESTORED * r["offline"] for r in repaired),
+        ),
+        (
+            "guard true on ≥ 90 % in mud, false on ≥ 90 % elsewhere",
+            _share(h["in mud"] >= 0.9 and h["elsewhere"] >= 0.9 for h in hit),
+        ),
+        ("guards", _counted([r["guard"] for r in repaired])),
+        ("edits", _counted([", ".join(r["edits"]) for r in repaired])),
+        (
+            "episodes of search / acceptance, mean",
+            f"{fmean(s['repair']['episodes']['search'] for s in whole):.0f} / "
+            f"{fmean(s['repair']['episodes']['acceptance'] for s in whole):.0f}",
+        ),
+    ]
+    return "\n".join(["| what | seen |", "|---|---|", *(f"| {what} | {seen} |" for what, seen in rows)])
+
+
+def _counted(values: list[str]) -> str:
+    distinct = sorted(set(values), key=lambda value: -values.count(value))
+    return ", ".join(f"`{value}` {values.count(value)}/{len(values)}" for value in distinct)
+
+
+def _share(values: Any) -> str:
+    kept = list(values)
+    return f"{sum(kept)}/{len(kept)}"
+
+
+def _mean(found: list[dict[str, Any]], world: str) -> float:
+    return fmean(seen["atr"][world] for seen in found)
+
+
+def _covered(seen: dict[str, Any]) -> float:
+    return fmean(cell in seen["region"] for cell in seen["muddy"]) if seen["muddy"] else 1.0
+
+
+def _restored(seen: dict[str, Any]) -> bool:
+    fixed = seen["repair"]
+    return bool(fixed["accepted"]) and fixed["repaired"] >= RESTORED * fixed["offline"]
+
+
+def main() -> None:
+    """Study all variants with all seeds, each in a process of its own."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--one", nargs=2, metavar=("VARIANT", "SEED"), help="print one study as JSON")
+    arguments = parser.parse_args()
+    if arguments.one:
+        print("\n" + json.dumps(one(arguments.one[0], int(arguments.one[1]))))
+        return
+
+    def study(job: tuple[str, int]) -> dict[str, Any]:
+        command = [sys.executable, __file__, "--one", job[0], str(job[1])]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode:
+            sys.exit(f"{job[0]}, seed {job[1]} failed:\n{done.stdout}\n{done.stderr}")
+        print(f"{job[0]}, seed {job[1]}", file=sys.stderr)
+        found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+        return found
+
+    jobs = [(name, seed) for name in VARIANTS for seed in range(arguments.seeds)]
+    with ThreadPoolExecutor(arguments.workers) as pool:
+        found = dict(zip(jobs, pool.map(study, jobs), strict=True))
+    print(table({name: [found[name, seed] for seed in range(arguments.seeds)] for name in VARIANTS}))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,65 @@
+"""A small project for tests of the plugin: a node that keeps a tank's level, and a simulation test of it."""
+
+from __future__ import annotations
+
+NODE = """\
+import rospy
+from std_msgs.msg import Float64
+
+GAIN = 2.0
+level = None
+
+
+def on_level(msg):
+    global level
+    level = msg.data
+
+
+def main():
+    rospy.init_node("keeper")
+    rospy.Subscriber("/level", Float64, on_level)
+    valve = rospy.Publisher("/valve", Float64, queue_size=1)
+    rate = rospy.Rate(10)
+    while not rospy.is_shutdown():
+        if level is not None:
+            missing = 1.0 - level
+            flow = GAIN * missing
+            valve.publish(flow)
+        rate.sleep()
+
+
+if __name__ == "__main__":
+    main()
+"""
+
+TEST = """\
+import pytest
+from pytest_tarl import Sensor
+from pytest_tarl.ros import message_type
+
+Float64 = message_type("std_msgs/msg/Float64")
+
+
+@pytest.mark.tarl(
+    nodes=["keeper.py"],
+    sensors=[Sensor("level", topic="/level", field="data", low=0, high=1, bins=10)],
+    drifts={"clogged": 0.25},
+    episodes=30,
+    min_success=0.9,
+)
+def test_fills(tarl, tarl_drift):
+    draws = tarl.rng("world")
+    level, pump = float(draws.uniform(0.0, 0.2)), 1.0 if tarl_drift is None else tarl_drift
+    tarl.start("keeper.py")
+    for _ in range(25):
+        tarl.bus.publish("/level", Float64(data=level + float(draws.normal(0, 0.005))))
+        tarl.step(0.1)
+        valve = tarl.bus.latest("/valve")
+        level += 0.1 * pump * (valve.data if valve else 0.0)
+        tarl.reward(-abs(1.0 - level))
+    assert abs(1.0 - level) < 0.1, "tank not full"
+
+
+def test_ordinary():
+    pass
+"""

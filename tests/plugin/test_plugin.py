@@ -1,0 +1,260 @@
+"""The plugin as a user meets it: record, compare, repair, and everything that can go wrong on the way."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from pytest_tarl.report import json_result
+from tests.plugin.tank import NODE, TEST
+
+RECORD = ("--tarl-record", "--tarl-episodes=16")
+ONLINE = ("--tarl-online", "--tarl-episodes=12")
+
+
+@pytest.fixture
+def tank(pytester: pytest.Pytester) -> pytest.Pytester:
+    pytester.makefile(".py", keeper=NODE, test_tank=TEST)
+    pytester.makeini("[pytest]\nfilterwarnings = error\n")
+    return pytester
+
+
+def changed(tank: pytest.Pytester, name: str, old: str, new: str) -> None:
+    path = tank.path / f"{name}.py"
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+
+
+def fixture_file(tank: pytest.Pytester) -> Path:
+    (found,) = (tank.path / ".tarl" / "utility").glob("*.npz")
+    return found
+
+
+def test_without_flags_it_is_an_ordinary_test_that_writes_nothing(tank: pytest.Pytester) -> None:
+    tank.runpytest().assert_outcomes(passed=2)
+    assert not (tank.path / ".tarl" / "utility").exists()
+
+
+def test_recording_writes_a_fixture_and_deselects_the_others(tank: pytest.Pytester) -> None:
+    result = tank.runpytest(*RECORD)
+    result.assert_outcomes(passed=1, deselected=1)
+    result.stdout.fnmatch_lines(
+        ["*TARL*", "*test_fills: off-line ATR*16 episodes*", "*wrote .tarl/utility/*"]
+    )
+    assert fixture_file(tank).stat().st_size < 100_000
+    assert (tank.path / ".tarl" / ".gitignore").read_text().count("!utility/") == 2
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(tank: pytest.Pytester) -> None:
+    tank.runpytest(*RECORD)
+    first = fixture_file(tank).read_bytes()
+    result = tank.runpytest(*RECORD)
+    assert fixture_file(tank).read_bytes() == first
+    result.stdout.fnmatch_lines(["*ATR * → *"])
+    tank.runpytest(*RECORD, "--tarl-seed=1")
+    assert fixture_file(tank).read_bytes() != first
+
+
+def test_a_drift_that_costs_is_degraded_and_fails_the_test(tank: pytest.Pytester) -> None:
+    tank.runpytest(*RECORD)
+    result = tank.runpytest(*ONLINE)
+    result.assert_outcomes(failed=1, deselected=1)
+    result.stdout.fnmatch_lines(["*test_fills?clogged?*degraded*", "*keeper.py:*"])
+    found = json.loads(next((tank.path / ".tarl" / "results").glob("*clogged*.json")).read_text())
+    jsonschema.validate(found, json_result.schema())
+    assert found["verdict"]["result"] == "degraded"
+    assert found["episodes"] == {"offline": 16, "online": 12, "search": 0, "acceptance": 0}
+    assert found["atr"]["online"] < found["atr"]["offline"]
+    assert found["culprits"][0]["path"] == "keeper.py"
+
+
+def test_a_drift_that_changes_nothing_passes(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", '"clogged": 0.25', '"clean": 1.0')
+    tank.runpytest(*RECORD)
+    result = tank.runpytest(*ONLINE)
+    result.assert_outcomes(passed=1, deselected=1)
+    result.stdout.fnmatch_lines(["*test_fills?clean?: no difference*"])
+
+
+def test_without_a_drift_the_scenario_is_called_online(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", '    drifts={"clogged": 0.25},\n', "")
+    tank.runpytest(*RECORD)
+    tank.runpytest(*ONLINE, "-v").stdout.fnmatch_lines(["*test_fills?online?*PASSED*"])
+
+
+@pytest.mark.parametrize("search", ["sweep", "epsilon-greedy"])
+def test_a_repair_is_found_applies_and_heals_the_test(tank: pytest.Pytester, search: str) -> None:
+    tank.runpytest(*RECORD)
+    result = tank.runpytest(*ONLINE, "--tarl-repair", f"--tarl-search={search}")
+    result.assert_outcomes(failed=1, deselected=1)
+    result.stdout.fnmatch_lines(["*git apply .tarl/patches/*.patch*"])
+    (patch,) = (tank.path / ".tarl" / "patches").glob("*.patch")
+    found = json.loads(next((tank.path / ".tarl" / "results").glob("*.json")).read_text())
+    assert found["repair"]["accepted"]
+    assert found["repair"]["edits"][0]["path"] == "keeper.py"
+    subprocess.run(["git", "apply", "--check", patch], cwd=tank.path, check=True)
+    subprocess.run(["git", "apply", patch], cwd=tank.path, check=True)
+    tank.runpytest(*ONLINE).assert_outcomes(passed=1, deselected=1)
+    tank.runpytest().assert_outcomes(passed=2)
+
+
+def test_a_world_that_no_constant_can_mend_gets_no_patch(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", '"clogged": 0.25', '"shut": 0.0')
+    tank.runpytest(*RECORD)
+    result = tank.runpytest(*ONLINE, "--tarl-repair", "--tarl-budget=60")
+    result.assert_outcomes(failed=1, deselected=1)
+    assert not list((tank.path / ".tarl").glob("patches/*.patch"))
+    found = json.loads(next((tank.path / ".tarl" / "results").glob("*.json")).read_text())
+    assert found["repair"]["accepted"] is False
+
+
+def test_without_fixture_the_test_is_skipped_with_the_command_or_fails_when_strict(
+    tank: pytest.Pytester,
+) -> None:
+    result = tank.runpytest(*ONLINE, "-rs")
+    result.assert_outcomes(skipped=1, deselected=1)
+    result.stdout.fnmatch_lines(
+        ["*no recorded utility yet: run `pytest test_tank.py::test_fills --tarl-record`*"]
+    )
+    tank.runpytest(*ONLINE, "--tarl-strict").assert_outcomes(failed=1, deselected=1)
+
+
+def test_an_unknown_drift_is_named_with_the_known_ones(tank: pytest.Pytester) -> None:
+    result = tank.runpytest(*ONLINE, "--tarl-drift=mud")
+    result.stderr.fnmatch_lines(["*No test declares the drift 'mud'; known are: clogged.*"])
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+
+
+def test_a_damaged_fixture_is_named(tank: pytest.Pytester) -> None:
+    tank.runpytest(*RECORD)
+    fixture_file(tank).write_bytes(fixture_file(tank).read_bytes()[:300])
+    result = tank.runpytest(*ONLINE)
+    result.assert_outcomes(failed=1, deselected=1)
+    result.stdout.fnmatch_lines(["*is damaged*--tarl-record*"])
+
+
+def test_an_edited_node_loses_slices_by_name_and_keeps_its_verdict(tank: pytest.Pytester) -> None:
+    tank.runpytest(*RECORD)
+    changed(tank, "keeper", "missing = 1.0 - level", "missing = 1.0 - 1.0 * level")
+    result = tank.runpytest(*ONLINE)
+    result.stdout.fnmatch_lines(["*degraded*", "*node was edited*missing = 1.0 - level*"])
+
+
+def test_moved_lines_lose_nothing(tank: pytest.Pytester) -> None:
+    tank.runpytest(*RECORD)
+    changed(tank, "keeper", "GAIN = 2.0", "# gains\n\n\nGAIN = 2.0")
+    result = tank.runpytest(*ONLINE)
+    result.stdout.no_fnmatch_line("*was edited*")
+    result.stdout.fnmatch_lines(["*degraded*"])
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "words"),
+    [
+        ("test_tank", "        tarl.reward(-abs(1.0 - level))\n", "", "*never called tarl.reward*"),
+        ("test_tank", 'topic="/level", field', 'topic="/lvl", field', "*'level' heard nothing on /lvl*"),
+        ("test_tank", 'field="data"', 'field="date"', "*no field 'date'*"),
+        ("test_tank", 'nodes=["keeper.py"]', 'nodes=["keepr.py"]', "*no such file*"),
+        ("test_tank", 'tarl.start("keeper.py")', 'tarl.start("keepr.py")', "*there is no file 'keepr.py'*"),
+        ("test_tank", "sensors=[Sen", "sensor=[Sen", "*did you mean 'sensors'*"),
+        (
+            "keeper",
+            "            valve.publish(flow)\n",
+            "            pass\n",
+            "*No flow from a subscription*",
+        ),
+        (
+            "keeper",
+            "if level is not None",
+            "if level is not None and level > 5",
+            "*published nothing*/level*",
+        ),
+        ("keeper", "GAIN = 2.0", "GAIN = (2.0", "*keeper.py:*cannot be analysed*"),
+        ("keeper", "flow = GAIN * missing", "flow = GAIN * mising", "*NameError*mising*"),
+        ("keeper", "rospy.Rate(10)", "rospy.Rait(10)", "*rospy.Rait*"),
+        ("test_tank", "valve.data if valve else 0.0", "valve.dota", "*dota*"),
+    ],
+)
+def test_what_goes_wrong_says_what_to_do(
+    tank: pytest.Pytester, file: str, old: str, new: str, words: str
+) -> None:
+    changed(tank, file, old, new)
+    result = tank.runpytest(*RECORD)
+    result.assert_outcomes(failed=1, deselected=1)
+    result.stdout.fnmatch_lines([words])
+    result.stdout.no_fnmatch_line("*INTERNALERROR*")
+    assert not list((tank.path / ".tarl").glob("utility/*"))
+
+
+def test_episodes_that_fail_are_reported_as_unfinished_software(tank: pytest.Pytester) -> None:
+    changed(tank, "keeper", "GAIN = 2.0", "GAIN = 0.1")
+    result = tank.runpytest(*RECORD)
+    result.assert_outcomes(failed=1, deselected=1)
+    result.stdout.fnmatch_lines(["*16 of 16 episodes fail off-line*tank not full*min_success*"])
+
+
+def test_a_test_that_is_not_reproducible_is_told(tank: pytest.Pytester) -> None:
+    changed(
+        tank, "test_tank", "draws = tarl.rng", "import numpy; draws = numpy.random.default_rng() or tarl.rng"
+    )
+    tank.runpytest(*RECORD).stdout.fnmatch_lines(["*not reproducible*tarl.rng*"])
+
+
+def test_every_episode_has_fresh_function_scoped_fixtures_and_one_module_fixture(
+    tank: pytest.Pytester,
+) -> None:
+    tank.makeconftest(
+        """
+        import pytest
+        made = []
+
+        @pytest.fixture(scope="module", autouse=True)
+        def wide():
+            made.append("wide")
+            yield
+            print("made", made.count("wide"), made.count("narrow"), made.count("closed"))
+
+        @pytest.fixture(autouse=True)
+        def narrow(tmp_path):
+            assert not list(tmp_path.iterdir())
+            (tmp_path / "mark").touch()
+            made.append("narrow")
+            yield
+            made.append("closed")
+        """
+    )
+    result = tank.runpytest(*RECORD, "-s")
+    result.assert_outcomes(passed=1, deselected=1)
+    result.stdout.fnmatch_lines(["*made 1 17 17*"])  # 16 episodes, and the first one's seed again
+
+
+def test_skips_inside_a_test_are_skips(tank: pytest.Pytester) -> None:
+    changed(
+        tank,
+        "test_tank",
+        "    draws = tarl.rng",
+        '    pytest.skip("no simulator here")\n    draws = tarl.rng',
+    )
+    result = tank.runpytest(*RECORD, "-rs")
+    result.assert_outcomes(skipped=1, deselected=1)
+    result.stdout.fnmatch_lines(["*no simulator here*"])
+
+
+def test_a_fixture_used_without_the_marker_says_so(tank: pytest.Pytester) -> None:
+    tank.makepyfile("def test_it(tarl):\n    pass\n")
+    tank.runpytest().stdout.fnmatch_lines(["*without the marker*@pytest.mark.tarl*"])
+
+
+def test_the_plugin_imports_nothing_heavy_until_it_is_needed(tank: pytest.Pytester) -> None:
+    code = (
+        "import sys, pytest, pytest_tarl.plugin; "
+        "print([m for m in ('numpy', 'libcst', 'astroid', 'greenlet', 'rosbags', 'plotly') if m in sys.modules])"
+    )
+    result = tank.run(sys.executable, "-c", code)
+    result.stdout.fnmatch_lines(["[[]]"])
