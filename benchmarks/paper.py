@@ -2,9 +2,10 @@
 
     python benchmarks/paper.py [--seeds 20] [--workers 2]
 
-For every seed the shuttle's transit is recorded off-line (200 episodes), run in mud (40 episodes), run in the off-line
-world as if it were another one (40 episodes), and repaired; then recorded and run in mud with two lines swapped, and with
-gain and wheels in other units (0.5 instead of 5, the same motion). What is mud is asked from the world, not from a sensor.
+For every seed the shuttle's transit is recorded off-line (200 episodes), run in mud (40 episodes), run in the
+off-line world as if it were another one (40 episodes), and repaired; then recorded and run in mud with two lines
+swapped, and with gain and wheels in other units (0.5 instead of 5, the same motion). What is mud is asked from the
+world, not from a sensor.
 """
 
 from __future__ import annotations
@@ -282,8 +283,9 @@ def table(results: dict[str, list[dict[str, Any]]]) -> str:
         ("edits", _counted([", ".join(r["edits"]) for r in repaired])),
         (
             "episodes of search / acceptance, mean",
-            f"{fmean(s['repair']['episodes']['search'] for s in whole):.0f} / "
-            f"{fmean(s['repair']['episodes']['acceptance'] for s in whole):.0f}",
+            " / ".join(
+                f"{fmean(s['repair']['episodes'][k] for s in whole):.0f}" for k in ("search", "acceptance")
+            ),
         ),
     ]
     return "\n".join(["| what | seen |", "|---|---|", *(f"| {what} | {seen} |" for what, seen in rows)])
