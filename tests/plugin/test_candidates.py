@@ -70,7 +70,7 @@ def test_a_sensor_that_no_node_can_read_is_in_no_guard() -> None:
 def test_a_region_that_is_everywhere_proposes_no_condition() -> None:
     everywhere = Region(tuple(ONLINE.cells))
     dry = drive(1, range(0))
-    guards = candidate_guards(everywhere, (X, WET), (dry, drive(4, range(0, 10))))
+    guards = candidate_guards(everywhere, (X, WET), (dry, drive(4, range(10))))
     assert all(conjunct.sensor == WET for guard in guards for conjunct in guard.conjuncts)
 
 

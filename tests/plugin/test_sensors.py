@@ -58,7 +58,7 @@ def test_a_wrong_declaration_says_what_to_mend(arguments: dict[str, object], wor
 
 @pytest.mark.parametrize("value", [0.5, "wet"])
 def test_a_measurement_needs_bins_and_a_text_categories(value: object) -> None:
-    with pytest.raises(SettingsError, match="low, high and bins for a measurement"):
+    with pytest.raises(SettingsError, match=r"low, high and bins for a measurement"):
         Sensor("x").bin(value)
 
 
