@@ -6,12 +6,10 @@ from collections import Counter
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
-from greenlet import getcurrent
-
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.ros.messages.snapshot import FieldError, snapshot, stamp_if_unset, type_name
 from pytest_tarl.ros.names import absolute
-from pytest_tarl.ros.scheduler import Scheduler, Task
+from pytest_tarl.ros.scheduler import Scheduler, running_task
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.process import Process
@@ -51,10 +49,11 @@ class Topic:
 class Bus:
     """What the world publishes and hears. One per episode."""
 
-    def __init__(self, scheduler: Scheduler, run: Callable[[Callable[[], None]], None]) -> None:
+    def __init__(self, scheduler: Scheduler, run: Callable[..., None]) -> None:
         self._scheduler = scheduler
         self._run = run
         self._topics: dict[str, Topic] = {}
+        self._by_spelling: dict[str, Topic] = {}
         self._observers: list[Callable[[str, Any], None]] = []
         self.published: Counter[str] = Counter()
         self.subscribed: set[str] = set()
@@ -72,18 +71,15 @@ class Bus:
             raise RecordingError(f"The message published on {place.name} is not valid: {error}.") from error
         stamp_if_unset(message, self._scheduler.time)
         if latch:
-            place.kept[None] = message
-        if isinstance(
-            getcurrent(), Task
-        ):  # the world answers within a node's publish: the node goes on first
-            self._scheduler.later(lambda: self._deliver(place, message))
+            place.kept[None] = snapshot(message)
+        if running_task() is not None:  # the world answers within a node's publish: the node goes on first
+            self._scheduler.later(lambda: self._deliver(place, message, spare=True))
             return
-        self._run(lambda: self._deliver(place, message))
+        self._run(self._deliver, place, message, True)
 
     def latest(self, topic: str) -> Any | None:
         """Return the newest message that a node published on the topic, None before the first."""
-        place = self._topics.get(absolute(topic))
-        return place.latest if place is not None else None
+        return self.topic(topic).latest
 
     def subscribe(self, topic: str, callback: Listener) -> None:
         """Have the world's `callback` called with every message that a node publishes on the topic."""
@@ -95,10 +91,12 @@ class Bus:
 
     def topic(self, name: str) -> Topic:
         """Return the topic of that name, made at first use."""
-        name = absolute(name)
-        if name not in self._topics:
-            self._topics[name] = Topic(name)
-        return self._topics[name]
+        found = self._by_spelling.get(name)
+        if found is None:
+            resolved = absolute(name)
+            found = self._topics.setdefault(resolved, Topic(resolved))
+            self._by_spelling[name] = found
+        return found
 
     def topics(self) -> list[Topic]:
         """List all topics, in the order of their first use."""
@@ -117,8 +115,8 @@ class Bus:
             except BaseException as error:  # the world's own error goes to the test, not into the node
                 self._scheduler.failure = self._scheduler.failure or error
         if place.subscriptions or self._observers:
-            self._scheduler.later(lambda: self._deliver(place, message))
-        if not isinstance(getcurrent(), Task):
+            self._scheduler.later(lambda: self._deliver(place, message, spare=False))
+        if running_task() is None:
             self._run(lambda: None)
 
     def advertise(self, publication: Publication, place: Topic) -> None:
@@ -139,18 +137,23 @@ class Bus:
             place.subscriptions = [s for s in place.subscriptions if s.process is not process]
             place.publications = [p for p in place.publications if p.process is not process]
 
-    def _deliver(self, place: Topic, message: Any) -> None:
+    def _deliver(self, place: Topic, message: Any, spare: bool) -> None:
+        """Hand a message to everybody. If it is `spare`, nobody else holds it and the last one gets it itself."""
         for observer in self._observers:
             observer(place.name, message)
+        last = place.subscriptions[-1] if spare and place.subscriptions else None
         for subscription in tuple(place.subscriptions):
-            self._hand(place, subscription, message)
+            if subscription is last and subscription.message_type in (None, type(message)):
+                subscription.deliver(message)
+            else:
+                self._hand(place, subscription, message)
 
     def _hand(self, place: Topic, subscription: Subscription, message: Any) -> None:
         try:
             own = snapshot(message, subscription.message_type)
         except FieldError as error:
             raise RecordingError(
-                f"{place.name} carries {type_name(type(message))}, but node {subscription.process.label!r} subscribes "
-                f"to it as {type_name(subscription.message_type)}: {error}."
+                f"{place.name} carries {type_name(type(message))}, but node {subscription.process.label!r} "
+                f"subscribes to it as {type_name(subscription.message_type)}: {error}."
             ) from error
         subscription.deliver(own)

@@ -8,14 +8,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any, TypeVar
 
-from greenlet import getcurrent
-
 from pytest_tarl.errors import NodeError
 from pytest_tarl.ros.bus import Bus
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.install import standins_installed
 from pytest_tarl.ros.process import Process
-from pytest_tarl.ros.scheduler import Scheduler, Spinning, Task
+from pytest_tarl.ros.scheduler import Scheduler, Spinning, running_task
 from pytest_tarl.ros.watchdog import DEFAULT_LIMIT, WATCHDOG
 
 Part = TypeVar("Part")
@@ -80,14 +78,12 @@ class Ros:
         """Run a node's main program until it first waits. Raises NodeError where it ends in an exception."""
         process = Process(self, name, (name, *argv))
         self.processes.append(process)
-        with self._entered(), _argv(process.argv):
-            self.scheduler.spawn(process, run, main=True)
-            self.scheduler.settle()
+        with _argv(process.argv):
+            self._run(process.run, run)
 
     def step(self, dt: float) -> None:
         """Advance virtual time by `dt` seconds, running what falls due, until every node waits again."""
-        with self._entered():
-            self.scheduler.advance(self.scheduler.time + nanoseconds(dt))
+        self._run(self.scheduler.advance, self.scheduler.time + nanoseconds(dt))
 
     def on_delivery(self, listener: Callable[[str, Any], None]) -> None:
         """Have `listener(topic, message)` called for every message before any subscriber gets it."""
@@ -103,27 +99,21 @@ class Ros:
             return
         self.closed = True
         self.scheduler.failure = None
-        with self._entered():
-            for process in self.processes:
-                process.end()
-                self.scheduler.failure = None
+        for process in self.processes:
+            self._run(process.end)
+        self.scheduler.close()
 
-    def _run(self, job: Callable[[], None]) -> None:
-        with self._entered():
-            job()
-            self.scheduler.settle()
-
-    @contextmanager
-    def _entered(self) -> Iterator[None]:
-        """Watch the nodes that run inside and raise what they failed with."""
-        if isinstance(getcurrent(), Task):
+    def _run(self, job: Callable[..., object], *args: object) -> None:
+        """Do something that lets nodes run: watch them, and raise what they failed with."""
+        if running_task() is not None:
             raise NodeError(
                 "A node called into the episode that runs it: step(), start() and close() belong to the test."
             )
         scheduler = self.scheduler
         WATCHDOG.arm(self.watchdog_limit)
         try:
-            yield
+            job(*args)
+            scheduler.settle()
         except Spinning:
             scheduler.failure = scheduler.failure or scheduler.spinning()
         finally:

@@ -7,10 +7,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from greenlet import getcurrent
-
 from pytest_tarl.ros.clock import nanoseconds, seconds
-from pytest_tarl.ros.scheduler import Scheduler, Task
+from pytest_tarl.ros.scheduler import Scheduler, running_task
 
 _IN_SECONDS = ("time", "monotonic", "perf_counter")
 _IN_NANOSECONDS = ("time_ns", "monotonic_ns", "perf_counter_ns")
@@ -34,15 +32,15 @@ def virtual_host_time(scheduler: Scheduler) -> Iterator[None]:
 
 def _clock(real: Callable[[], Any], virtual: Callable[[], Any]) -> Callable[[], Any]:
     def read() -> Any:
-        return virtual() if isinstance(getcurrent(), Task) else real()
+        return virtual() if running_task() is not None else real()
 
     return read
 
 
 def _sleep(real: Callable[[float], None], scheduler: Scheduler) -> Callable[[float], None]:
     def sleep(duration: float) -> None:
-        task = getcurrent()
-        if not isinstance(task, Task):
+        task = running_task()
+        if task is None:
             real(duration)
             return
         if duration < 0:

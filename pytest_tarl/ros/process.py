@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from greenlet import getcurrent
-
 from pytest_tarl.errors import NodeError, TarlError, UnsupportedApiError
 from pytest_tarl.ros import blame
-from pytest_tarl.ros.scheduler import Scheduler, Spinning, Task
+from pytest_tarl.ros.scheduler import Scheduler, Spinning, Task, current_task, running_task
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.bus import Bus
@@ -58,6 +56,14 @@ class Process:
         """Have `hook` called when the process is asked to end, before its tasks are woken."""
         self._at_end.append(hook)
 
+    def run(self, program: Callable[[], None]) -> None:
+        """Start the main program."""
+        self.scheduler.spawn(self, self._run_main, program)
+
+    def _run_main(self, program: Callable[[], None]) -> None:
+        self.main = current_task()
+        program()
+
     def failed(self, task: Task, error: BaseException) -> None:
         """Take note of how a task ended: an exception of the node becomes a NodeError."""
         if self.ending and getattr(error, "tarl_shutdown", False):
@@ -65,7 +71,7 @@ class Process:
         if isinstance(error, Spinning):
             self._fail(self.spins(blame.of_traceback(error.__traceback__)))
         elif isinstance(error, SystemExit):
-            if task.main and error.code not in (None, 0) and not self.ending:
+            if task is self.main and error.code not in (None, 0) and not self.ending:
                 self._fail(self._ended_in(error))
         elif isinstance(error, TarlError) or not isinstance(error, Exception):
             self._fail(error)  # for the user, or (KeyboardInterrupt, pytest.fail) for those outside
@@ -132,8 +138,8 @@ class Process:
 
 def current_process(api: str) -> Process:
     """Return the process whose task is running. Raises UnsupportedApiError outside of all nodes."""
-    task = getcurrent()
-    if isinstance(task, Task):
+    task = running_task()
+    if task is not None:
         return task.process
     raise UnsupportedApiError(
         f"{api} was called outside of a node, or from a thread that the node started: the in-process ROS answers only to "

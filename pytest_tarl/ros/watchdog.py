@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from time import monotonic  # bound now: nodes may see a virtual clock under `time.monotonic`
 
 DEFAULT_LIMIT = 10.0  # seconds of wall time in which virtual time stands still
+_INTERVAL = 0.1       # seconds between two looks
 _IDLE_EXIT = 5.0  # seconds after which an unused watching thread ends
 
 
@@ -21,7 +23,7 @@ class Watchdog:
         self._deadline: float | None = None
         self._limit = DEFAULT_LIMIT
         self._target = 0
-        self._thread: threading.Thread | None = None
+        self._watching = False
         self.fired = False
 
     def arm(self, limit: float) -> None:
@@ -30,9 +32,9 @@ class Watchdog:
         self._limit = limit
         self.fired = False
         self._deadline = monotonic() + limit
-        if self._thread is None or not self._thread.is_alive():  # never started, idled out, or lost in a fork
-            self._thread = threading.Thread(target=self._watch, name="tarl-watchdog", daemon=True)
-            self._thread.start()
+        if not self._watching:
+            self._watching = True
+            threading.Thread(target=self._watch, name="tarl-watchdog", daemon=True).start()
 
     def beat(self) -> None:
         """Start the limit anew: virtual time moved."""
@@ -51,16 +53,22 @@ class Watchdog:
     def _watch(self) -> None:
         pause = threading.Event()
         idle_since = monotonic()
-        while monotonic() - idle_since < _IDLE_EXIT:
+        while True:
             deadline = self._deadline
-            if deadline is None:
-                pause.wait(0.25)
-                continue
-            remaining = deadline - monotonic()
-            if remaining <= 0:
-                self._fire()
-            pause.wait(max(0.02, min(remaining, 0.25)))
-            idle_since = monotonic()
+            if deadline is not None:
+                idle_since = monotonic()
+                if deadline <= idle_since:
+                    self._fire()
+            elif monotonic() - idle_since > _IDLE_EXIT:
+                self._watching = False
+                if self._deadline is None:  # nobody armed it in between, trusting that we watch
+                    return
+                self._watching = True
+            pause.wait(_INTERVAL)
+
+    def forget(self) -> None:
+        """Start anew: threads do not survive a fork."""
+        self.__init__()  # type: ignore[misc]
 
     def _fire(self) -> None:
         with self._lock:
@@ -79,3 +87,5 @@ def _raise_in(thread: int, exception: type[BaseException] | None) -> None:
 
 
 WATCHDOG = Watchdog()  # one watching thread per process
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=WATCHDOG.forget)

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 from pytest_tarl.ros.messages import values
 from pytest_tarl.ros.messages.definitions import Definition, Field, find_message, find_service
 from pytest_tarl.ros.messages.times import Duration, Time, TVal
-from pytest_tarl.ros.messages.values import FieldError
+from pytest_tarl.ros.messages.values import INTEGERS, FieldError
 
 
 class Message:
@@ -165,17 +165,18 @@ def _nested(base: str) -> type[Message]:
 def _copy_lines(field: Field, position: int, scope: dict[str, Any]) -> list[str]:
     """Write the copying of one field: the usual exact type inline, everything else through `slow`."""
     name, slow = field.name, f"slow{position}(v, {field.name!r})"
+    exact = {"float64": "float", "string": "str", "bool": "bool"}.get(field.base)
     if field.shape == "one" and not field.primitive:
         scope[f"type{position}"] = nested = _nested(field.base)
         scope[f"copy{position}"] = nested._tarl_copy
         usual, copied = f"v.__class__ is type{position}", f"copy{position}(v)"
-    else:
-        exact = {"float64": "float", "string": "str", "bool": "bool"}.get(
-            field.base if field.shape == "one" else ""
-        )
-        if exact is None:
-            return [f"    v = m.{name}", f"    n.{name} = {slow}"]
+    elif field.shape == "one" and field.base in INTEGERS:
+        low, high = INTEGERS[field.base]
+        usual, copied = f"v.__class__ is int and {low} <= v <= {high}", "v"
+    elif field.shape == "one" and exact is not None:
         usual, copied = f"v.__class__ is {exact}", "v"
+    else:
+        return [f"    v = m.{name}", f"    n.{name} = {slow}"]
     return [f"    v = m.{name}", f"    n.{name} = {copied} if {usual} else {slow}"]
 
 
@@ -215,4 +216,6 @@ def _element_converter(field: Field) -> Callable[[Any, str], Any]:
 def _as_time(value: Any, wanted: type[TVal], name: str) -> TVal:
     if not isinstance(value, TVal):
         raise FieldError(f"field {name!r} must be a {wanted.__name__}, not {value!r}")
-    return wanted(value.secs, value.nsecs)
+    twin = object.__new__(wanted)
+    twin.secs, twin.nsecs = value.secs, value.nsecs
+    return twin

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from greenlet import getcurrent
-
 from pytest_tarl.ros import names
 from pytest_tarl.ros.process import Process, current_process
 from pytest_tarl.ros.rospy.exceptions import ROSException, ROSInitException
 from pytest_tarl.ros.rospy.parameters import ParameterServer
-from pytest_tarl.ros.scheduler import Task
+from pytest_tarl.ros.scheduler import Task, running_task
 
 DEBUG, INFO, WARN, ERROR, FATAL = 1, 2, 4, 8, 16
 
@@ -58,8 +56,8 @@ class RospyNode:
         if self.in_hooks:
             return
         self.in_hooks = True
-        task = getcurrent()
-        if isinstance(task, Task):
+        task = running_task()
+        if task is not None:
             self._call_hooks(task)
             self._hooks_done()
             return

@@ -151,7 +151,7 @@ class Timer:
 
     def is_alive(self) -> bool:
         """Tell whether the timer is still running."""
-        return not self._task.dead and not self._stopped
+        return not self._task.done and not self._stopped
 
     def join(self, timeout: float | None = None) -> None:
         """Wait for the timer's end, as for a thread."""
