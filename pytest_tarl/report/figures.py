@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from pytest_tarl.model import Matrix, Vector
 
 MOST_ROWS = 6  # values of the splitting sensor that get a row of their own
+QUIET = 0.25  # of the range of utilities: smaller differences never get the strongest colours
 DIGITS = 5  # significant digits of a number on the page
 
 
@@ -61,12 +62,13 @@ def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str
     ]
     values = np.concatenate([compared.offline.ravel(), compared.online.ravel()])
     change = (compared.online - compared.offline).ravel()
+    low, high = _extreme(np.min, values), _extreme(np.max, values)
     return {
         "sites": [[site.line, site.code, site.path] for site in compared.taint_list.sites],
         "axis": _axis(comparison.sensors[shown.position], shown.position, bins, vocabulary),
         "rows": rows,
-        "range": [_extreme(np.min, values), _extreme(np.max, values)],
-        "reach": _extreme(np.max, np.abs(change)),
+        "range": [low, high],
+        "reach": number(max(_extreme(np.max, np.abs(change)), QUIET * (high - low))),
     }
 
 
@@ -144,9 +146,9 @@ def _span(indices: Iterable[int]) -> list[int]:
     return list(range(min(found), max(found) + 1))
 
 
-def _extreme(choose: Callable[[Vector], np.float64], values: Vector) -> float | None:
+def _extreme(choose: Callable[[Vector], np.float64], values: Vector) -> float:
     known = values[np.isfinite(values)]
-    return number(float(choose(known))) if known.size else None
+    return float(f"{choose(known):.{DIGITS}g}") if known.size else 0.0
 
 
 def reward_curves(comparison: Comparison) -> list[dict[str, Any]]:

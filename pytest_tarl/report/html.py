@@ -131,12 +131,19 @@ def _context(comparison: Comparison, title: str | None) -> Mapping[str, Any]:
         "share": _share(comparison),
         "lists": [_list(comparison, compared) for compared in comparison.lists],
         "curves": _curves_in_words(comparison),
+        "clipped": _clipped(comparison),
         "repair_words": words.repair_words(comparison.repair) if comparison.repair else "",
         "refusal": words.refusal(comparison.repair) if comparison.repair else "",
         "command": words.command(comparison),
         "next_steps": list(words.next_steps(comparison)),
         "place": lambda site: f"{site.path}:{site.line}",
     }
+
+
+def _clipped(comparison: Comparison) -> bool:
+    """Tell whether the off-line curve is longer than all others, and so not drawn in full."""
+    lengths = [len(curve["mean"]) for curve in reward_curves(comparison) if curve["kind"] != "offline"]
+    return bool(lengths) and len(comparison.totals.get("offline", ())) > max(lengths)
 
 
 def _share(comparison: Comparison) -> float | None:

@@ -65,10 +65,7 @@ class Chart:
 def chart(slices: Sequence[Slice]) -> Chart:
     """Lay out the slices of one list."""
     largest = peak(slices)
-    rows = tuple(
-        Row(one.site, one.offline, one.online, one.difference, one is largest and one.difference != 0)
-        for one in slices
-    )
+    rows = tuple(Row(one.site, one.offline, one.online, one.difference, one is largest) for one in slices)
     values = [value for row in rows for value in (row.offline, row.online)]
     return Chart(rows, scale(values), scale(row.difference for row in rows))
 

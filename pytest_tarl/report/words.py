@@ -122,16 +122,18 @@ def command(comparison: Comparison, *flags: str) -> str:
 
 
 def next_steps(comparison: Comparison) -> Iterator[str]:
-    """Yield the commands that a developer would run now, the most useful last."""
-    if comparison.repair and comparison.repair.accepted and comparison.repair.patch:
+    """Yield the command that a developer would run now, if there is one."""
+    if not comparison.lists:
+        yield shlex.join(["pytest", comparison.test, "--tarl-record"])
+    elif comparison.repair and comparison.repair.accepted and comparison.repair.patch:
         yield shlex.join(["git", "apply", comparison.repair.patch])
     elif comparison.verdict.result == "degraded" and comparison.repair is None:
         yield command(comparison, "--tarl-repair")
 
 
 def peak(slices: Iterable[Slice]) -> Slice | None:
-    """Return the slice that differs most between the worlds; None where none is known."""
-    known = [one for one in slices if not math.isnan(one.difference)]
+    """Return the slice that differs most between the worlds; None where none is known to differ."""
+    known = [one for one in slices if one.difference and not math.isnan(one.difference)]
     return max(known, key=lambda one: abs(one.difference), default=None)
 
 

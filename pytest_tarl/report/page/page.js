@@ -6,7 +6,7 @@
     dark: ["#ffbd70", "#df8c36", "#a5611f", "#5f4023", "#2a2e34", "#254766", "#2f70a8", "#5ea4e0", "#a4d2ff"],
   };
   const WORLDS = ["offline", "online", "difference"];
-  const WIDE = 760;                       // px from which the three panels stand side by side
+  const WIDE = 760, WIDE_PRINT = 600;     // px from which the three panels stand side by side
   const HEADROOM = 46, GAP = 26, ROW_GAP = 34, FOOT = 44, RIGHT = 10, WORLD_GAP = 44;
   const HALF_SITE = 0.5;
 
@@ -17,9 +17,11 @@
 
   const colour = name => getComputedStyle(root).getPropertyValue(`--${name}`).trim();
   const stops = colours => colours.map((c, i) => [i / (colours.length - 1), c]);
+  const isWide = width => width >= (printing ? WIDE_PRINT : WIDE);
   const change = () => CHANGE[darkness.matches && !printing ? "dark" : "light"];
   const safe = text => text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
   const amount = (value, sign = false) => {
+    if (value === null) return "n/a";
     const size = Math.abs(value);
     const text = value === 0 || (size >= 0.1 && size < 1000) ? size.toFixed(2) : String(Number(size.toPrecision(3)));
     return (value < 0 ? "−" : sign ? "+" : "") + text;
@@ -35,6 +37,7 @@
     const script = document.createElement("script");
     script.textContent = await inflate(element);
     document.head.append(script);
+    script.remove();
     element.remove();
   }
 
@@ -70,8 +73,8 @@
 
   /** Where the panels stand, in pixels from the top left: three side by side, or one below the other. */
   function panels(figure, width, left) {
-    const wide = width >= WIDE;
-    const height = Math.max(84, Math.min(figure.sites.length * 24, Math.max(640, figure.sites.length * 13)));
+    const wide = isWide(width);
+    const height = Math.max(84, Math.min(figure.sites.length * (printing ? 17 : 24), Math.max(640, figure.sites.length * 13)));
     const across = wide ? (width - left - RIGHT - 2 * GAP) / 3 : width - left - RIGHT;
     const placed = [];
     WORLDS.forEach((world, i) => figure.rows.forEach((row, j) => {
@@ -104,7 +107,7 @@
     const change_ = panel.world === "difference";
     const values = change_ ? difference(panel.row) : panel.row[panel.world];
     const reach = figure.reach || 1;
-    const [low, high] = figure.range[0] === null ? [0, 1] : figure.range;
+    const [low, high] = figure.range;
     return {
       type: "heatmap", x: figure.axis.centres, y: figure.sites.map((_, n) => n), z: values,
       xaxis: `x${k}`, yaxis: `y${k}`, zmin: change_ ? -reach : low, zmax: change_ ? reach : high > low ? high : low + 1,
@@ -150,14 +153,15 @@
       text, showarrow: false, xref: "paper", yref: "paper", xanchor: "left", yanchor: "bottom", align: "left",
       x: panel.left / layout.width, y: 1 - (panel.top - lift) / layout.height, font: style });
     const found = [];
-    if (panel.first) found.push(at(safe(titles().long[panel.world]), panel.row.title ? 19 : 3, { size: 13.5, color: colour("ink") }));
+    const named = panel.across < 200 && panel.world === "difference" ? "Difference" : titles().long[panel.world];
+    if (panel.first) found.push(at(safe(named), panel.row.title ? 19 : 3, { size: 13.5, color: colour("ink") }));
     if (panel.row.title && (panel.leftmost || !wide)) found.push(at(safe(panel.row.title), 3, { size: 12 }));
     return found;
   }
 
   function drawUtility(element, width) {
     const figure = page.utility[Number(element.dataset.list)];
-    const labels = siteLabels(figure.sites, width >= WIDE ? Math.min(width * 0.28, 330) : 0, 11.5);
+    const labels = siteLabels(figure.sites, isWide(width) ? Math.min(width * 0.28, 330) : 0, 11.5);
     const left = 12 + Math.max(...labels.map(text => text.replace(/&\w+;/g, "x").length)) * characterWidth(`11.5px ${colour("mono")}`);
     const { placed, wide, total } = panels(figure, width, left);
     const layout = { ...baseLayout(width), height: total, margin: { l: 0, r: 0, t: 0, b: 0 } };
@@ -187,8 +191,8 @@
     const line = {
       type: "scatter", mode: "lines", x: episodes, y: curve.mean, name: safe(curve.name), legendgroup: curve.name,
       line: { color: tone, width: style.width, dash: curve.kind === "search" ? SEARCH_DASHES[rank % 3] : style.dash },
-      customdata: curve.totals.map((total, i) => [total === null ? "n/a" : amount(total), safe(curve.labels[i] ?? "")]),
-      hovertemplate: `<b>${safe(curve.name)} %{y:.3~g}</b><br>episode %{x}: %{customdata[0]}  %{customdata[1]}<extra></extra>`,
+      customdata: curve.totals.map((total, i) => [amount(total), safe(curve.labels[i] ?? ""), amount(curve.mean[i])]),
+      hovertemplate: `<b>${safe(curve.name)} %{customdata[2]}</b><br>episode %{x}: %{customdata[0]}  %{customdata[1]}<extra></extra>`,
     };
     const dots = {
       type: "scatter", mode: "markers", x: episodes, y: curve.totals, legendgroup: curve.name, showlegend: false,
@@ -201,7 +205,7 @@
     const lengths = kind => page.curves.filter(kind).map(curve => curve.mean.length);
     const longest = Math.max(...lengths(curve => curve.kind !== "offline")) || Math.max(...lengths(() => true));
     const layout = {
-      ...baseLayout(width), height: width >= WIDE ? 400 : 440, margin: { l: 52, r: 12, t: 12, b: 48 }, showlegend: true,
+      ...baseLayout(width), height: isWide(width) ? (printing ? 330 : 400) : 440, margin: { l: 52, r: 12, t: 12, b: 48 }, showlegend: true,
       legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: { size: 12.5, color: colour("ink") }, itemsizing: "constant" },
       xaxis: { title: { text: "episode", standoff: 8 }, range: [0.5, longest + 0.5], gridcolor: colour("rule"), showgrid: false,
                zeroline: false, fixedrange: true, linecolor: colour("rule"), showline: true },

@@ -97,6 +97,12 @@ def compared(name: tuple[str, str], places: tuple[SitePlace, ...], cells, bad, p
     return ListComparison(taint_list, offline, online, slices)
 
 
+def replace_slices(one: ListComparison, value: float) -> ListComparison:
+    """Return the list with one value as every slice, as an empty region has it."""
+    slices = tuple(replace(one_slice, offline=value, online=value) for one_slice in one.slices)
+    return replace(one, slices=slices)
+
+
 def rewards(mean: float, count: int, spread: float = 1.2) -> tuple[float, ...]:
     random = Random(f"{mean} {count}")
     return tuple(random.gauss(mean, spread) for _ in range(count))
@@ -242,7 +248,9 @@ def unrepaired(shuttle: Comparison) -> Comparison:
 @pytest.fixture(scope="session")
 def unchanged(unrepaired: Comparison) -> Comparison:
     """The off-line world again."""
-    same = tuple(replace(one, online=one.offline + 0.02) for one in unrepaired.lists)
+    flat = [replace_slices(one, 0.0) for one in unrepaired.lists]
+    noise = np.random.default_rng(5).normal(0, 0.05, unrepaired.lists[0].offline.shape)
+    same = tuple(replace(one, online=one.offline + noise) for one in flat)
     return replace(
         unrepaired,
         lists=same,
@@ -259,10 +267,7 @@ def unchanged(unrepaired: Comparison) -> Comparison:
 @pytest.fixture(scope="session")
 def placeless(unrepaired: Comparison) -> Comparison:
     """A loss without any situation that stands out: nothing to sum slices over."""
-    empty = tuple(
-        replace(one, slices=tuple(replace(s, offline=float("nan"), online=float("nan")) for s in one.slices))
-        for one in unrepaired.lists
-    )
+    empty = tuple(replace_slices(one, 0.0) for one in unrepaired.lists)
     return replace(unrepaired, region=Region(), paper_region=(), lists=empty)
 
 

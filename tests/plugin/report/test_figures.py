@@ -1,0 +1,125 @@
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pytest_tarl.model import Region
+from pytest_tarl.report.figures import plane, reward_curves, utility_figure
+from pytest_tarl.report.slices import chart, scale
+from pytest_tarl.sensors import Sensor
+
+
+def figure(comparison, number=0):
+    return utility_figure(comparison, comparison.lists[number])
+
+
+def test_every_figure_is_plain_json_without_nan(any_comparison):
+    figures = [utility_figure(any_comparison, one) for one in any_comparison.lists]
+    json.dumps([figures, reward_curves(any_comparison)], allow_nan=False)
+
+
+def test_terrain_splits_the_shuttles_figure_into_two_rows_over_position(shuttle):
+    found = figure(shuttle)
+    assert [row["title"] for row in found["rows"]] == ["terrain false", "terrain true"]
+    assert found["axis"]["title"] == "x (m)"
+    assert found["axis"]["names"][10] == "x 4.2-4.6 m"
+    assert found["sites"][5] == [30, "vel = 5 * delta", "traveller.py"]
+
+
+def test_values_stand_at_their_site_and_position_and_gaps_are_null(shuttle):
+    true = figure(shuttle)["rows"][1]
+    cell = shuttle.cells.index((12, 1))
+    assert true["online"][5][12] == pytest.approx(shuttle.lists[0].online[cell, 5], rel=1e-4)
+    assert true["online"][5][3] is None
+    assert figure(shuttle)["rows"][0]["offline"][0][0] is None
+
+
+def test_regions_are_intervals_of_the_position_in_their_row(shuttle):
+    false, true = figure(shuttle)["rows"]
+    assert (false["region"], true["region"]) == (
+        [],
+        [[pytest.approx(4.1667, abs=1e-3), pytest.approx(7.0833, abs=1e-3)]],
+    )
+    assert len(false["paper"]) == 1
+
+
+def test_the_split_is_the_category_that_tells_most_about_the_region(two_lists):
+    assert [two_lists.sensors[d].name for d in (plane(two_lists).position, plane(two_lists).split)] == [
+        "x",
+        "light",
+    ]
+    assert plane(two_lists).others(two_lists.sensors) == ("terrain",)
+
+
+def test_sensors_that_are_not_shown_are_averaged_over_visited_cells_only(two_lists):
+    one = two_lists.lists[0]
+    rows = [two_lists.cells.index((3, terrain, 0)) for terrain in (0, 1)]
+    offline = one.offline.copy()
+    offline[rows[0], 2], offline[rows[1], 2] = 4.0, 6.0
+    offline[rows[0], 3], offline[rows[1], 3] = math.nan, 7.0
+    found = utility_figure(two_lists, replace(one, offline=offline))["rows"][0]["offline"]
+    assert (found[2][4], found[3][4]) == (5.0, 7.0)  # bins start at -1
+
+
+def test_without_a_numeric_sensor_categories_are_the_axis(varied):
+    light = Sensor("light", categories=("day", "night"))
+    comparison = varied(sensors=(light,), cells=((0,), (1,)), region=Region(((1,),)), paper_region=())
+    one = replace(comparison.lists[0], offline=np.ones((2, 7)), online=np.zeros((2, 7)))
+    found = utility_figure(comparison, one)
+    assert found["axis"]["ticks"] == ["day", "night"]
+    assert [row["region"] for row in found["rows"]] == [[[0.5, 1.5]]]
+
+
+def test_noise_never_gets_the_strongest_colours(unchanged, shuttle):
+    found = figure(unchanged)
+    assert found["reach"] == pytest.approx(0.25 * (found["range"][1] - found["range"][0]), rel=1e-3)
+    change = shuttle.lists[0].online - shuttle.lists[0].offline
+    assert figure(shuttle)["reach"] == pytest.approx(np.nanmax(np.abs(change)), rel=1e-4)
+
+
+def test_no_cell_no_figure(varied):
+    assert figure(varied(cells=())) is None
+
+
+def test_curves_are_running_means_with_the_episodes_behind_them(varied):
+    offline, online = reward_curves(
+        varied(totals={"offline": (1.0, 3.0, 5.0), "online": (2.0,)}, searches=())
+    )
+    assert offline["mean"] == [1.0, 2.0, 3.0]
+    assert offline["totals"] == [1.0, 3.0, 5.0]
+    assert online["name"] == "on-line (mud)"
+
+
+def test_every_search_is_a_curve_with_what_it_ran(shuttle):
+    searches = [curve for curve in reward_curves(shuttle) if curve["kind"] == "search"]
+    assert [curve["name"] for curve in searches] == ["search: epsilon-greedy", "search: sweep"]
+    assert len(searches[0]["labels"]) == 60
+
+
+def test_the_site_that_differs_most_is_the_peak(shuttle):
+    assert [row.site.line for row in chart(shuttle.lists[0].slices).rows if row.peak] == [30]
+
+
+def test_without_any_difference_there_is_no_peak(unchanged):
+    assert not any(row.peak for row in chart(unchanged.lists[0].slices).rows)
+
+
+def test_unknown_slices_are_rows_without_a_place_on_the_scale(shuttle):
+    slices = list(shuttle.lists[0].slices)
+    slices[2] = replace(slices[2], online=math.nan)
+    found = chart(slices)
+    assert [row.known for row in found.rows] == [True, True, False, True, True, True, True]
+    assert math.isfinite(found.values.low)
+
+
+@pytest.mark.parametrize("values", [[-3.0, 8.0], [1e-7], [-1e6, -2e6], [], [0.0], [math.nan, 2.0]])
+def test_scales_show_zero_and_all_values_with_few_round_ticks(values):
+    made = scale(values)
+    for value in [0.0, *(v for v in values if math.isfinite(v))]:
+        assert 0 <= made.at(value) <= 100
+    assert 0.0 in made.ticks
+    assert 2 <= len(made.ticks) <= 7

@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+import re
+from html import unescape
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pytest_tarl.report.highlight import code_html, patch_lines
+
+DIFF = """\
+--- a/node.py
++++ b/node.py
+@@ -3,3 +3,3 @@ def f():
+ kept = 1
+-old = "<b>"
++new = 2
+--- = 5
+\\ No newline at end of file
+"""
+
+
+def text(html: str) -> str:
+    return unescape(re.sub(r"<[^>]*>", "", html))
+
+
+@given(st.text(st.characters(exclude_categories=["Cc", "Cs", "Zl", "Zp"])))
+def test_highlighting_never_changes_the_text(code):
+    assert text(code_html(code)) == code
+
+
+def test_markup_in_code_is_escaped():
+    assert "<script" not in code_html("x = '</code><script>alert(1)</script>'")
+
+
+def test_lines_of_a_patch_are_numbered_as_before_and_after():
+    found = [(line.kind, line.old, line.new, text(line.html)) for line in patch_lines(DIFF)]
+    assert found == [
+        ("file", None, None, "--- a/node.py"),
+        ("file", None, None, "+++ b/node.py"),
+        ("hunk", None, None, "@@ -3,3 +3,3 @@ def f():"),
+        ("kept", 3, 3, "kept = 1"),
+        ("removed", 4, None, 'old = "<b>"'),
+        ("added", None, 4, "new = 2"),
+        ("removed", 5, None, "-- = 5"),
+        ("remark", None, None, "\\ No newline at end of file"),
+    ]
+
+
+def test_a_second_file_starts_afresh():
+    diff = "--- a/x\n+++ b/x\n@@ -1 +1 @@\n-a\n+b\n--- a/y\n+++ b/y\n@@ -7 +7,2 @@\n c\n+d\n"
+    kinds = [line.kind for line in patch_lines(diff)]
+    assert kinds == ["file", "file", "hunk", "removed", "added", "file", "file", "hunk", "kept", "added"]
+    assert [line.new for line in patch_lines(diff)][-2:] == [7, 8]
