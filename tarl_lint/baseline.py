@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -18,7 +17,7 @@ FORMAT_VERSION: Final = 1  # 1: first format
 UNKNOWN: Final = "?"
 
 
-@dataclass(frozen=True, slots=True, order=True)
+@dataclass(frozen=True, order=True)
 class Fingerprint:
     """What a flow is, apart from its place and its steps. Topics are texts, `?` when unknown."""
 
@@ -32,11 +31,13 @@ class Fingerprint:
 
     def digest(self) -> str:
         """Return the fingerprint as 16 hexadecimal digits."""
+        import hashlib  # OpenSSL, only where there are flows
+
         fields = (self.package, self.owner, self.source, self.callback, self.sink, self.place, self.kind)
         return hashlib.sha256("\0".join(fields).encode("utf-8", "surrogatepass")).hexdigest()[:16]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Accepted:
     """A fingerprint, how many flows have it, and their files as seen from the baseline's directory."""
 
@@ -45,7 +46,7 @@ class Accepted:
     files: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Baseline:
     """Everything that was accepted, sorted by fingerprint."""
 

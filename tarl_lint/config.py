@@ -19,7 +19,7 @@ BASELINE_NAME: Final = "tarl-flows.json"
 FAIL_ON: Final[tuple[FailOn, ...]] = get_args(FailOn)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Options:
     """What the user typed. None means that the settings file or the default decides."""
 
@@ -34,7 +34,7 @@ class Options:
     fail_on: FailOn | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Config:
     """Settings of one run. `Config()` is valid: every rule, nothing excluded, no baseline.
 

@@ -41,7 +41,7 @@ class SourceFile(NamedTuple):
     is_package: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Notes:
     """What was seen but not analysed: counts, and the directories that cannot be read."""
 
@@ -51,7 +51,7 @@ class Notes:
     unreadable: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Discovery:
     """The files of a run, sorted by the path that people see, and what was left out."""
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from pathlib import Path
 
 
 def write_whole(path: Path, text: str) -> None:
     """Write a file under another name and rename it, so that nobody ever reads half of it."""
+    import tempfile  # most runs write nothing
+
     target = path.resolve()  # through a link, not over it
     descriptor, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
     try:

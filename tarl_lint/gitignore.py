@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Pattern:
     """One line of a .gitignore file, for paths relative to its directory."""
 
@@ -16,7 +17,7 @@ class Pattern:
     directories_only: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Ignore:
     """The patterns of one .gitignore file (or of a setting) and the directory that they are relative to."""
 
@@ -65,13 +66,13 @@ def _pattern(line: str) -> Pattern | None:
     return Pattern(regex, negated, directories_only)
 
 
-_TOKEN = re.compile(r"(?P<dirs>(?:^|(?<=/))\*\*/)|(?P<rest>/\*\*$)|(?P<star>\*+)|(?P<one>\?)"
-                    r"|(?P<set>\[[!^]?\]?[^]]*\])|\\(?P<escaped>.)|(?P<plain>.)", re.DOTALL)  # fmt: skip
+_PIECES: Final = (r"(?P<dirs>(?:^|(?<=/))\*\*/)|(?P<rest>/\*\*$)|(?P<star>\*+)|(?P<one>\?)"
+                    r"|(?P<set>\[[!^]?\]?[^]]*\])|\\(?P<escaped>.)|(?P<plain>.)")  # fmt: skip
 
 
 def _translate(text: str) -> str:
     """Write a pattern as a regular expression: `*` and `?` stay inside a path component, `**` does not."""
-    return "".join(_piece(match) for match in _TOKEN.finditer(text))
+    return "".join(_piece(match) for match in re.finditer(_PIECES, text, re.DOTALL))
 
 
 def _piece(match: re.Match[str]) -> str:

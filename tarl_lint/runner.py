@@ -24,7 +24,7 @@ UNREADABLE: Final = "TARL001"
 CODES: Final[Mapping[Kind, str]] = {"explicit": "TARL101", "implicit": "TARL102"}
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Statistics:
     """Counts of one run: files and lines analysed, findings silenced by comments, what was left out."""
 
@@ -34,12 +34,13 @@ class Statistics:
     notes: Notes = field(default_factory=Notes)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Result:
     """Everything that a run found: what all reports are made from.
 
     `findings` are sorted by place and carry fingerprint and status. `found` are the same flows as a baseline
     holds them, `vanished` and `kept` what the baseline holds beyond that. `texts` are the analysed files.
+    Without `names_errors` files that cannot be read are counted but not listed for people.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -51,6 +52,7 @@ class Result:
     texts: Mapping[str, str] = field(default_factory=dict)
     statistics: Statistics = field(default_factory=Statistics)
     baseline: Path | None = None
+    names_errors: bool = True
 
     @property
     def new(self) -> tuple[Finding, ...]:
@@ -88,6 +90,7 @@ def run(options: Options, config: Config) -> Result:
         texts=texts,
         statistics=Statistics(len(modules), lines, silenced, discovery.notes),
         baseline=config.baseline if known.entries else None,
+        names_errors=config.enabled(UNREADABLE),
     )
 
 

@@ -6,17 +6,16 @@ import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 from tarl_lint.model import Finding
 
-_COMMENT = re.compile(
-    r"#\s*(?:tarl:\s*ignore(?:\[(?P<own>[^\]]*)\])?|noqa:\s*(?P<noqa>[A-Z]+[0-9]+(?:[\s,]+[A-Z]+[0-9]+)*))",
-    re.IGNORECASE,
+_COMMENT: Final = (  # compiled when first needed, which in most runs is never
+    r"(?i:#\s*(?:tarl:\s*ignore(?:\[(?P<own>[^\]]*)\])?|noqa:\s*(?P<noqa>[A-Z]+[0-9]+(?:[\s,]+[A-Z]+[0-9]+)*)))"
 )
-_HINT = re.compile(r"tarl:\s*ignore|noqa:.*TARL", re.IGNORECASE)
 
 
-@dataclass(frozen=True, slots=True, order=True)
+@dataclass(frozen=True)
 class Suppression:
     """One rule, or all with an empty `code`, silenced on one line. Lines and columns count from 1."""
 
@@ -34,12 +33,12 @@ class Suppression:
 
 def suppressions(path: str, text: str) -> tuple[Suppression, ...]:
     """Return what the comments of a file silence. A plain `# noqa` belongs to other tools and is not ours."""
-    if not _HINT.search(text):
+    if "tarl" not in text.lower():
         return ()
     return tuple(
         Suppression(path, line, column + found.start(), code)
         for line, column, comment in _comments(text)
-        for found in _COMMENT.finditer(comment)
+        for found in re.finditer(_COMMENT, comment)
         for code in _codes(found)
     )
 

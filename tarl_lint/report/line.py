@@ -12,7 +12,7 @@ Line = tuple[tuple[str, Style], ...]
 _TAB: Final = 4
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Glyphs:
     """Signs that not every terminal can show."""
 
@@ -27,7 +27,7 @@ class Glyphs:
 ASCII: Final = Glyphs(bar="|", data="*", control="?", context=".", arrow="->", dots="...")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class View:
     """How a report is shown. `width` is in columns; 0 means that long lines stay whole."""
 

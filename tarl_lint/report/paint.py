@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Iterable, Mapping
 from typing import Final, TextIO
 
@@ -44,7 +43,11 @@ def glyphs_for(stream: TextIO) -> Glyphs:
 
 def width_of(stream: TextIO) -> int:
     """Return the columns of the terminal behind a stream, 0 where there is none."""
-    return shutil.get_terminal_size().columns if stream.isatty() else 0
+    if not stream.isatty():
+        return 0
+    import shutil
+
+    return shutil.get_terminal_size().columns
 
 
 def write(lines: Iterable[Line], stream: TextIO, *, colour: bool) -> None:

@@ -15,6 +15,8 @@ from tarl_lint.runner import UNREADABLE, Result
 def report(result: Result, view: View) -> Iterator[Line]:
     """Yield unreadable files, flows by publish call, hazards, and the closing words."""
     yield from _errors(result)
+    if result.errors and result.names_errors:
+        yield ()
     yield from _flows(result, view)
     for finding in result.new:
         if finding.flow is None:
@@ -31,8 +33,7 @@ def report(result: Result, view: View) -> Iterator[Line]:
 
 def concise(result: Result, view: View) -> Iterator[Line]:
     """Yield each finding on a line of its own, then the closing words."""
-    for error in result.errors:
-        yield ((f"{error.path}:{error.line}:1", "place"), (f" {UNREADABLE} ", "error"), (error.message, ""))
+    yield from _errors(result)
     for finding in result.new:
         yield _heading(finding)
     for line in summary.unused(result):
@@ -44,10 +45,8 @@ def concise(result: Result, view: View) -> Iterator[Line]:
 
 
 def _errors(result: Result) -> Iterator[Line]:
-    for error in result.errors:
-        yield ((f"{error.path}:{error.line}", "place"), (f" {UNREADABLE} ", "error"), (error.message, ""))
-    if result.errors:
-        yield ()
+    for error in result.errors if result.names_errors else ():
+        yield ((f"{error.path}:{error.line}:1", "place"), (f" {UNREADABLE} ", "error"), (error.message, ""))
 
 
 def _flows(result: Result, view: View) -> Iterator[Line]:

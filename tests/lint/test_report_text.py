@@ -101,13 +101,20 @@ def test_unreadable_files_and_whatever_else_was_not_analysed_are_said(example, r
     )
     errors = (SourceError("old.py", 3, "This is Python 2."),)
     text = shown(result_of(unknown, errors=errors, statistics=statistics))
-    assert text.startswith("old.py:3 TARL001 This is Python 2.\n\nnode.py:18:9 ")
+    assert text.startswith("old.py:3:1 TARL001 This is Python 2.\n\nnode.py:18:9 ")
     assert "from unknown topic (Odometry)" in text
     assert "1 flow in 1 of 12 files: 1 explicit.\n" in text
     assert (
         "Not analysed: 1 file that is not readable as Python 3 (TARL001), 1 unreadable place (secret), 3 C++ nodes, "
         "remaps in 1 launch file, the names of 1 topic computed at run time.\n"
     ) in text
+
+
+def test_unreadable_files_are_only_counted_when_their_rule_is_not_wanted(result_of):
+    result = result_of(errors=(SourceError("old.py", 3, "This is Python 2."),), names_errors=False)
+    for name in ("text", "concise"):
+        assert "old.py" not in shown(result, name=name)
+        assert "Not analysed: 1 file that is not readable" in shown(result, name=name)
 
 
 def test_a_comment_that_silences_nothing_is_noted(result_of):

@@ -6,18 +6,7 @@ from pathlib import Path
 
 import pytest
 
-HEAVY = (
-    "numpy",
-    "libcst",
-    "rich",
-    "astroid",
-    "pytest",
-    "greenlet",
-    "msgspec",
-    "tomllib",
-    "difflib",
-    "tokenize",
-)
+HEAVY = ("numpy", "libcst", "rich", "astroid", "pytest", "greenlet", "msgspec", "tomllib", "difflib")
 
 
 def python(directory: Path, program: str) -> str:

@@ -1,0 +1,77 @@
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PRE_COMMIT = Path(sys.executable).with_name("pre-commit")
+SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
+
+pytestmark = pytest.mark.skipif(not PRE_COMMIT.exists(), reason="pre-commit is not installed")
+
+
+def call(*command: object, cwd: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [str(c) for c in command], cwd=cwd, capture_output=True, text=True, check=False, timeout=300,
+        env={**os.environ, **environment},
+    )  # fmt: skip
+
+
+def commit_everything(directory: Path) -> str:
+    """Make a directory a git repository of one commit and return its hash."""
+    for arguments in (["init", "-q"], ["add", "-A"], ["commit", "-q", "-m", "All"]):
+        identity = (
+            "-c",
+            "user.name=Tester",
+            "-c",
+            "user.email=tester@example.org",
+            "-c",
+            "commit.gpgsign=false",
+        )
+        done = call("git", *identity, *arguments, cwd=directory)
+        assert done.returncode == 0, done.stderr
+    return call("git", "rev-parse", "HEAD", cwd=directory).stdout.strip()
+
+
+def test_the_hook_is_described_as_pre_commit_wants_it():
+    done = call(PRE_COMMIT, "validate-manifest", ROOT / ".pre-commit-hooks.yaml", cwd=ROOT)
+    assert (done.returncode, done.stdout + done.stderr) == (0, "")
+
+
+@pytest.mark.skipif(not SLOW, reason="installs from PyPI, about 20 s: set TARL_SLOW=1")
+def test_the_hook_stops_a_commit_with_a_new_flow_and_lets_accepted_ones_pass(example, tmp_path):
+    product, scratch = tmp_path / "product", tmp_path / "scratch"
+    for directory in (product, scratch):
+        directory.mkdir()
+    archive = subprocess.run(["git", "archive", "HEAD"], cwd=ROOT, capture_output=True, check=True)
+    subprocess.run(["tar", "x"], cwd=product, input=archive.stdout, check=True)
+    revision = commit_everything(product)
+    (scratch / "node.py").write_text(example.text)
+    (scratch / ".pre-commit-config.yaml").write_text(
+        f"repos:\n- repo: {product}\n  rev: {revision}\n  hooks:\n  - id: tarl-lint\n"
+    )
+    commit_everything(scratch)
+    home = {"PRE_COMMIT_HOME": str(tmp_path / "home")}
+
+    installed = call(PRE_COMMIT, "install-hooks", cwd=scratch, **home)
+    if installed.returncode:
+        pytest.skip(f"the hook's environment cannot be installed here: {installed.stdout[-300:]}")
+
+    stopped = call(PRE_COMMIT, "run", "--all-files", cwd=scratch, **home)
+    assert stopped.returncode == 1
+    assert "node.py:18:9 publishes velocity (Float64) in travel" in stopped.stdout
+
+    accepted = call(sys.executable, "-m", "tarl_lint", "--write-baseline", cwd=scratch)
+    assert accepted.returncode == 0, accepted.stderr
+    passed = call(PRE_COMMIT, "run", "--all-files", cwd=scratch, **home)
+    assert passed.returncode == 0, passed.stdout
+
+    second = example.text.replace(
+        "        pub.publish(vel)\n", "        pub.publish(vel)\n        pub.publish(pos)\n"
+    )
+    (scratch / "node.py").write_text(second)
+    stopped = call(PRE_COMMIT, "run", "--all-files", cwd=scratch, **home)
+    assert stopped.returncode == 1
+    assert "2 new flows in 1 file: 2 explicit.\n" in stopped.stdout
