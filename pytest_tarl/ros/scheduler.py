@@ -30,7 +30,7 @@ class Task:
         self.process = process
         self.function = function
         self.args = args
-        self.ticket = 0        # grows at every resumption; a heap entry with an older one is void
+        self.ticket = 0  # grows at every resumption; a heap entry with an older one is void
         self.parked = False
         self.done = False
         self.worker: Worker | None = None
@@ -97,6 +97,13 @@ class Scheduler:
             self._sequence += 1
             heappush(self._sleeping, (until, self._sequence, task, task.ticket))
         return bool(getcurrent().parent.switch())
+
+    def yield_now(self) -> None:
+        """Let everything run that is ready, then go on at the same instant."""
+        task = current_task()
+        task.parked = True
+        self.wake(task)
+        getcurrent().parent.switch()
 
     def wake(self, task: Task) -> None:
         """Resume a waiting task as soon as the running one waits."""

@@ -7,7 +7,7 @@ import threading
 from time import monotonic  # bound now: nodes may see a virtual clock under `time.monotonic`
 
 DEFAULT_LIMIT = 10.0  # seconds of wall time in which virtual time stands still
-_INTERVAL = 0.1       # seconds between two looks
+_INTERVAL = 0.1  # seconds between two looks
 _IDLE_EXIT = 5.0  # seconds after which an unused watching thread ends
 
 

@@ -1,0 +1,79 @@
+"""What `rclpy.init` makes: whether ROS is up in this process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from pytest_tarl.ros import names
+from pytest_tarl.ros.process import Process, current_process
+from pytest_tarl.ros.rclpy.exceptions import NotInitializedException, RCLError
+
+
+class Context:
+    """The rclpy context of a process; all contexts of a process are one."""
+
+    def __init__(self, process: Process) -> None:
+        self.process = process
+        self.command_line = names.parse_ros2(process.argv[1:])
+        self.initialised = False
+        self.nodes: list[Any] = []
+        self.executor: Any = None
+        self._callbacks: list[Callable[[], Any]] = []
+        self._wakers: list[Callable[[], None]] = []
+        process.at_end(self._stop)
+
+    def init(self, args: list[str] | None = None, **_: Any) -> None:
+        """Bring ROS up. Raises RuntimeError if it is."""
+        if self.initialised:
+            raise RuntimeError("Context.init() must only be called once")
+        if args is not None:
+            self.command_line = names.parse_ros2(args)
+        self.initialised = True
+
+    def ok(self) -> bool:
+        """Tell whether ROS is up."""
+        return self.initialised and not self.process.ending
+
+    def require(self) -> None:
+        """Raise NotInitializedException before `init`."""
+        if not self.initialised:
+            raise NotInitializedException
+
+    def shutdown(self) -> None:
+        """Bring ROS down. Raises RCLError if it is."""
+        if not self.ok():
+            raise RCLError("failed to shutdown: rcl_shutdown already called on the given context")
+        self._stop()
+
+    def try_shutdown(self) -> None:
+        """Bring ROS down unless it is."""
+        if self.ok():
+            self._stop()
+
+    def on_shutdown(self, callback: Callable[[], Any]) -> None:
+        """Have a function called when ROS goes down."""
+        self._callbacks.append(callback)
+
+    def on_wake(self, waker: Callable[[], None]) -> None:
+        """Have an executor woken when ROS goes down."""
+        self._wakers.append(waker)
+
+    def _stop(self) -> None:
+        self.initialised = False
+        callbacks, self._callbacks = self._callbacks, []
+        for callback in callbacks:
+            callback()
+        for waker in self._wakers:
+            waker()
+
+    def __enter__(self) -> Context:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.try_shutdown()
+
+
+def this_context(api: str) -> Context:
+    """Return the context of the program that is running."""
+    return current_process(f"rclpy.{api}").part(Context)

@@ -1,0 +1,89 @@
+"""The exceptions of rclpy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class NotInitializedException(Exception):  # noqa: N818 (these names are rclpy's)
+    """Something was used before `rclpy.init`."""
+
+    def __init__(self, *_: Any) -> None:
+        super().__init__("rclpy.init() has not been called", *_)
+
+
+class RCLError(RuntimeError):
+    """What the layer below Python would refuse."""
+
+
+class InvalidNodeNameException(Exception):  # noqa: N818
+    """A node name has characters that it may not have."""
+
+
+class InvalidTopicNameException(Exception):  # noqa: N818
+    """A topic name has characters that it may not have."""
+
+
+class InvalidHandle(Exception):  # noqa: N818
+    """Something that was destroyed is used."""
+
+
+class NoTypeSupportImportedException(Exception):  # noqa: N818
+    """What was given as a message type is none."""
+
+
+class ParameterException(Exception):  # noqa: N818
+    """Base of parameter errors."""
+
+    def __init__(self, error_msg: str, parameters: Any = None, *args: Any) -> None:
+        super().__init__(f"{error_msg}: {parameters}" if parameters is not None else error_msg, *args)
+
+
+class ParameterNotDeclaredException(ParameterException):
+    """An undeclared parameter is read or set."""
+
+    def __init__(self, parameters: Any, *args: Any) -> None:
+        super().__init__("Invalid access to undeclared parameter(s)", parameters, *args)
+
+
+class ParameterAlreadyDeclaredException(ParameterException):
+    """A parameter is declared twice."""
+
+    def __init__(self, parameters: Any, *args: Any) -> None:
+        super().__init__("Parameter(s) already declared", parameters, *args)
+
+
+class ParameterUninitializedException(ParameterException):
+    """A statically typed parameter is read before it has a value."""
+
+    def __init__(self, parameter_name: str, *args: Any) -> None:
+        super().__init__("The parameter is not initialized", parameter_name, *args)
+
+
+class InvalidParameterException(ParameterException):
+    """A parameter name is not valid."""
+
+    def __init__(self, parameter: Any, *args: Any) -> None:
+        super().__init__("Invalid parameter name", parameter, *args)
+
+
+class InvalidParameterTypeException(ParameterException):
+    """A parameter gets a value of another type than it was declared with."""
+
+    def __init__(self, parameter: Any, expected: Any, *args: Any) -> None:
+        name, given = parameter.name, parameter.type_.name
+        super().__init__(f"Trying to set parameter '{name}' to '{parameter.value}' of type '{given}', "
+                         f"expecting type '{expected}'")  # fmt: skip
+
+
+class InvalidParameterValueException(ParameterException):
+    """A parameter callback refused a value."""
+
+    def __init__(self, parameter: Any, value: Any, reason: str, *args: Any) -> None:
+        super().__init__(f"Invalid parameter value ({value}) for parameter. Reason: {reason}", parameter)
+
+
+class ROSInterruptException(Exception):  # noqa: N818
+    """A wait was interrupted by the node's shutdown."""
+
+    tarl_shutdown = True

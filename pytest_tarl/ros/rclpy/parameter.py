@@ -1,0 +1,115 @@
+"""Parameters of rclpy nodes."""
+
+from __future__ import annotations
+
+from array import array
+from enum import IntEnum
+from typing import Any
+
+from pytest_tarl.ros.messages import find_class
+
+_FIELDS = {
+    1: "bool_value", 2: "integer_value", 3: "double_value", 4: "string_value", 5: "byte_array_value",
+    6: "bool_array_value", 7: "integer_array_value", 8: "double_array_value", 9: "string_array_value",
+}  # fmt: skip
+
+
+class ParameterType(IntEnum):
+    """The types of parameters, as rcl_interfaces numbers them."""
+
+    NOT_SET = 0
+    BOOL = 1
+    INTEGER = 2
+    DOUBLE = 3
+    STRING = 4
+    BYTE_ARRAY = 5
+    BOOL_ARRAY = 6
+    INTEGER_ARRAY = 7
+    DOUBLE_ARRAY = 8
+    STRING_ARRAY = 9
+
+    @classmethod
+    def from_parameter_value(cls, parameter_value: Any) -> ParameterType:
+        """Return the type of a Python value. Raises TypeError for what no parameter can hold."""
+        return type_of(parameter_value)
+
+
+def type_of(value: Any) -> ParameterType:
+    """Return the type that a Python value has as a parameter."""
+    if value is None:
+        return ParameterType.NOT_SET
+    for python_type, plain in _PLAIN:
+        if isinstance(value, python_type):
+            return plain
+    if isinstance(value, list | tuple | array):
+        kinds = {type_of(element) for element in value}
+        if not kinds:
+            return ParameterType.BYTE_ARRAY
+        if len(kinds) == 1 and (found := _ARRAYS.get(kinds.pop())) is not None:
+            return found
+    raise TypeError(f"The given value is not one of the allowed types '{value}'.")
+
+
+_PLAIN = (
+    (bool, ParameterType.BOOL),
+    (int, ParameterType.INTEGER),
+    (float, ParameterType.DOUBLE),
+    (str, ParameterType.STRING),
+)
+_ARRAYS = {
+    ParameterType.BOOL: ParameterType.BOOL_ARRAY,
+    ParameterType.INTEGER: ParameterType.INTEGER_ARRAY,
+    ParameterType.DOUBLE: ParameterType.DOUBLE_ARRAY,
+    ParameterType.STRING: ParameterType.STRING_ARRAY,
+}
+
+
+class Parameter:
+    """A named value. Immutable."""
+
+    Type = ParameterType
+
+    def __init__(self, name: str, type_: ParameterType | None = None, value: Any = None) -> None:
+        found = type_of(value)
+        if type_ is not None and value is not None and type_ != found:
+            if not (found == ParameterType.BYTE_ARRAY and not value):  # an empty list fits every array type
+                raise ValueError(f"Type '{type_}' and value '{value}' do not agree")
+            found = type_
+        self.name = name
+        self.type_ = found if type_ is None or value is not None else type_
+        self.value = value
+
+    @property
+    def type(self) -> ParameterType:
+        """The parameter's type."""
+        return self.type_
+
+    def get_parameter_value(self) -> Any:
+        """Return it as rcl_interfaces/ParameterValue."""
+        made: Any = find_class("ros2", "rcl_interfaces", "ParameterValue")
+        if self.value is None:
+            return made(type=int(ParameterType.NOT_SET))
+        return made(type=int(self.type_), **{_FIELDS[int(self.type_)]: self.value})
+
+    def to_parameter_msg(self) -> Any:
+        """Return it as rcl_interfaces/Parameter."""
+        made: Any = find_class("ros2", "rcl_interfaces", "Parameter")
+        return made(name=self.name, value=self.get_parameter_value())
+
+    @classmethod
+    def from_parameter_msg(cls, param_msg: Any) -> Parameter:
+        """Make a parameter from rcl_interfaces/Parameter."""
+        return cls(param_msg.name, value=parameter_value_to_python(param_msg.value))
+
+    def __repr__(self) -> str:
+        return f"Parameter(name={self.name!r}, type={self.type_.name}, value={self.value!r})"
+
+
+def parameter_value_to_python(parameter_value: Any) -> Any:
+    """Return the Python value of rcl_interfaces/ParameterValue."""
+    field = _FIELDS.get(parameter_value.type)
+    value = getattr(parameter_value, field) if field is not None else None
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+PARAMETER_SEPARATOR_STRING = "."

@@ -1,0 +1,111 @@
+"""Futures and coroutines that an executor drives."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Generator
+from typing import Any
+
+
+class Future:
+    """A result that will be there later."""
+
+    def __init__(self, *, executor: Any = None) -> None:
+        self._done = False
+        self._cancelled = False
+        self._result: Any = None
+        self._exception: BaseException | None = None
+        self._callbacks: list[Callable[[Future], Any]] = []
+        self._executor = executor
+
+    def __await__(self) -> Generator[Future, None, Any]:
+        while not (self._done or self._cancelled):
+            yield self
+        return self.result()
+
+    def done(self) -> bool:
+        """Tell whether there is a result or an exception."""
+        return self._done
+
+    def cancelled(self) -> bool:
+        """Tell whether it was cancelled."""
+        return self._cancelled
+
+    def cancel(self) -> None:
+        """Give up on it."""
+        if not self._done:
+            self._cancelled = True
+            self._finish()
+
+    def result(self) -> Any:
+        """Return the result, None where there is none yet; raise the exception where there is one."""
+        if self._exception is not None:
+            raise self._exception
+        return self._result
+
+    def exception(self) -> BaseException | None:
+        """Return the exception."""
+        return self._exception
+
+    def set_result(self, result: Any) -> None:
+        """Set the result."""
+        self._result = result
+        self._done = True
+        self._finish()
+
+    def set_exception(self, exception: BaseException) -> None:
+        """Set the exception."""
+        self._exception = exception
+        self._done = True
+        self._finish()
+
+    def add_done_callback(self, callback: Callable[[Future], Any]) -> None:
+        """Have a function called with this future when it is done; at once if it is."""
+        if self._done or self._cancelled:
+            callback(self)
+        else:
+            self._callbacks.append(callback)
+
+    def _finish(self) -> None:
+        callbacks, self._callbacks = self._callbacks, []
+        for callback in callbacks:
+            callback(self)
+
+
+class Task(Future):
+    """A function or coroutine that an executor runs when it comes to it."""
+
+    def __init__(
+        self, handler: Any, args: tuple[Any, ...] = (), kwargs: Any = None, executor: Any = None
+    ) -> None:
+        super().__init__(executor=executor)
+        self._handler = handler
+        self._args, self._kwargs = args, kwargs or {}
+        self._coroutine: Any = handler if inspect.iscoroutine(handler) else None
+        self.blocked = False
+
+    def __call__(self) -> None:
+        """Run on to the end or to the next future that is not done."""
+        if self._done or self._cancelled:
+            return
+        if self._coroutine is None:
+            outcome = self._handler(*self._args, **self._kwargs)
+            if not inspect.iscoroutine(outcome):
+                self.set_result(outcome)
+                return
+            self._coroutine = outcome
+        try:
+            awaited = self._coroutine.send(None)
+        except StopIteration as end:
+            self.set_result(end.value)
+            return
+        self.blocked = True
+        if isinstance(awaited, Future):
+            awaited.add_done_callback(self._unblock)
+        else:
+            self._unblock(self)
+
+    def _unblock(self, _: Future) -> None:
+        self.blocked = False
+        if self._executor is not None:
+            self._executor.wake()

@@ -1,0 +1,113 @@
+"""rclpy's publishers and subscriptions."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from pytest_tarl.ros.bus import Topic
+from pytest_tarl.ros.messages.snapshot import type_name
+from pytest_tarl.ros.messages.values import FieldError
+from pytest_tarl.ros.rclpy.exceptions import InvalidHandle, NoTypeSupportImportedException
+from pytest_tarl.ros.rclpy.qos import DurabilityPolicy, QoSProfile
+
+if TYPE_CHECKING:
+    from pytest_tarl.ros.rclpy.node import Node
+
+
+class Publisher:
+    """Publishes messages of one type on a topic."""
+
+    def __init__(self, node: Node, msg_type: Any, place: Topic, profile: QoSProfile) -> None:
+        _require_message_class(msg_type)
+        self.process = node.process
+        self.node = node
+        self.msg_type = msg_type
+        self.type = type_name(msg_type)
+        self.qos_profile = profile
+        self._place = place
+        self._keep = int(profile.durability == DurabilityPolicy.TRANSIENT_LOCAL)
+        self._destroyed = False
+        self.process.bus.advertise(self, place)
+
+    @property
+    def topic_name(self) -> str:
+        """The resolved topic."""
+        return self._place.name
+
+    topic = topic_name
+
+    def publish(self, msg: Any) -> None:
+        """Publish a message. Raises TypeError for one of another type."""
+        if self._destroyed:
+            raise InvalidHandle("cannot use Destroyable because destruction was requested")
+        if not isinstance(msg, self.msg_type):
+            raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
+        try:
+            self.process.bus.publish_from(self, self._place, msg, keep=self._keep)
+        except FieldError as error:
+            raise TypeError(f"{error} (publishing {self.type} on {self._place.name})") from error
+
+    def get_subscription_count(self) -> int:
+        """Return how many listen. The simulated world counts as one."""
+        return 1 + len(self._place.subscriptions)
+
+    def destroy(self) -> None:
+        """Stop publishing."""
+        self._destroyed = True
+        if self in self._place.publications:
+            self._place.publications.remove(self)
+            self._place.kept.pop(self, None)
+
+
+class Subscription:
+    """Queues messages, as many as its profile says, until an executor comes to them."""
+
+    def __init__(
+        self,
+        node: Node,
+        msg_type: Any,
+        place: Topic,
+        callback: Callable[[Any], Any],
+        group: Any,
+        profile: QoSProfile,
+    ) -> None:
+        _require_message_class(msg_type)
+        self.process = node.process
+        self.node = node
+        self.msg_type = self.message_type = msg_type
+        self.callback = callback
+        self.callback_group = group
+        self.qos_profile = profile
+        self.queue: deque[Any] = deque(maxlen=profile.capacity)
+        self._place = place
+        wants_kept = profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
+        self.process.bus.attach(self, place, wants_kept=wants_kept)
+
+    @property
+    def topic_name(self) -> str:
+        """The resolved topic."""
+        return self._place.name
+
+    topic = topic_name
+
+    def deliver(self, message: Any) -> None:
+        """Queue a message, dropping the oldest when full, and tell the node's executor."""
+        self.queue.append(message)
+        self.node.notify()
+
+    def get_publisher_count(self) -> int:
+        """Return how many publish. The simulated world counts as one."""
+        return 1 + len(self._place.publications)
+
+    def destroy(self) -> None:
+        """Stop receiving."""
+        self.queue.clear()
+        if self in self._place.subscriptions:
+            self._place.subscriptions.remove(self)
+
+
+def _require_message_class(msg_type: Any) -> None:
+    if not hasattr(msg_type, "get_fields_and_field_types"):
+        raise NoTypeSupportImportedException(f"{msg_type!r} is not a ROS 2 message type")
