@@ -1,6 +1,7 @@
 """What directories say about the files in them: dotted module names from import roots, ROS packages."""
 
-# ruff: noqa: PTH - paths are texts here: trees are large, and Path objects cost five times as much
+# ruff: noqa: PTH113, PTH120
+# Paths are texts here: trees are large, and Path objects cost several times as much.
 
 from __future__ import annotations
 
