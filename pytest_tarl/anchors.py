@@ -13,7 +13,6 @@ from tarl_lint.model import SiteId
 
 if TYPE_CHECKING:
     from tarl_lint.api import Analysis
-
     from tarl_lint.model import Source
 
 REGISTERING = {

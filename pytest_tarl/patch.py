@@ -72,7 +72,8 @@ def apply_command(patch: Path, cwd: Path) -> str:
     if shutil.which("git") is None:
         return shlex.join(["patch", "-p1", "-d", _shown(base, here), "-i", str(patch.resolve())])
     files = [base / name for name in _FILE.findall(text)]
-    within = (base / ".git").exists() and all(file.is_relative_to(here) for file in files)
+    inside = (base / ".git").exists() and here.is_relative_to(base)
+    within = inside and all(file.is_relative_to(here) for file in files)
     if within or base == here:
         return shlex.join(["git", "apply", _shown(patch.resolve(), here)])
     return shlex.join(["git", "-C", _shown(base, here), "apply", _shown(patch.resolve(), base)])

@@ -59,19 +59,24 @@ class Subscriptions:
         return Reading(code, code)
 
     def edits(self) -> dict[str, list[Edit]]:
-        """Return the edits that make the subscriptions, per path."""
+        """Return the edits that make the subscriptions, per path.
+
+        All registrations come first, since a callback may be added at the very end of the method that subscribes.
+        """
         edits: dict[str, list[Edit]] = {}
         imports: dict[str, list[Import]] = {}
+        stores: list[tuple[str, Edit]] = []
         for each in self._added:
             place, inside = each.anchor.source.path, each.store.source.path
             callback = self._callback(each)
             line, kind = self._registration(each, callback, imports.setdefault(place, []))
-            annotation = kind if inside == place and each.anchor.annotated else ""
-            edits.setdefault(inside, []).extend(
-                variable_edits(each.store, each.anchor, list(each.names.values()))
-            )
-            edits[inside].append(callback_edit(each.store, each.anchor, callback, each.names, annotation))
             edits.setdefault(place, []).append(each.anchor.edit(line))
+            annotation = kind if inside == place and each.anchor.annotated else ""
+            added = variable_edits(each.store, each.anchor, list(each.names.values()))
+            added.append(callback_edit(each.store, each.anchor, callback, each.names, annotation))
+            stores += [(inside, edit) for edit in added]
+        for path, edit in stores:
+            edits.setdefault(path, []).append(edit)
         for path, wanted in imports.items():
             edits[path] += import_edits(self._document(path), wanted)
         return edits
