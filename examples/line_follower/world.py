@@ -32,7 +32,7 @@ READING_NOISE = 0.01
 LOST = 0.1  # the robot has lost the line
 TIME_BOUND = 10.0
 DRIVE_LAG, SLIDE_LAG, TURN_LAG = 0.15, 0.03, 0.05
-SUBSTEPS = 5
+SUBSTEPS = 4
 
 
 class World:
