@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
 from pytest_tarl.errors import RecordingError
-from pytest_tarl.ros.messages.snapshot import FieldError, snapshot, stamp_if_unset, type_name
+from pytest_tarl.ros.messages.snapshot import snapshot, stamp_if_unset, type_name
+from pytest_tarl.ros.messages.values import FieldError
 from pytest_tarl.ros.names import absolute
 from pytest_tarl.ros.scheduler import Scheduler, running_task
 
@@ -110,14 +112,17 @@ class Bus:
         if keep:
             place.kept[publication] = message
         for listener in place.listeners:
-            try:
-                listener(message)
-            except BaseException as error:  # the world's own error goes to the test, not into the node
-                self._scheduler.failure = self._scheduler.failure or error
+            self._tell(listener, message)
         if place.subscriptions or self._observers:
             self._scheduler.later(lambda: self._deliver(place, message, spare=False))
         if running_task() is None:
             self._run(lambda: None)
+
+    def _tell(self, listener: Listener, message: Any) -> None:
+        try:
+            listener(message)
+        except BaseException as error:  # the world's own error goes to the test, not into the node
+            self._scheduler.failure = self._scheduler.failure or error
 
     def advertise(self, publication: Publication, place: Topic) -> None:
         """Add a node's publication."""
@@ -129,7 +134,7 @@ class Bus:
         place.subscriptions.append(subscription)
         if wants_kept:
             for message in place.kept.values():
-                self._scheduler.later(lambda message=message: self._hand(place, subscription, message))
+                self._scheduler.later(partial(self._hand, place, subscription, message))
 
     def disconnect(self, process: Process) -> None:
         """Forget the publications and subscriptions of a process that has ended."""

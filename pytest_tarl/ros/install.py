@@ -119,15 +119,15 @@ class StandinFinder:
     def _kind_of_importer(self) -> Kind:
         """Tell for which ROS generation messages are wanted: that of the client library which the importer names."""
         if self._kind is None:
-            self._settle_kind(_kind_named_by(sys._getframe(2)) or "ros2")
-        assert self._kind is not None
+            return self._settle_kind(_kind_named_by(sys._getframe(2)) or "ros2")
         return self._kind
 
-    def _settle_kind(self, kind: Kind) -> None:
+    def _settle_kind(self, kind: Kind) -> Kind:
         """Fix the ROS generation of this episode's messages; those of an installed other one get out of the way."""
         self._kind = kind
         if installed_kind("std_msgs") not in (None, kind):
             self.hidden.update(_hide({name for name in sys.modules if could_be_package(name)}))
+        return kind
 
 
 def _kind_named_by(frame: FrameType | None) -> Kind | None:
@@ -155,12 +155,12 @@ def standins_installed(ros: Ros) -> Iterator[None]:
     """Have imports find the stand-ins and nodes see the virtual clock as the host's; undo all of it on exit."""
     finder = StandinFinder()
     finder.hidden = _hide(_TALKING)
-    sys.meta_path.insert(0, finder)  # type: ignore[arg-type]
+    sys.meta_path.insert(0, finder)
     try:
         with virtual_host_time(ros.scheduler):
             yield
     finally:
-        sys.meta_path.remove(finder)  # type: ignore[arg-type]
+        sys.meta_path.remove(finder)
         for name in finder.loaded:
             sys.modules.pop(name, None)
         sys.modules.update(finder.hidden)

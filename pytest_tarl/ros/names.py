@@ -76,8 +76,10 @@ def parse_ros2(arguments: Iterable[str]) -> CommandLine:
     rest: list[str] = []
     inside, option = False, ""
     for argument in arguments:
-        if argument in ("--ros-args", "--"):
-            inside = argument == "--ros-args" or (rest.append(argument) or False if not inside else False)
+        if argument == "--ros-args":
+            inside = True
+        elif inside and argument == "--":
+            inside = False
         elif not inside:
             rest.append(argument)
         elif not option and argument.startswith("-"):

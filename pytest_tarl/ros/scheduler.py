@@ -48,7 +48,7 @@ class Task:
             self.process.finished(self)
 
 
-class Worker(greenlet):  # type: ignore[misc]
+class Worker(greenlet):
     """A greenlet that runs one task after the other: making one costs ten times what switching does."""
 
     def __init__(self, idle: list[Worker]) -> None:
@@ -62,7 +62,15 @@ class Worker(greenlet):  # type: ignore[misc]
             self.task.execute()
             self.task = None
             self._idle.append(self)
-            self.parent.switch()
+            hand_over()
+
+
+def hand_over() -> Any:
+    """Switch to whoever resumed the running greenlet; return what the next resumption brings."""
+    parent = getcurrent().parent
+    if parent is None:
+        raise RuntimeError("only a task can hand over")
+    return parent.switch()
 
 
 def running_task() -> Task | None:
@@ -73,7 +81,9 @@ def running_task() -> Task | None:
 
 def current_task() -> Task:
     """Return the task that is running. Called within one."""
-    task: Task = getcurrent().task
+    task = running_task()
+    if task is None:
+        raise RuntimeError("only a task has a current task")
     return task
 
 
@@ -96,14 +106,14 @@ class Scheduler:
         if until is not None:
             self._sequence += 1
             heappush(self._sleeping, (until, self._sequence, task, task.ticket))
-        return bool(getcurrent().parent.switch())
+        return bool(hand_over())
 
     def yield_now(self) -> None:
         """Let everything run that is ready, then go on at the same instant."""
         task = current_task()
         task.parked = True
         self.wake(task)
-        getcurrent().parent.switch()
+        hand_over()
 
     def wake(self, task: Task) -> None:
         """Resume a waiting task as soon as the running one waits."""

@@ -19,7 +19,25 @@ DEFAULTS: Mapping[
     "ros2:geometry_msgs/Quaternion": {"w": 1.0},
 }
 _PRIMITIVES = frozenset(
-    "bool byte char int8 uint8 int16 uint16 int32 uint32 int64 uint64 float32 float64 string wstring time duration".split()
+    [
+        "bool",
+        "byte",
+        "char",
+        "int8",
+        "uint8",
+        "int16",
+        "uint16",
+        "int32",
+        "uint32",
+        "int64",
+        "uint64",
+        "float32",
+        "float64",
+        "string",
+        "wstring",
+        "time",
+        "duration",
+    ]
 )
 
 

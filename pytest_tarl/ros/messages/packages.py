@@ -8,7 +8,6 @@ from typing import Any
 from pytest_tarl.ros.messages import find_class, ros1, unknown_type
 from pytest_tarl.ros.messages.definitions import Kind, message_names, service_names
 
-
 _ENDINGS = ("_msgs", "_srvs", "_interfaces")
 _OTHERS = ("turtlesim",)
 

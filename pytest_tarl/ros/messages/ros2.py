@@ -4,6 +4,8 @@ Fields are properties whose setters assert the type, so that `twist.linear.x = 1
 Sequences of numbers are `array.array`, arrays of numbers are numpy arrays, as in rosidl.
 """
 
+# ruff: noqa: S101 (rosidl's setters assert, and `python -O` switches them off there as well)
+
 from __future__ import annotations
 
 import operator
@@ -47,7 +49,8 @@ class Message:
 
     def __copy__(self) -> Any:
         twin = object.__new__(type(self))
-        for slot in type(self).__slots__:
+        for field in self._fields:
+            slot = "_" + field.name
             object.__setattr__(twin, slot, getattr(self, slot))
         return twin
 
@@ -225,7 +228,7 @@ def _accepted(field: Field, check: Callable[[Any], None], value: Any) -> Any:
             f"The '{field.name}' array.array() must have the type code of '{CODES[field.base]}'"
         )
         return value if field.shape == "sequence" else _numpy_array(_sized(field, value), field.base)
-    assert isinstance(value, Sequence | set) and not isinstance(value, str), (
+    assert isinstance(value, Sequence | set) and not isinstance(value, str), (  # noqa: PT018
         f"The '{field.name}' field must be a sequence of {field.base}, not {type(value).__name__}"
     )
     for element in value:

@@ -71,13 +71,14 @@ def _translated(value: Any, template: Any, wanted: type) -> Any:
 def is_message(value: Any) -> bool:
     """Tell a ROS message of either generation from anything else."""
     own = type(value)
-    return hasattr(own, "get_fields_and_field_types") or hasattr(own, "_slot_types") and hasattr(own, "_type")
+    return hasattr(own, "get_fields_and_field_types") or (
+        hasattr(own, "_slot_types") and hasattr(own, "_type")
+    )
 
 
 def stamp_if_unset(message: Any, now: int) -> None:
     """Give the header of `message` the present time (ns) unless it has a stamp."""
-    header = getattr(message, "header", None)
-    stamp = getattr(header, "stamp", None)
+    stamp: Any = getattr(getattr(message, "header", None), "stamp", None)
     if hasattr(stamp, "nsecs"):
         if not (stamp.secs or stamp.nsecs):
             stamp.secs, stamp.nsecs = divmod(now, NANOSECONDS)

@@ -16,7 +16,7 @@ def _split(seconds: float) -> tuple[int, int]:
 class TVal:
     """Seconds and nanoseconds, kept so that 0 <= nsecs < 1e9."""
 
-    __slots__ = ["secs", "nsecs"]
+    __slots__ = ["nsecs", "secs"]
     _slot_types: ClassVar[list[str]] = ["int32", "int32"]
     secs: int
     nsecs: int
@@ -97,7 +97,7 @@ class TVal:
 class Time(TVal):
     """An instant. Negative ones do not exist."""
 
-    __slots__ = ["secs", "nsecs"]
+    __slots__ = ["nsecs", "secs"]
 
     def __init__(self, secs: float = 0, nsecs: int = 0) -> None:
         super().__init__(secs, nsecs)
@@ -132,7 +132,7 @@ class Time(TVal):
 class Duration(TVal):
     """A span of time, of either sign."""
 
-    __slots__ = ["secs", "nsecs"]
+    __slots__ = ["nsecs", "secs"]
 
     def _family(self) -> type[TVal]:
         return Duration

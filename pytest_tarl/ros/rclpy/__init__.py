@@ -1,5 +1,7 @@
 """Stand-in for rclpy: same names, virtual clock, no middleware."""
 
+# ruff: noqa: ARG001 (signatures are rclpy's)
+
 from __future__ import annotations
 
 from typing import Any

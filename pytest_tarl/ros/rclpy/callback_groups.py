@@ -1,5 +1,7 @@
 """Callback groups: which callbacks a multi-threaded executor may run beside each other."""
 
+# ruff: noqa: ARG002 (signatures are rclpy's)
+
 from __future__ import annotations
 
 from typing import Any

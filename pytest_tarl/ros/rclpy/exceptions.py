@@ -1,5 +1,7 @@
 """The exceptions of rclpy."""
 
+# ruff: noqa: ARG002 (signatures are rclpy's)
+
 from __future__ import annotations
 
 from typing import Any

@@ -1,5 +1,7 @@
 """rclpy's executors: they wait for what becomes ready in their nodes and run its callbacks."""
 
+# ruff: noqa: ARG002 (signatures are rclpy's)
+
 from __future__ import annotations
 
 import inspect
@@ -163,9 +165,12 @@ class Executor:
             for subscription in node.subscriptions_:
                 if subscription.queue:
                     yield subscription, self._taking_message(subscription)
-            for entity in (*node.clients_, *node.services_):
-                if entity.queue:
-                    yield entity, entity.handle
+            for client in node.clients_:
+                if client.queue:
+                    yield client, client.handle
+            for service in node.services_:
+                if service.queue:
+                    yield service, service.handle
 
     def _taking_timer(self, timer: Any) -> Callable[[], Any]:
         def take() -> Any:

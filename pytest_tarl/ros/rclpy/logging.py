@@ -1,5 +1,7 @@
 """rclpy's loggers: through Python's `logging`, so that pytest captures them."""
 
+# ruff: noqa: ARG001 (signatures are rclpy's)
+
 from __future__ import annotations
 
 import logging as python_logging

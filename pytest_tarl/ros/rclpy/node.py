@@ -1,5 +1,7 @@
 """rclpy's Node."""
 
+# ruff: noqa: ARG002 (signatures are rclpy's)
+
 from __future__ import annotations
 
 import re
@@ -22,10 +24,23 @@ from pytest_tarl.ros.rclpy.topics import Publisher, Subscription
 
 _TOPIC = re.compile(r"[~/]?[A-Za-z_{}][\w{}]*(/[A-Za-z_{}][\w{}]*)*|~/[\w{}/]+")
 _NOT_YET = frozenset(
-    "create_guard_condition get_publishers_info_by_topic get_subscriptions_info_by_topic add_waitable create_entity "
-    "get_client_names_and_types_by_node get_service_names_and_types get_publisher_names_and_types_by_node "
-    "wait_for_node get_subscriber_names_and_types_by_node get_service_names_and_types_by_node "
-    "add_pre_set_parameters_callback describe_parameter describe_parameters set_descriptor".split()
+    [
+        "create_guard_condition",
+        "get_publishers_info_by_topic",
+        "get_subscriptions_info_by_topic",
+        "add_waitable",
+        "create_entity",
+        "get_client_names_and_types_by_node",
+        "get_service_names_and_types",
+        "get_publisher_names_and_types_by_node",
+        "wait_for_node",
+        "get_subscriber_names_and_types_by_node",
+        "get_service_names_and_types_by_node",
+        "add_pre_set_parameters_callback",
+        "describe_parameter",
+        "describe_parameters",
+        "set_descriptor",
+    ]
 )
 
 
@@ -282,8 +297,11 @@ class Node(NodeParameters):
 
     def destroy_node(self) -> None:
         """Destroy the node and all that it created."""
-        for entities in (self.publishers_, self.subscriptions_, self.timers_, self.clients_, self.services_):
-            for entity in tuple(entities):  # type: ignore[var-annotated]
+        lists: tuple[list[Any], ...] = (
+            self.publishers_, self.subscriptions_, self.timers_, self.clients_, self.services_,
+        )  # fmt: skip
+        for entities in lists:
+            for entity in tuple(entities):
                 _destroy(entity, entities)
         if self.executor is not None:
             self.executor.remove_node(self)

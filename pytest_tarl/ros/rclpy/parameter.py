@@ -108,7 +108,7 @@ class Parameter:
 def parameter_value_to_python(parameter_value: Any) -> Any:
     """Return the Python value of rcl_interfaces/ParameterValue."""
     field = _FIELDS.get(parameter_value.type)
-    value = getattr(parameter_value, field) if field is not None else None
+    value: Any = getattr(parameter_value, field) if field is not None else None
     return value.tolist() if hasattr(value, "tolist") else value
 
 

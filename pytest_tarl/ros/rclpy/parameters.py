@@ -72,9 +72,9 @@ class NodeParameters:
         """Declare several, given as (name), (name, value) or (name, value, descriptor)."""
         declared = []
         for entry in parameters:
-            name, *rest = (entry,) if isinstance(entry, str) else entry
+            name, value, descriptor = (*entry, None, None)[:3]
             full = f"{namespace}.{name}" if namespace else name
-            declared.append(self.declare_parameter(full, *rest, ignore_override=ignore_override))
+            declared.append(self.declare_parameter(full, value, descriptor, ignore_override))
         return declared
 
     def undeclare_parameter(self, name: str) -> None:

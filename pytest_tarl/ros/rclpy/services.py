@@ -1,5 +1,7 @@
 """rclpy's services and clients: request and response each wait for the executor of the node they reach."""
 
+# ruff: noqa: ARG002 (signatures are rclpy's)
+
 from __future__ import annotations
 
 from collections import deque

@@ -1,5 +1,7 @@
 """rclpy's instants, durations and clocks, all on the virtual clock."""
 
+# ruff: noqa: ARG002 (signatures are rclpy's)
+
 from __future__ import annotations
 
 from enum import IntEnum

@@ -77,8 +77,8 @@ from pytest_tarl.ros.rospy.timing import Duration, Rate, Time, Timer, TimerEvent
 from pytest_tarl.ros.rospy.topics import (
     AnyMsg,
     Publisher,
-    Subscriber,
     SubscribeListener,
+    Subscriber,
     get_published_topics,
     wait_for_message,
 )

@@ -1,5 +1,7 @@
 """rospy's logging: through Python's `logging`, logger `rosout`, so that pytest captures it."""
 
+# ruff: noqa: ARG001 (signatures are rospy's)
+
 from __future__ import annotations
 
 import logging
@@ -23,7 +25,9 @@ class LogMemory:
 
     def first(self, key: Any) -> bool:
         """Tell whether this is the first time."""
-        return self._seen.setdefault(key, 0) == 0 and not self._seen.update({key: 1})  # type: ignore[func-returns-value]
+        new = key not in self._seen
+        self._seen[key] = self._clock.time
+        return new
 
     def due(self, key: Any, period: float) -> bool:
         """Tell whether `period` seconds have gone by since this last was due."""

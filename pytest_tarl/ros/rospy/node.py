@@ -1,5 +1,7 @@
 """The node of a process: its name, its life, its end."""
 
+# ruff: noqa: ARG001 (signatures are rospy's)
+
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence

@@ -1,5 +1,7 @@
 """`numpy_msg(Type)`: here the type itself; numpy functions take its tuples."""
 
+# ruff: noqa: ARG001 (signatures are rospy's)
+
 from __future__ import annotations
 
 from typing import Any

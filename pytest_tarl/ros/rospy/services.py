@@ -1,5 +1,7 @@
 """rospy's services: a call is handled in a task of the serving node while the caller waits."""
 
+# ruff: noqa: ARG002 (signatures are rospy's)
+
 from __future__ import annotations
 
 from collections.abc import Callable

@@ -1,5 +1,7 @@
 """rospy's time: instants, durations, rates, sleeping, timers, all on the virtual clock."""
 
+# ruff: noqa: ARG002 (signatures are rospy's)
+
 from __future__ import annotations
 
 from collections.abc import Callable

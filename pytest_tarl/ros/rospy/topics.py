@@ -1,5 +1,7 @@
 """rospy's publishers and subscribers."""
 
+# ruff: noqa: ARG002 (signatures are rospy's)
+
 from __future__ import annotations
 
 from collections import deque
