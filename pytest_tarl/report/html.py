@@ -134,7 +134,7 @@ def _context(comparison: Comparison, title: str | None) -> Mapping[str, Any]:
         "clipped": _clipped(comparison),
         "repair_words": words.repair_words(comparison.repair) if comparison.repair else "",
         "refusal": words.refusal(comparison.repair) if comparison.repair else "",
-        "command": words.command(comparison),
+        "command": words.repeat(comparison),
         "next_steps": list(words.next_steps(comparison)),
         "place": lambda site: f"{site.path}:{site.line}",
     }

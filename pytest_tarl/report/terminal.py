@@ -41,7 +41,7 @@ def _entries(
     yield "repair", list(_repair(comparison))
     yield "note", list(_some([words.one_line(note) for note in comparison.notes]))
     yield "page", [_shown(page, root)] if page else []
-    yield "again", [words.command(comparison)]
+    yield "again", [words.repeat(comparison)]
     yield "next", list(words.next_steps(comparison))
 
 
@@ -76,7 +76,7 @@ def _culprit(rank: str, culprit: Culprit, width: int, root: Path) -> str:
     evidence = "by its slice" if culprit.method == "slices" else "no operand helps"
     if culprit.operands:
         best = culprit.operands[0]
-        evidence = f"{best.code} at {best.best:g}: {words.signed(best.effect)}"
+        evidence = f"{words.operand_words(best)}: {words.signed(best.effect)}"
     where = f"{rank} {words.place(site.path, site.line, root)}"
     room = width - len(where) - len(evidence) - 6
     return f"{where}  {words.one_line(site.code, room)}  ({evidence})"

@@ -9,7 +9,7 @@ from itertools import accumulate
 from pathlib import Path
 from statistics import fmean
 
-from pytest_tarl.model import Comparison, Edit, Reason, Repair, Slice
+from pytest_tarl.model import Comparison, Edit, OperandEffect, Reason, Repair, Slice
 from pytest_tarl.report.regions import Vocabulary
 
 SHORTEST = 16  # characters of a code line that are shown however narrow the place is
@@ -100,8 +100,13 @@ def paper_region_words(comparison: Comparison) -> str:
 
 
 def edit_words(edit: Edit) -> str:
-    """Say what an edit does: a number is replaced, a name takes another value."""
-    return f"{edit.code} → {edit.value:g}"
+    """Say what an edit does: a number is replaced, a named constant multiplied."""
+    return f"{edit.code} {'×' if edit.factor else '→'} {edit.value:g}"
+
+
+def operand_words(operand: OperandEffect) -> str:
+    """Say what did best for an operand: its new value, or a factor where its own is not known."""
+    return f"{operand.code} {'×' if operand.value is None else '→'} {operand.best:g}"
 
 
 def repair_words(repair: Repair) -> str:
@@ -116,9 +121,19 @@ def refusal(repair: Repair) -> str:
 
 
 def command(comparison: Comparison, *flags: str) -> str:
-    """Return the command that repeats the comparison."""
+    """Return the command that repeats the comparison with the same seed."""
     drift = ["--tarl-drift", comparison.drift] if comparison.drift else []
-    return shlex.join(["pytest", comparison.test, "--tarl-online", *drift, *flags])
+    seed = ["--tarl-seed", str(comparison.seed)] if comparison.seed else []
+    return shlex.join(["pytest", comparison.test, "--tarl-online", *drift, *seed, *flags])
+
+
+def repeat(comparison: Comparison) -> str:
+    """Return the command that repeats all that was done, searches included."""
+    methods = [search.method for search in comparison.searches]
+    chosen = (
+        [flag for method in methods for flag in ("--tarl-search", method)] if methods != ["sweep"] else []
+    )
+    return command(comparison, *(["--tarl-repair", *chosen] if comparison.repair else []))
 
 
 def next_steps(comparison: Comparison) -> Iterator[str]:

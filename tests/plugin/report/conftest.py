@@ -229,7 +229,7 @@ def two_lists(shuttle: Comparison) -> Comparison:
         repair=Repair(
             False,
             "light == 'dusk <&>'",
-            (Edit("src/follower/node.py", 63, "self.kp", 2.2),),
+            (Edit("src/follower/node.py", 63, "self.kp", 2.2, factor=True),),
             reason="gain too small",
         ),
         notes=("</script><script>alert('note')</script>", "Second note", "Third note", "Fourth"),

@@ -16,12 +16,16 @@ def told(comparison, width=100, page=None):
 
 
 def test_the_shuttle_reads_as_one_short_section(shuttle):
+    again = (
+        "pytest tests/test_traveller.py::test_delivers --tarl-online --tarl-drift mud --tarl-seed 1 "
+        "--tarl-repair --tarl-search epsilon-greedy --tarl-search sweep"
+    )
     assert told(shuttle, page=ROOT / ".tarl/report/delivers.html").splitlines() == [
         "tests/test_traveller.py::test_delivers[mud]: degraded",
         "  verdict  In the drift scenario 'mud' an episode earns 16.90 less than designed (p < 0.001).",
         "  reward   off-line 9.78, on-line -6.83, repaired 9.42, designed world repaired 10.09",
         "  where    x 4.2-7.1 m, terrain true",
-        "  lines    1. traveller.py:30  vel = 5 * delta  (5 at 12: +14.20)",
+        "  lines    1. traveller.py:30  vel = 5 * delta  (5 → 12: +14.20)",
         "           2. traveller.py:28  delta = goal - pos  (by its slice)",
         "           3. traveller.py:31  pub.publish(vel)  (by its slice)",
         "           (and 2 more)",
@@ -29,7 +33,7 @@ def test_the_shuttle_reads_as_one_short_section(shuttle):
         "  repair   accepted: 5 → 12 at traveller.py:30 where terrain and 4.167 <= pos <= 7.083",
         "  note     The site `err = abs(delta)` is only reached by a condition.",
         "  page     .tarl/report/delivers.html",
-        "  again    pytest tests/test_traveller.py::test_delivers --tarl-online --tarl-drift mud",
+        f"  again    {again}",
         "  next     git apply .tarl/patches/test-delivers-mud-1a2b3c4d.patch",
     ]
 
@@ -43,7 +47,7 @@ def test_no_line_is_wider_than_asked_except_what_must_be_copied_whole(any_compar
 def test_a_refused_repair_says_why_and_shows_the_best_so_far(two_lists):
     text = told(two_lists, 200)
     assert "none accepted: the best change found gains too little" in text
-    assert "best so far: self.kp → 2.2 at src/follower/node.py:63 where light == 'dusk <&>'" in text
+    assert "best so far: self.kp × 2.2 at src/follower/node.py:63 where light == 'dusk <&>'" in text
     assert "git apply" not in text
 
 
@@ -55,12 +59,12 @@ def test_situations_never_seen_off_line_are_told_apart(two_lists):
 
 def test_long_code_is_elided_and_keeps_its_evidence(two_lists):
     first = next(line for line in told(two_lists, 80).splitlines() if " 1. " in line)
-    assert first.endswith("…  (self.kp at 2.2: +3.40)")
+    assert first.endswith("…  (self.kp × 2.2: +3.40)")
     assert len(first) <= 80
 
 
 def test_without_a_repair_the_next_step_is_to_ask_for_one(unrepaired):
-    command = "pytest tests/test_traveller.py::test_delivers --tarl-online --tarl-drift mud --tarl-repair"
+    command = "pytest tests/test_traveller.py::test_delivers --tarl-online --tarl-drift mud --tarl-seed 1 --tarl-repair"
     assert told(unrepaired).splitlines()[-1] == f"  next     {command}"
 
 
@@ -89,6 +93,13 @@ def test_absolute_paths_are_shown_from_the_root(varied, shuttle):
     site = SitePlace("m:f:x", str(ROOT / "src/a.py"), 3, "x = 1", "data", "assign")
     culprit = type(shuttle.culprits[0])(site, 1.0, "sweep", ())
     assert "1. src/a.py:3  x = 1  (no operand helps)" in told(varied(culprits=(culprit,)))
+
+
+def test_the_default_seed_and_search_are_not_spelled_out(varied, shuttle):
+    text = told(varied(seed=0, searches=shuttle.searches[1:]))
+    assert text.splitlines()[-2] == (
+        "  again    pytest tests/test_traveller.py::test_delivers --tarl-online --tarl-drift mud --tarl-repair"
+    )
 
 
 def test_a_test_id_with_spaces_is_quoted_in_the_command(two_lists):
