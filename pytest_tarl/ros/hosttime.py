@@ -48,5 +48,7 @@ def _sleep(real: Callable[[float], None], scheduler: Scheduler) -> Callable[[flo
         until = scheduler.time + nanoseconds(duration)
         while scheduler.time < until and not task.process.ending:
             scheduler.wait(until)
+        if task.process.ending:
+            task.process.refuse_to_wait()
 
     return sleep

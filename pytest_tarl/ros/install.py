@@ -15,6 +15,7 @@ from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.installed import installed_kind
 from pytest_tarl.ros.messages.packages import could_be_package, is_package, package_module
 from pytest_tarl.ros.missing import refusing, unsupported
+from pytest_tarl.ros.threads import threads_as_tasks
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.episode import Ros
@@ -71,7 +72,7 @@ class StandinFinder:
         self._kind: Kind | None = None
 
     def find_spec(
-        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+        self, name: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
         """Find a stand-in; None leaves the name to the other finders."""
         root = name.partition(".")[0]
@@ -157,7 +158,7 @@ def standins_installed(ros: Ros) -> Iterator[None]:
     finder.hidden = _hide(_TALKING)
     sys.meta_path.insert(0, finder)
     try:
-        with virtual_host_time(ros.scheduler):
+        with virtual_host_time(ros.scheduler), threads_as_tasks():
             yield
     finally:
         sys.meta_path.remove(finder)

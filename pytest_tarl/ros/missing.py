@@ -10,8 +10,8 @@ from pytest_tarl.errors import UnsupportedApiError
 def unsupported(api: str) -> UnsupportedApiError:
     """Say that something of ROS is not there, and what to do."""
     return UnsupportedApiError(
-        f"{api} is not in the in-process ROS yet: give the node a small stand-in for it in your test (monkeypatch the call, "
-        "or put a module of that name into sys.modules), or drive the node through the parts that are there."
+        f"{api} is not in the in-process ROS yet: give the node a small stand-in for it in your test (monkeypatch "
+        "the call, or put a module of that name into sys.modules), or drive the node through the parts that are there."
     )
 
 

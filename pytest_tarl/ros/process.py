@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 Part = TypeVar("Part")
 
+_PATIENCE = 1_000  # waits that return at once before a loop counts as one that will not end by itself
 _ROUNDS = 5  # how often the tasks of an ending process are given the chance to return by themselves
 
 
@@ -30,6 +31,7 @@ class Process:
         self.ending = False
         self.ended = False
         self._closing = False
+        self._refused = 0
         self.label = name  # what messages call it: the node's name once it has one
         self.errors: list[NodeError] = []  # what went wrong while it was being ended
         self._parts: dict[Any, Any] = {}
@@ -98,8 +100,9 @@ class Process:
                 break
             for task in tuple(self.tasks):
                 self.scheduler.wake(task)
-        for task in tuple(self.tasks):
-            self.scheduler.kill(task)
+        for _ in range(_ROUNDS):
+            for task in tuple(self.tasks):
+                self.scheduler.kill(task)
         self.ended = True
         self.bus.disconnect(self)
 
@@ -111,11 +114,17 @@ class Process:
         for task in tuple(self.tasks):
             self.scheduler.wake(task)
 
+    def refuse_to_wait(self) -> None:
+        """Take note of a wait that returns at once because the process is ending; one that keeps trying is parked."""
+        self._refused += 1
+        while self._refused > _PATIENCE:
+            self.scheduler.wait()
+
     def spins(self, place: blame.Place | None) -> NodeError:
         """Say that the node never waits."""
         return NodeError(
-            f"Node {self.label!r} never waits: {self.ros.watchdog_limit:g} s went by while virtual time stood still, "
-            f"at {blame.describe(place)}. Call Rate.sleep(), rospy.sleep() or a spin function in that loop."
+            f"Node {self.label!r} never waits: {self.ros.watchdog_limit:g} s went by while virtual time stood "
+            f"still, at {blame.describe(place)}. Call Rate.sleep(), rospy.sleep() or a spin function in that loop."
         )
 
     def _ended_in(self, error: BaseException) -> NodeError:
@@ -142,6 +151,7 @@ def current_process(api: str) -> Process:
     if task is not None:
         return task.process
     raise UnsupportedApiError(
-        f"{api} was called outside of a node, or from a thread that the node started: the in-process ROS answers only to "
-        "programs that were started with tarl.start(…), in their own thread. In the test itself use tarl.bus and tarl.step."
+        f"{api} was called outside of a node, or from a thread that the node started: the in-process ROS "
+        "answers only to programs that were started with tarl.start(…), in their own thread. In the test itself use "
+        "tarl.bus and tarl.step."
     )

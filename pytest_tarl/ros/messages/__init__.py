@@ -55,6 +55,6 @@ def unknown_type(package: str, name: str) -> UnsupportedApiError:
     """Say that a type has no definition."""
     return UnsupportedApiError(
         f"Message type {package}/{name} is not known here: it is in none of the packages whose definitions come with "
-        f"`rosbags`, and no installed ROS package {package!r} of the right generation was found. Check the spelling, or "
-        "install the package (source your workspace) in the environment that runs pytest."
+        f"`rosbags`, and no installed ROS package {package!r} of the right generation was found. Check the "
+        "spelling, or install the package (source your workspace) in the environment that runs pytest."
     )

@@ -8,7 +8,10 @@ _TURTLESIM = {
     "turtlesim/Pose": "float32 x\nfloat32 y\nfloat32 theta\nfloat32 linear_velocity\nfloat32 angular_velocity",
     "turtlesim/Color": "uint8 r\nuint8 g\nuint8 b",
 }
-_ACKERMANN = "float32 steering_angle\nfloat32 steering_angle_velocity\nfloat32 speed\nfloat32 acceleration\nfloat32 jerk"
+_ACKERMANN = "\n".join(
+    f"float32 {name}"
+    for name in ("steering_angle", "steering_angle_velocity", "speed", "acceleration", "jerk")
+)
 _COMMON = {
     **_TURTLESIM,
     "ackermann_msgs/AckermannDrive": _ACKERMANN,

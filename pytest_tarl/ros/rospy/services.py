@@ -89,6 +89,7 @@ class ServiceProxy:
         self.response_class = service_class._response_class
 
     def __call__(self, *args: Any, **kwds: Any) -> Any:
+        """Call the service."""
         return self.call(*args, **kwds)
 
     def call(self, *args: Any, **kwds: Any) -> Any:

@@ -67,6 +67,8 @@ def sleep(duration: Any) -> None:
 
 def _sleep_until(node: RospyNode, until: int) -> None:
     process = node.process
+    if process.ending:
+        process.refuse_to_wait()
     if process.ending and node.in_hooks:
         return  # time stands still by then
     if until >= process.scheduler.time and not process.ending:
@@ -107,6 +109,7 @@ class Rate:
         if until > began:
             _sleep_until(self._node, until)
         elif self._node.process.ending:
+            self._node.process.refuse_to_wait()
             raise ROSInterruptException("ROS shutdown request")
         self._last = until
         if began - until > 2 * self._period:

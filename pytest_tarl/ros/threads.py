@@ -1,0 +1,174 @@
+"""Threads that a node starts become tasks, and the locks it makes hand over: no second thread, nothing at random."""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from pytest_tarl.ros.clock import nanoseconds
+from pytest_tarl.ros.scheduler import Scheduler, Task, running_task
+
+
+@contextmanager
+def threads_as_tasks() -> Iterator[None]:
+    """Replace what `threading` makes while nodes run. Outside of nodes everything stays as it is."""
+    replaced = [
+        (threading, "Lock", _instead(threading.Lock, Lock)),
+        (threading, "RLock", _instead(threading.RLock, ReentrantLock)),
+        (threading, "_allocate_lock", _instead(threading.Lock, Lock)),  # what Condition.wait makes
+        (threading.Thread, "start", _start(threading.Thread.start)),
+        (threading.Thread, "join", _join(threading.Thread.join)),
+        (threading.Thread, "is_alive", _is_alive(threading.Thread.is_alive)),
+    ]
+    saved = [(owner, name, getattr(owner, name)) for owner, name, _ in replaced]
+    for owner, name, value in replaced:
+        setattr(owner, name, value)
+    try:
+        yield
+    finally:
+        for owner, name, value in saved:
+            setattr(owner, name, value)
+
+
+class Lock:
+    """A lock for which a task waits without holding up the others."""
+
+    def __init__(self, scheduler: Scheduler) -> None:
+        self._scheduler = scheduler
+        self._held = False
+        self._waiting: deque[Task] = deque()
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        """Take the lock; tell whether that was possible."""
+        clock = self._scheduler
+        until = clock.time + nanoseconds(timeout) if timeout >= 0 else None
+        while self._held:
+            task = running_task()
+            if not blocking or (until is not None and clock.time >= until):
+                return False
+            if task is None:
+                raise RuntimeError(
+                    "The test waits for a lock that a waiting node holds: this would never end."
+                )
+            self._waiting.append(task)
+            clock.wait(until)
+            if task in self._waiting:
+                self._waiting.remove(task)
+        self._held = True
+        return True
+
+    def release(self) -> None:
+        """Give the lock back; whoever has waited longest is woken."""
+        if not self._held:
+            raise RuntimeError("release unlocked lock")
+        self._held = False
+        if self._waiting:
+            self._scheduler.wake(self._waiting.popleft())
+
+    def locked(self) -> bool:
+        """Tell whether somebody holds it."""
+        return self._held
+
+    def __enter__(self) -> bool:
+        return self.acquire()
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
+
+class ReentrantLock(Lock):
+    """A lock that its holder can take again."""
+
+    def __init__(self, scheduler: Scheduler) -> None:
+        super().__init__(scheduler)
+        self._owner: Task | None = None
+        self._count = 0
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        """Take the lock, once more if the running task holds it."""
+        if not (self._held and self._owner is running_task()):
+            if not super().acquire(blocking, timeout):
+                return False
+            self._owner = running_task()
+        self._count += 1
+        return True
+
+    def release(self) -> None:
+        """Give the lock back as often as it was taken."""
+        if not self._is_owned():
+            raise RuntimeError("cannot release un-acquired lock")
+        self._count -= 1
+        if self._count == 0:
+            self._owner = None
+            super().release()
+
+    def _is_owned(self) -> bool:  # these three are what threading.Condition asks its lock for
+        return self._held and self._owner is running_task()
+
+    def _release_save(self) -> int:
+        count, self._count = self._count, 1
+        self.release()
+        return count
+
+    def _acquire_restore(self, count: int) -> None:
+        self.acquire()
+        self._count = count
+
+
+def _instead(real: Callable[[], Any], own: Callable[[Scheduler], Lock]) -> Callable[[], Any]:
+    def make() -> Any:
+        task = running_task()
+        return real() if task is None else own(task.process.scheduler)
+
+    return make
+
+
+def _start(real: Callable[[threading.Thread], None]) -> Callable[[threading.Thread], None]:
+    def start(thread: threading.Thread) -> None:
+        task = running_task()
+        if task is None:
+            real(thread)
+            return
+        if "_tarl_task" in vars(thread):
+            raise RuntimeError("threads can only be started once")
+        joiners: list[Task] = []
+        vars(thread)["_tarl_joiners"] = joiners
+        scheduler = task.process.scheduler
+
+        def run() -> None:
+            try:
+                thread.run()
+            finally:
+                for joiner in joiners:
+                    scheduler.wake(joiner)
+
+        vars(thread)["_tarl_task"] = scheduler.spawn(task.process, run)
+
+    return start
+
+
+def _join(real: Callable[..., None]) -> Callable[..., None]:
+    def join(thread: threading.Thread, timeout: float | None = None) -> None:
+        joined: Task | None = vars(thread).get("_tarl_task")
+        task = running_task()
+        if joined is None or task is None:
+            real(thread, timeout) if joined is None else None
+            return
+        scheduler = task.process.scheduler
+        until = None if timeout is None else scheduler.time + nanoseconds(timeout)
+        vars(thread)["_tarl_joiners"].append(task)
+        while not joined.done and (until is None or scheduler.time < until):
+            scheduler.wait(until)
+
+    return join
+
+
+def _is_alive(real: Callable[[threading.Thread], bool]) -> Callable[[threading.Thread], bool]:
+    def is_alive(thread: threading.Thread) -> bool:
+        task: Task | None = vars(thread).get("_tarl_task")
+        return real(thread) if task is None else not task.done
+
+    return is_alive
