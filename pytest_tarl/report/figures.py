@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from pytest_tarl.report.words import running_mean
 from pytest_tarl.sensors import Cell, Sensor
 
 if TYPE_CHECKING:
-    from pytest_tarl.model import Matrix, Vector
+    from pytest_tarl.model import Matrix
 
 MOST_ROWS = 6  # values of the splitting sensor that get a row of their own
 QUIET = 0.25  # of the range of utilities: smaller differences never get the strongest colours
@@ -60,15 +61,13 @@ def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str
         _row(comparison, compared, shown, bins, value, vocabulary)
         for value in split_values(comparison, shown)
     ]
-    values = np.concatenate([compared.offline.ravel(), compared.online.ravel()])
-    change = (compared.online - compared.offline).ravel()
-    low, high = _extreme(np.min, values), _extreme(np.max, values)
+    low, high, reach = _extremes(rows)
     return {
         "sites": [[site.line, site.code, site.path] for site in compared.taint_list.sites],
         "axis": _axis(comparison.sensors[shown.position], shown.position, bins, vocabulary),
         "rows": rows,
         "range": [low, high],
-        "reach": number(max(_extreme(np.max, np.abs(change)), QUIET * (high - low))),
+        "reach": number(max(reach, QUIET * (high - low))),
     }
 
 
@@ -146,9 +145,15 @@ def _span(indices: Iterable[int]) -> list[int]:
     return list(range(min(found), max(found) + 1))
 
 
-def _extreme(choose: Callable[[Vector], np.float64], values: Vector) -> float:
-    known = values[np.isfinite(values)]
-    return float(f"{choose(known):.{DIGITS}g}") if known.size else 0.0
+def _extremes(rows: Iterable[Mapping[str, Any]]) -> tuple[float, float, float]:
+    """Return the least and the largest value that is shown, and the largest difference in size."""
+    values, changes = [], [0.0]
+    for row in rows:
+        for before, after in zip(chain(*row["offline"]), chain(*row["online"]), strict=True):
+            values += [value for value in (before, after) if value is not None]
+            if before is not None and after is not None:
+                changes.append(abs(after - before))
+    return min(values, default=0.0), max(values, default=0.0), max(changes)
 
 
 def reward_curves(comparison: Comparison) -> list[dict[str, Any]]:

@@ -117,7 +117,7 @@ class Vocabulary:
             self._range(0, *one).removesuffix(f" {unit}") if unit else self._range(0, *one) for one in joined
         ]
         more = f" or {len(named) - NAMED} more" if len(named) > NAMED else ""
-        return f"{self.sensors[0].name} {' or '.join(named[:NAMED])}{more}{unit and ' ' + unit}"
+        return f"{self.sensors[0].name} {' or '.join(named[:NAMED])}{unit and ' ' + unit}{more}"
 
     def _phrase(self, dimension: int, first: int, last: int) -> str:
         """Name a range of bins of one sensor; nothing where it covers all values that a category ever had."""

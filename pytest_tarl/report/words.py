@@ -24,11 +24,11 @@ REASONS: dict[Reason, str] = {
 
 def amount(value: float | None) -> str:
     """Write a reward or utility with three digits or so; `n/a` where there is none."""
-    if value is None or math.isnan(value):
+    if value is None or not math.isfinite(value):
         return "n/a"
     if value == 0 or 0.1 <= abs(value) < 1000:
         return f"{value:.2f}"
-    return f"{value:.3g}"
+    return f"{value:.0f}" if 1000 <= abs(value) < 1e6 else f"{value:.3g}"
 
 
 def signed(value: float | None) -> str:
@@ -71,10 +71,10 @@ def verdict_sentence(comparison: Comparison) -> str:
             f"{_capital(world)} differs from the designed one ({p_value(verdict.p_drift)}), "
             f"but no loss of reward was found ({p_value(verdict.p_loss)})."
         )
-    return (
-        f"No difference was found between {world} and the designed one; "
-        f"a loss of {amount(verdict.detectable_loss)} per episode would have been."
-    )
+    seen = f"a loss of {amount(verdict.detectable_loss)} per episode would have been"
+    if not math.isfinite(verdict.detectable_loss):
+        seen = "too few episodes were run to see any loss"
+    return f"No difference was found between {world} and the designed one; {seen}."
 
 
 def _capital(text: str) -> str:

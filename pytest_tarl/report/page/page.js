@@ -23,7 +23,8 @@
   const amount = (value, sign = false) => {
     if (value === null) return "n/a";
     const size = Math.abs(value);
-    const text = value === 0 || (size >= 0.1 && size < 1000) ? size.toFixed(2) : String(Number(size.toPrecision(3)));
+    const text = value === 0 || (size >= 0.1 && size < 1000) ? size.toFixed(2)
+      : size >= 1000 && size < 1e6 ? size.toFixed(0) : String(Number(size.toPrecision(3)));
     return (value < 0 ? "−" : sign ? "+" : "") + text;
   };
 

@@ -81,6 +81,19 @@ def test_noise_never_gets_the_strongest_colours(unchanged, shuttle):
     assert figure(shuttle)["reach"] == pytest.approx(np.nanmax(np.abs(change)), rel=1e-4)
 
 
+def test_the_scales_are_those_of_the_values_that_are_shown(two_lists):
+    found = figure(two_lists)
+    shown = [
+        v
+        for row in found["rows"]
+        for w in ("offline", "online")
+        for line in row[w]
+        for v in line
+        if v is not None
+    ]
+    assert found["range"] == [min(shown), max(shown)]
+
+
 def test_no_cell_no_figure(varied):
     assert figure(varied(cells=())) is None
 

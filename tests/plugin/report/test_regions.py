@@ -85,6 +85,13 @@ def test_many_places_are_capped():
     assert words(cells, (X, TERRAIN, LANE), seen).endswith("; and 2 more")
 
 
+def test_many_intervals_of_one_sensor_are_capped_after_the_unit():
+    everything = [(x, 1) for x in range(10)]
+    assert words([(x, 1) for x in (0, 2, 4, 6, 8)], seen=everything) == (
+        "x 0-1 or 2-3 or 4-5 m or 2 more, terrain true"
+    )
+
+
 def test_integers_beyond_one_are_no_booleans():
     assert words([(0,), (1,)], (LANE,), [(0,), (1,), (2,)]) == "lane 0 or 1"
 

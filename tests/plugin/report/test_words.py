@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from pytest_tarl.model import Edit, OperandEffect, Verdict
+from pytest_tarl.report import words
+
+
+@pytest.mark.parametrize(("value", "text"), [
+    (0.0, "0.00"), (9.78123, "9.78"), (-0.5, "-0.50"), (0.012345, "0.0123"), (2614.4, "2614"), (-123456.7, "-123457"),
+    (1.5e7, "1.5e+07"), (math.nan, "n/a"), (None, "n/a"),
+])  # fmt: skip
+def test_amounts_have_about_three_digits(value, text):
+    assert words.amount(value) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(2.0, "+2.00"), (-2.0, "-2.00"), (0.0, "+0.00"), (math.nan, "n/a")]
+)
+def test_differences_carry_their_sign(value, text):
+    assert words.signed(value) == text
+
+
+@pytest.mark.parametrize(("value", "text"), [
+    (0.0004, "p < 0.001"), (0.001, "p = 0.001"), (0.0213, "p = 0.021"), (1.0, "p = 1"), (math.nan, "p unknown"),
+])  # fmt: skip
+def test_p_values_are_equations(value, text):
+    assert words.p_value(value) == text
+
+
+def test_a_running_mean_is_the_average_so_far():
+    assert words.running_mean([1.0, 3.0, -1.0]) == [1.0, 2.0, 1.0]
+
+
+SENTENCES = {
+    "degraded": "In the drift scenario 'mud' an episode earns 3.00 less than designed (p = 0.01).",
+    "drifted": (
+        "The drift scenario 'mud' differs from the designed one (p = 0.002), "
+        "but no loss of reward was found (p = 0.01)."
+    ),
+    "no difference": (
+        "No difference was found between the drift scenario 'mud' and the designed one; "
+        "a loss of 0.40 per episode would have been."
+    ),
+}
+
+
+@pytest.mark.parametrize(("result", "said"), SENTENCES.items())
+def test_every_verdict_has_its_sentence(varied, result, said):
+    assert words.verdict_sentence(varied(verdict=Verdict(result, 0.002, 0.01, 3.0, 0.4, 0.5))) == said
+
+
+def test_a_loss_that_could_not_have_been_seen_at_all_is_said(varied):
+    unseen = varied(verdict=Verdict("no difference", 0.5, 0.5, 0.0, math.inf, 0.5))
+    assert words.verdict_sentence(unseen).endswith("; too few episodes were run to see any loss.")
+
+
+def test_literals_are_replaced_and_named_constants_multiplied():
+    assert words.edit_words(Edit("a.py", 3, "5", 12.0)) == "5 → 12"
+    assert words.edit_words(Edit("a.py", 3, "self.kp", 2.2, factor=True)) == "self.kp × 2.2"
+    assert words.operand_words(OperandEffect("5", 5, 12.0, 1.0)) == "5 → 12"
+    assert words.operand_words(OperandEffect("KP", None, 2.2, 1.0)) == "KP × 2.2"
+
+
+def test_a_statement_over_several_lines_is_folded_and_elided():
+    assert words.one_line("f(\n    a,\n    b)") == "f( a, b)"
+    assert words.one_line("x" * 50, 20) == "x" * 19 + "…"
+    assert words.one_line("x" * 50, 3) == "x" * 15 + "…"
