@@ -6,7 +6,7 @@ import base64
 import json
 import re
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from importlib import resources
 from importlib.util import find_spec
@@ -64,12 +64,13 @@ def render(comparison: Comparison, *, title: str | None = None) -> str:
         "code": lambda text: highlight.code_html(words.one_line(text)),
         "patch": highlight.patch_lines,
     }
+    drawn = _data(comparison)
     return environment.get_template("page.html").render(
-        **_context(comparison, title),
+        **_context(comparison, title, drawn),
         css=_asset("page.css"),
         script=_asset("page.js"),
         library=_library(),
-        data=in_script(_data(comparison)),
+        data=in_script(drawn),
     )
 
 
@@ -109,6 +110,7 @@ def typeset(text: str) -> str:
 
 
 def _data(comparison: Comparison) -> dict[str, Any]:
+    """Return what the script draws."""
     return {
         "world": comparison.drift or "on-line",
         "utility": [utility_figure(comparison, compared) for compared in comparison.lists],
@@ -118,7 +120,8 @@ def _data(comparison: Comparison) -> dict[str, Any]:
     }
 
 
-def _context(comparison: Comparison, title: str | None) -> Mapping[str, Any]:
+def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return what the template writes."""
     name = title or comparison.test
     return {
         "c": comparison,
@@ -129,9 +132,12 @@ def _context(comparison: Comparison, title: str | None) -> Mapping[str, Any]:
         "paper_region": words.paper_region_words(comparison),
         "atr": {world: words.atr(comparison, world) for world, totals in comparison.totals.items() if totals},
         "share": _share(comparison),
-        "lists": [_list(comparison, compared) for compared in comparison.lists],
-        "curves": _curves_in_words(comparison),
-        "clipped": _clipped(comparison),
+        "lists": [
+            _list(comparison, compared, figure)
+            for compared, figure in zip(comparison.lists, drawn["utility"], strict=True)
+        ],
+        "curves": _curves_in_words(drawn["curves"]),
+        "clipped": _clipped(drawn["curves"]),
         "repair_words": words.repair_words(comparison.repair) if comparison.repair else "",
         "refusal": words.refusal(comparison.repair) if comparison.repair else "",
         "command": words.repeat(comparison),
@@ -140,10 +146,11 @@ def _context(comparison: Comparison, title: str | None) -> Mapping[str, Any]:
     }
 
 
-def _clipped(comparison: Comparison) -> bool:
+def _clipped(curves: Sequence[Mapping[str, Any]]) -> bool:
     """Tell whether the off-line curve is longer than all others, and so not drawn in full."""
-    lengths = [len(curve["mean"]) for curve in reward_curves(comparison) if curve["kind"] != "offline"]
-    return bool(lengths) and len(comparison.totals.get("offline", ())) > max(lengths)
+    offline = [len(curve["mean"]) for curve in curves if curve["kind"] == "offline"]
+    others = [len(curve["mean"]) for curve in curves if curve["kind"] != "offline"]
+    return bool(offline and others) and max(offline) > max(others)
 
 
 def _share(comparison: Comparison) -> float | None:
@@ -155,13 +162,13 @@ def _share(comparison: Comparison) -> float | None:
     return 100 * (repaired - online) / (offline - online)
 
 
-def _list(comparison: Comparison, compared: ListComparison) -> dict[str, Any]:
-    figure = utility_figure(comparison, compared)
+def _list(
+    comparison: Comparison, compared: ListComparison, figure: Mapping[str, Any] | None
+) -> dict[str, Any]:
     return {
         "name": compared.taint_list.name,
         "figure": figure,
         "chart": chart(compared.slices),
-        "peak": words.peak(compared.slices),
         "captions": list(_captions(comparison, figure)) if figure else [],
         "summary": _largest_change(figure) if figure else "",
         "paths": sorted({site.path for site in compared.taint_list.sites}),
@@ -195,10 +202,10 @@ def _largest_change(figure: Mapping[str, Any]) -> str:
     return f"The largest change, {typeset(words.signed(change))}, is at line {line}, {words.one_line(code)}: {where}."
 
 
-def _curves_in_words(comparison: Comparison) -> str:
+def _curves_in_words(curves: Iterable[Mapping[str, Any]]) -> str:
     """Say where each curve of the reward figure ends."""
     ends = []
-    for curve in reward_curves(comparison):
+    for curve in curves:
         end = typeset(words.amount(curve["mean"][-1]))
         ends.append(f"{curve['name']} {end} after {len(curve['mean'])} episodes")
     return "; ".join(ends)
