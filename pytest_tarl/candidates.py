@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -29,10 +29,23 @@ def candidate_guards(
     return tuple(sorted(distinct, key=lambda guard: (len(guard.conjuncts), share(guard, worlds[0], sensors))))
 
 
-def widest(guards: Iterable[Guard], world: Sample, sensors: Sequence[Sensor]) -> Guard:
-    """Return the guard with a condition that holds most often in `world`; the empty one when there is no other."""
-    conditional = [guard for guard in guards if guard.conjuncts]
-    return max(conditional, key=lambda guard: share(guard, world, sensors), default=ALWAYS)
+def telling(
+    guards: Iterable[Guard], losses: Mapping[Cell, float], world: Sample, sensors: Sequence[Sensor], most: int
+) -> tuple[Guard, ...]:
+    """Return the guards to search under: those that hold where much is lost and seldom elsewhere, and none at all.
+
+    Ordered by the share of the loss that falls under the guard less the share of steps that do (Youden's J).
+    """
+    lost = {cell: loss for cell, loss in losses.items() if loss > 0}
+    whole = sum(lost.values()) or 1.0
+
+    def merit(guard: Guard) -> float:
+        covered = sum(loss for cell, loss in lost.items() if holds(guard, cell, sensors))
+        return covered / whole - share(guard, world, sensors)
+
+    ranked = sorted((guard for guard in guards if guard.conjuncts), key=lambda guard: -merit(guard))
+    best = [guard for guard in ranked if merit(guard) > 0][: most - 1]
+    return (*best, ALWAYS)
 
 
 def share(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> float:

@@ -9,6 +9,7 @@ statistic (Westfall & Young 1993).
 from __future__ import annotations
 
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from statistics import NormalDist
 
@@ -16,11 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pytest_tarl.model import Region, Result, Verdict
+from pytest_tarl.sensors import Cell
 from pytest_tarl.statistics import END, Ints, Sample, aligned
 from pytest_tarl.utility import GAMMA_STEP, Floats, chain_utility
 
 PERMUTATIONS = 999
 POWER = 0.8  # of the smallest loss that is called detectable
+MATERIAL = 0.1  # a cell belongs to the region from this share of the largest difference
 NOVEL_VISITS = 3  # a cell unknown to the fit counts as novel from so many visits,
 NOVEL_EPISODES = 2  # in so many episodes
 
@@ -36,10 +39,14 @@ class Residuals:
 
 @dataclass(frozen=True)
 class Difference:
-    """What the comparison of two samples found, before any word of it."""
+    """What the comparison of two samples found, before any word of it.
+
+    `losses` tells by cell what an on-line episode loses there, by the residual part that the region is read from.
+    """
 
     verdict: Verdict
     region: Region
+    losses: Mapping[Cell, float]
 
 
 def compare(
@@ -50,7 +57,7 @@ def compare(
     margin = max(0.05 * abs(float(offline.total.mean())), tolerance or 0.0)
     p_loss = permuted_loss(offline.total, online.total, generator)
     loss = float(offline.total.mean() - online.total.mean())
-    p_drift, region = _drift(offline, online, alpha, generator)
+    p_drift, region, losses = _drift(offline, online, alpha, generator)
     result: Result = "no difference"
     if p_loss < alpha and loss > margin:
         result = "degraded"
@@ -58,7 +65,7 @@ def compare(
         result = "drifted"
     detectable = max(margin, smallest_detectable_loss(offline.total, online.total, alpha))
     found = region if result != "no difference" else Region()
-    return Difference(Verdict(result, p_drift, p_loss, loss, detectable, margin), found)
+    return Difference(Verdict(result, p_drift, p_loss, loss, detectable, margin), found, losses)
 
 
 def in_fit(seed: int) -> bool:
@@ -100,13 +107,12 @@ def residuals(compared: Sample, utility: Floats) -> Residuals:
 
 def _drift(
     offline: Sample, online: Sample, alpha: float, generator: np.random.Generator
-) -> tuple[float, Region]:
-    """Return p_drift and the region; both samples share their cells."""
+) -> tuple[float, Region, dict[Cell, float]]:
+    """Return p_drift, the region and what is lost by cell; both samples share their cells."""
     fit = np.array([in_fit(seed) for seed in offline.seeds])
     rows = fit[offline.chain.episode]
-    cells = len(offline.cells)
     known = type(offline.chain)(*(column[rows] for column in vars(offline.chain).values()))
-    utility = chain_utility(known, cells)
+    utility = chain_utility(known, len(offline.cells))
     held_out, deployed = residuals(offline, utility), residuals(online, utility)
     blocks = [
         np.concatenate((getattr(deployed, part), getattr(held_out, part)[~fit]))
@@ -115,13 +121,16 @@ def _drift(
     visited = (blocks[2] > 0).sum(axis=0) >= NOVEL_EPISODES
     blocks[2] = np.where(visited & (blocks[2].sum(axis=0) >= NOVEL_VISITS), np.minimum(blocks[2], 1.0), 0.0)
     p_values = max_statistic(np.concatenate(blocks, axis=1), online.episodes, generator)
-    move, reward, novel = (block <= alpha for block in np.split(p_values, 3))
-    seen = np.zeros(cells, dtype=bool)
+    significant = [part <= alpha for part in np.split(p_values, 3)]
+    part = 0 if significant[0].any() else 1
+    difference = blocks[part][: online.episodes].mean(axis=0) - blocks[part][online.episodes :].mean(axis=0)
+    material = np.abs(difference) >= MATERIAL * np.abs(difference).max(initial=0.0)
+    seen = np.zeros(len(offline.cells), dtype=bool)
     seen[offline.chain.cell] = True
-    differing = move if move.any() else reward
-    chosen = [np.flatnonzero(differing & seen), np.flatnonzero(novel & ~seen)]
-    region = Region(*(tuple(offline.cells[i] for i in part) for part in chosen))
-    return float(p_values.min(initial=1.0)), region
+    chosen = (significant[part] & material & seen, significant[2] & ~seen)
+    region = Region(*(tuple(offline.cells[i] for i in np.flatnonzero(one)) for one in chosen))
+    losses = {offline.cells[i]: float(-difference[i]) for i in np.flatnonzero(difference)}
+    return float(p_values.min(initial=1.0)), region, losses
 
 
 def max_statistic(columns: Floats, first: int, generator: np.random.Generator) -> Floats:
@@ -163,7 +172,9 @@ def _labels(rows: int, first: int, generator: np.random.Generator) -> Floats:
 
 
 def _sum_by(row: Ints, column: Ints, weights: Floats, shape: tuple[int, int]) -> Floats:
-    flat = np.bincount(row * shape[1] + column, weights=weights, minlength=shape[0] * shape[1]).astype(np.float64, copy=False)
+    flat = np.bincount(row * shape[1] + column, weights=weights, minlength=shape[0] * shape[1]).astype(
+        np.float64, copy=False
+    )
     return flat.reshape(shape)
 
 

@@ -78,7 +78,11 @@ class EpsilonGreedy:
             mutation = self.actions[action].mutations[0]
             operand = mutation.operand
             effect = OperandEffect(
-                operand.code, known_value(operand), float(mutation.value), fmean(totals) - base
+                operand.code,
+                known_value(operand),
+                float(mutation.value),
+                fmean(totals) - base,
+                not operand.literal,
             )
             key = (str(operand.site), operand.code)
             if key not in best or effect.effect > best[key].effect:

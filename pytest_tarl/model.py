@@ -105,6 +105,7 @@ class OperandEffect:
     value: float | None
     best: float
     effect: float
+    factor: bool = False  # `best` multiplies the use instead of replacing it
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,3 +179,4 @@ class Comparison:
     repair: Repair | None = None
     notes: tuple[str, ...] = ()
     parts: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # part → mean off-line, on-line
+    losses: Mapping[Cell, float] = field(default_factory=dict)  # what an on-line episode loses in a cell

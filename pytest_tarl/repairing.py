@@ -8,8 +8,6 @@ from functools import cached_property
 from pathlib import Path
 from statistics import fmean, stdev
 
-from tarl_lint.api import Analysis
-
 from pytest_tarl import candidates, localize, patch, seeds
 from pytest_tarl.accept import LOOKS, Acceptance, Outcome, Reference, accept
 from pytest_tarl.comparing import Online
@@ -24,9 +22,11 @@ from pytest_tarl.rollout import EpisodePlan, Rollout
 from pytest_tarl.search import BudgetSpentError, Candidate, Goal, Pair, Strategy, Trials
 from pytest_tarl.settings import Options
 from pytest_tarl.sweep import Sweep
+from tarl_lint.api import Analysis
 from tarl_lint.model import Operand
 
 QUICK = 3  # seeds on which a guard is looked at before it is tested on fresh ones
+MOST_GUARDS = 3  # that a search runs under
 MOST_ACCEPTANCES = 5  # candidates that are tested on fresh seeds
 
 
@@ -113,7 +113,7 @@ def repair(shop: RepairShop) -> Repaired:
     comparison = shop.comparison
     worlds = (shop.fixture.sample, shop.online.recorded.sample)
     guards = candidates.candidate_guards(comparison.region, comparison.sensors, worlds)
-    widest = candidates.widest(guards, worlds[1], comparison.sensors)
+    telling = candidates.telling(guards, comparison.losses, worlds[1], comparison.sensors, MOST_GUARDS)
     accepted: Accepted | None = None
     searches: list[SearchTrace] = []
     effects: dict[str, list[OperandEffect]] = {}
@@ -121,13 +121,10 @@ def repair(shop: RepairShop) -> Repaired:
         trials = Trials(
             lambda candidate, seed: shop.run(candidate, seed, comparison.drift), shop.options.budget
         )
-        for guard in dict.fromkeys((widest, candidates.ALWAYS)):
-            strategy = _strategy(shop, method, guard, trials)
-            found = _first_accepted(shop, strategy.candidates(), guards, wanted=accepted is None)
-            effects = effects or strategy.effects()
-            accepted = accepted or found
-            if found is not None or trials.spent >= trials.budget:
-                break
+        strategy = _strategy(shop, method, telling, trials)
+        found = _first_accepted(shop, strategy.candidates(), guards, wanted=accepted is None)
+        effects = effects or strategy.effects()
+        accepted = accepted or found
         searches.append(SearchTrace(method, tuple(trials.totals), tuple(trials.labels)))
         shop.spent["search"] += trials.spent
     return Repaired(_concluded(shop, accepted, effects, searches), accepted)
@@ -143,14 +140,14 @@ def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:
     return Goal(tuple(lost) or tuple(online), near, enough)
 
 
-def _strategy(shop: RepairShop, method: str, guard: Guard, trials: Trials) -> Strategy:
+def _strategy(shop: RepairShop, method: str, guards: Sequence[Guard], trials: Trials) -> Strategy:
     if method == "sweep":
-        return Sweep(shop.operands, shop.mutate, guard, trials, shop.goal)
+        return Sweep(shop.operands, shop.mutate, guards, trials, shop.goal)
     fresh = seeds.episode_seeds(shop.options.seed, "search", EpsilonGreedy.episodes(trials.budget))
     return EpsilonGreedy(
         shop.operands,
         shop.mutate,
-        guard,
+        guards[0],
         trials,
         shop.goal,
         fresh,

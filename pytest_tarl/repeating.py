@@ -135,9 +135,9 @@ class ItemRollout:
 
 def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestReport:
     """Tear down what the next item does not need, once the last episode has run."""
-    call = pytest.CallInfo.from_call(
-        lambda: item.ihook.pytest_runtest_teardown(item=item, nextitem=nextitem), when="teardown"
-    )
+    # Not through pytest's hook: the item itself was torn down after its last episode, and plugins count on that.
+    state = item.session._setupstate
+    call = pytest.CallInfo.from_call(lambda: state.teardown_exact(nextitem), when="teardown")
     report: pytest.TestReport = item.ihook.pytest_runtest_makereport(item=item, call=call)
     return report
 

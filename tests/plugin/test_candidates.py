@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pytest_tarl import Sensor
-from pytest_tarl.candidates import ALWAYS, candidate_guards, firing_episodes, holds, share, widest
+from pytest_tarl.candidates import ALWAYS, candidate_guards, firing_episodes, holds, share, telling
 from pytest_tarl.model import Conjunct, Guard, Region
 from pytest_tarl.sensors import Cell
 from pytest_tarl.statistics import Sample, merge, sample
@@ -54,11 +54,18 @@ def test_single_sensors_come_before_pairs_and_narrow_before_wide() -> None:
     assert max(sizes) == 2
 
 
-def test_the_sweep_takes_the_widest_that_has_a_condition() -> None:
+def test_guards_to_search_under_hold_where_much_is_lost_and_seldom_elsewhere() -> None:
     guards = candidate_guards(REGION, (X, WET), (OFFLINE, ONLINE))
-    chosen = widest(guards, OFFLINE, (X, WET))
-    assert share(chosen, OFFLINE, (X, WET)) == max(share(g, OFFLINE, (X, WET)) for g in guards if g.conjuncts)
-    assert widest([ALWAYS], ONLINE, (X, WET)) == ALWAYS
+    losses = {(4, 1): 2.0, (5, 1): 2.0, (6, 1): 2.0, (8, 0): 0.1, (1, 0): -5.0}
+    mixed = merge([drive(3, range(4, 7)), drive(4, range(0))])
+    chosen = telling(guards, losses, mixed, (X, WET), most=2)
+    assert chosen == (Guard((Conjunct(WET, 1.0, 1.0),)), ALWAYS)
+
+
+def test_without_a_telling_guard_the_search_runs_without_one() -> None:
+    guards = candidate_guards(REGION, (X, WET), (OFFLINE, ONLINE))
+    assert telling(guards, {(1, 0): 3.0}, ONLINE, (X, WET), most=3) == (ALWAYS,)
+    assert telling((), {}, ONLINE, (X, WET), most=3) == (ALWAYS,)
 
 
 def test_a_sensor_that_no_node_can_read_is_in_no_guard() -> None:

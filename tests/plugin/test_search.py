@@ -51,7 +51,7 @@ GOAL = Goal(
 
 
 def sweep(trials: Trials) -> Sweep:
-    return Sweep(OPERANDS, mutations, ALWAYS, trials, GOAL)
+    return Sweep(OPERANDS, mutations, (ALWAYS,), trials, GOAL)
 
 
 def test_the_sweep_confirms_the_right_gain_and_ranks_it_first() -> None:
