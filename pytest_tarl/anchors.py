@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from pytest_tarl.document import Document, Edit, Function, Loop, document
+from pytest_tarl.errors import RepairError
 from pytest_tarl.imports import top_imports
 from tarl_lint.model import SiteId
 
@@ -63,7 +65,8 @@ def anchors(analysis: Analysis, site: SiteId, path: str) -> Iterator[Anchor]:
             if (each.span.path == path) is near:
                 yield from _registered(analysis, each)
     for name in sorted(analysis.sources, key=lambda name: (name != path, name)):
-        yield from _started(document(name, analysis.sources[name]))
+        with suppress(RepairError):  # a file that cannot be read starts no node
+            yield from _started(document(name, analysis.sources[name]))
 
 
 def beside(source: Document, call: ast.expr, node: str) -> Anchor | None:
@@ -99,7 +102,9 @@ def _registered(analysis: Analysis, origin: Source) -> Iterator[Anchor]:
     if text is None or origin.api.endswith("wait_for_message"):
         return
     source = document(origin.span.path, text)
-    call = source.find(origin.span)
+    call = source.at(origin.span)
+    if call is None:
+        return
     node = (
         _node(source, call) if is_ros2(source, origin.api) or _called(call) == "create_subscription" else ""
     )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
-from pytest_tarl.document import Document, Function
+from pytest_tarl.document import Document, Function, parse_expression
 
 Constant = float | int | bool | str | None
 Scope = Function | ast.Lambda
@@ -31,7 +31,7 @@ def bindings(source: Document) -> tuple[Binding, ...]:
 
 def prefixes(code: str) -> tuple[str, ...]:
     """Return the prefixes of `a.b.c` or `a.b[0].c`, shortest first; nothing for any other expression."""
-    node, found = ast.parse(code, mode="eval").body, list[str]()
+    node, found = parse_expression(code), list[str]()
     while isinstance(node, ast.Attribute | ast.Subscript):
         if isinstance(node, ast.Subscript) and not isinstance(node.slice, ast.Constant):
             return ()

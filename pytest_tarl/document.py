@@ -110,10 +110,14 @@ class Document:
         """Tell whether a statement is the first on its line."""
         return not self.text[self.line_starts[node.lineno - 1] : self.start(node)].strip(" \t\f")
 
+    def at(self, span: Span) -> ast.expr | None:
+        """Return the expression at a span, if there is one."""
+        first, last = (span.line, span.column), (span.end_line, span.end_column)
+        return self.expressions.get((self._characters(*first), self._characters(*last)))
+
     def find(self, span: Span) -> ast.expr:
         """Return the expression at a span. Raises RepairError when there is none."""
-        first, last = (span.line, span.column), (span.end_line, span.end_column)
-        node = self.expressions.get((self._characters(*first), self._characters(*last)))
+        node = self.at(span)
         if node is None:
             raise RepairError(
                 f"{span.path}:{span.line}:{span.column} holds no expression that can be replaced: analyse the file "
@@ -181,6 +185,13 @@ def parse(text: str) -> ast.Module:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return ast.parse(text)
+
+
+def parse_expression(code: str) -> ast.expr:
+    """Parse an expression, which may go over several lines and end in a comment."""
+    statement = parse(f"({code}\n)").body[0]
+    assert isinstance(statement, ast.Expr)  # noqa: S101  (parentheses hold nothing else)
+    return statement.value
 
 
 def apply_edits(source: Document, edits: Iterable[Edit]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from pytest_tarl.document import Document
+from pytest_tarl.document import Document, parse_expression
 
 DIGITS = 4  # significant digits of a number that a repair writes
 
@@ -76,7 +76,7 @@ def number(value: float | int | bool) -> str:
 
 def strength(code: str) -> int:
     """Return how strongly the outermost operator of an expression binds."""
-    node = ast.parse(f"({code}\n)", mode="eval").body
+    node = parse_expression(code)
     if isinstance(node, ast.BinOp | ast.UnaryOp | ast.BoolOp):
         return _OPERATORS[type(node.op)]
     if isinstance(node, ast.Compare):
@@ -132,7 +132,7 @@ def counting(source: Document, node: ast.expr) -> bool:
         if isinstance(parent, ast.BinOp) and not isinstance(parent.op, ast.Div | ast.Pow | ast.Mod):
             if isinstance(parent.op, _INTEGRAL_OPERATORS) or _repeats(parent):
                 return True
-        elif not isinstance(parent, ast.UnaryOp | ast.Slice | ast.Tuple):
+        elif not isinstance(parent, ast.UnaryOp | ast.Slice | ast.Tuple | ast.List):
             return _counts(parent, child)
         child = parent
     return False
@@ -151,10 +151,19 @@ def _counts(parent: ast.AST, child: ast.AST) -> bool:
     if isinstance(parent, ast.Subscript):
         return child is parent.slice
     if isinstance(parent, ast.Call):
-        return ast.unparse(parent.func).rpartition(".")[2] in _COUNTED_BY
+        return _is_integer_vector(child) or ast.unparse(parent.func).rpartition(".")[2] in _COUNTED_BY
     if isinstance(parent, ast.keyword):
         return parent.arg in _COUNTS
     return isinstance(parent, ast.Compare) and any(isinstance(op, _IDENTITIES) for op in parent.ops)
+
+
+def _is_integer_vector(node: ast.AST) -> bool:
+    """Tell whether a list of at least two integers is written out: a colour, a pixel, a shape."""
+    elements = node.elts if isinstance(node, ast.List | ast.Tuple) else []
+    numbers = [each.operand if isinstance(each, ast.UnaryOp) else each for each in elements]
+    return len(numbers) > 1 and all(
+        isinstance(each, ast.Constant) and type(each.value) is int for each in numbers
+    )
 
 
 def _needed(parent: ast.AST, child: ast.expr) -> int:

@@ -43,7 +43,9 @@ def always(conjunct: Conjunct) -> bool:
 def boolean(sensor: Sensor, topics: Mapping[str, str]) -> bool:
     """Tell whether a sensor reads true or false."""
     plain = not sensor.numeric and not sensor.categories
-    return plain and sensor.field == "data" and topics.get(sensor.topic or "", "").endswith("/Bool")
+    return (
+        plain and sensor.field == "data" and topics.get(sensor.topic or "", "").rpartition("/")[2] == "Bool"
+    )
 
 
 def held(source: Document, place: ast.AST, expressions: Iterable[str], conjunct: Conjunct) -> Reading | None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from pytest_tarl.document import Document, Edit, apply_edits, document
+from pytest_tarl.document import Document, Edit, apply_edits, document, parse_expression
 from pytest_tarl.errors import RepairError
 from pytest_tarl.expressions import counting, negated, number, rounded, scaled, shifted
 from pytest_tarl.guards import Reading, always, condition, held
@@ -188,7 +188,7 @@ def _joins(source: Document, before: ast.stmt, after: ast.stmt, condition: str, 
     stored = {
         ast.unparse(node) for node in ast.walk(before) if isinstance(getattr(node, "ctx", None), ast.Store)
     }
-    read = {ast.unparse(node) for node in ast.walk(ast.parse(condition)) if isinstance(node, ast.expr)}
+    read = {ast.unparse(node) for node in ast.walk(parse_expression(condition)) if isinstance(node, ast.expr)}
     return follows and condition == other and not stored & read and not _calls(before)
 
 

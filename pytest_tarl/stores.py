@@ -1,10 +1,11 @@
-"""Where a subscription that a repair adds keeps its values: on the instance, or in the module."""
+"""Where the values of a subscription that a repair adds are kept: on the instance, or in the module."""
 
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from pytest_tarl.anchors import REGISTERING, Anchor
 from pytest_tarl.document import Document, Edit, Function
@@ -13,54 +14,58 @@ from pytest_tarl.errors import RepairError
 
 @dataclass(frozen=True)
 class Store:
-    """Values are kept in attributes of `owner`'s instances, or in globals of the module where there is no owner."""
+    """Values are kept in attributes of `owner`'s instances, or in globals of the module where there is no owner.
+
+    `places` are where they are read; `module` is what another module calls this one, if that one subscribes.
+    """
 
     source: Document
-    place: ast.AST
     owner: ast.ClassDef | None = None
     instance: str = ""
     module: str = ""
+    places: list[ast.AST] = field(default_factory=list)
 
     def variable(self, name: str) -> str:
         """Return the expression under which a value is read."""
         return f"{self.instance}.{name}" if self.owner else name
 
 
-def variable_edits(store: Store, anchor: Anchor, names: Sequence[str]) -> list[Edit]:
-    """Return the edits that give the variables their value before the first message."""
-    if store.owner is None:
-        state = _state(store, anchor)
-        if state is None:
-            return []
-        end = store.source.line_end(state)
-        return [Edit(end, end, "".join(f"\n{name} = None" for name in names))]
-    early = _first_registration(anchor)
-    if early is not None:
-        indent, instance = store.source.indentation(early), _instance(anchor)
-        lines = "".join(f"{instance}.{name} = None\n{indent}" for name in names)
-        return [Edit(store.source.start(early), store.source.start(early), lines)]
-    first = first_statement(store.owner)
-    start, indent = store.source.line_start(first), store.source.indentation(first)
-    lines = "".join(f"{indent}{name} = None\n" for name in names)
-    return [Edit(start, start, f"{lines}\n")]
+@dataclass(frozen=True)
+class Callback:
+    """A function to add: it keeps fields of a message (`names`: field → variable)."""
+
+    store: Store
+    anchor: Anchor
+    name: str
+    names: Mapping[str, str]
+    annotation: str = ""
+
+    def lines(self, instance: str = "") -> list[str]:
+        """Write the function, as a method where there is an instance."""
+        unit = self.store.source.unit
+        argument = "message" if "message" not in self.names.values() else "received"
+        typed = f"{argument}: {self.annotation}" if self.annotation else argument
+        parameters = f"{instance}, {typed}" if instance else typed
+        returned = " -> None" if self.annotation else ""
+        shared = [] if instance else [f"{unit}global {', '.join(self.names.values())}"]
+        owner = f"{instance}." if instance else ""
+        stored = [f"{unit}{owner}{name} = {_field(argument, path)}" for path, name in self.names.items()]
+        return [f"def {self.name}({parameters}){returned}:", *shared, *stored]
 
 
-def callback_edit(
-    store: Store, anchor: Anchor, callback: str, names: Mapping[str, str], annotation: str
-) -> Edit:
-    """Return the edit that adds the callback, which keeps the fields of a message under their names."""
-    argument = "message" if "message" not in names.values() else "received"
-    typed = f"{argument}: {annotation}" if annotation else argument
-    returned = " -> None" if annotation else ""
-    unit = store.source.unit
-    stored = [
-        f"{unit}{_kept(store, anchor, name)} = {_field(argument, field)}" for field, name in names.items()
-    ]
-    if store.owner is not None:
-        return _method(store, anchor, [f"def {callback}({_instance(anchor)}, {typed}){returned}:", *stored])
-    shared = f"{unit}global {', '.join(names.values())}"
-    initial = [] if _state(store, anchor) else [*(f"{name} = None" for name in names.values()), "", ""]
-    return _function(store, anchor, [*initial, f"def {callback}({typed}){returned}:", shared, *stored])
+def store_edits(callbacks: Sequence[Callback]) -> list[tuple[str, Edit]]:
+    """Return the edits, with their paths, that keep what the callbacks receive."""
+    edits: list[tuple[str, Edit]] = []
+    modules: dict[str, list[Callback]] = {}
+    for callback in callbacks:
+        path = callback.store.source.path
+        if callback.store.owner is None:
+            modules.setdefault(path, []).append(callback)
+        else:
+            edits += [(path, edit) for edit in _instance_edits(callback, callback.store.owner)]
+    for path, group in modules.items():
+        edits += [(path, edit) for edit in _module_edits(group)]
+    return edits
 
 
 def first_statement(definition: Function | ast.ClassDef) -> ast.stmt:
@@ -69,33 +74,81 @@ def first_statement(definition: Function | ast.ClassDef) -> ast.stmt:
     return definition.body[1 if documented else 0]
 
 
-def _method(store: Store, anchor: Anchor, lines: Sequence[str]) -> Edit:
-    """Place a method behind the one that makes the subscription."""
-    method = anchor.source.method(anchor.statement)
-    assert method is not None  # noqa: S101  (an owner is only chosen inside its methods)
-    indent, end = store.source.indentation(method[1]), store.source.line_end(method[1])
-    return Edit(end, end, "\n\n" + "\n".join(indent + line for line in lines))
+def _instance_edits(callback: Callback, owner: ast.ClassDef) -> list[Edit]:
+    """Set attributes before anything can read them; place the method behind the one that subscribes."""
+    source, method = callback.store.source, callback.anchor.source.method(callback.anchor.statement)
+    if method is None:
+        raise RepairError(f"{source.path}: {owner.name} cannot subscribe outside of its methods.")
+    end, indent = source.line_end(method[1]), source.indentation(method[1])
+    text = "\n".join(indent + line for line in callback.lines(method[2]))
+    crowded = re.match(r"\r?\n[ \t]*\S", source.text[end:])
+    after = "\n" if crowded else ""
+    return [_attributes(callback, owner, method[1], method[2]), Edit(end, end, f"\n\n{text}{after}")]
 
 
-def _function(store: Store, anchor: Anchor, lines: Sequence[str]) -> Edit:
-    """Place code of the module before its first definition, or before whatever needs it sooner."""
-    source, start = store.source, _before_definitions(store, anchor)
-    before = source.text[:start].replace("\r\n", "\n")
-    gap = "" if before.endswith("\n\n") or not before.strip() else "\n\n"
-    return Edit(start, start, gap + "\n".join(lines) + "\n\n\n")
+def _attributes(callback: Callback, owner: ast.ClassDef, method: Function, instance: str) -> Edit:
+    source, names = callback.store.source, callback.names.values()
+    early = _first_reader(callback, owner, method, instance) if method.name == "__init__" else None
+    if early is not None and source.leads(early):
+        start, indent = source.start(early), source.indentation(early)
+        return Edit(start, start, "".join(f"{instance}.{name} = None\n{indent}" for name in names))
+    first = first_statement(owner)
+    start, indent = source.line_start(first), source.indentation(first)
+    return Edit(start, start, "".join(f"{indent}{name} = None\n" for name in names) + "\n")
 
 
-def _before_definitions(store: Store, anchor: Anchor) -> int:
-    source = store.source
-    needing = [source.top_level(store.place)] if source.parents.get(store.place) else []
-    needing += [source.top_level(anchor.statement)] if anchor.source is source else []
+def _first_reader(
+    callback: Callback, owner: ast.ClassDef, constructor: Function, instance: str
+) -> ast.stmt | None:
+    """Return the first statement of a constructor that may read an attribute: itself, in a method, in a callback."""
+    methods = {f"{instance}.{each.name}" for each in owner.body if isinstance(each, Function)}
+    for statement in constructor.body:
+        inside = list(ast.walk(statement))
+        calls = {ast.unparse(each.func) for each in inside if isinstance(each, ast.Call)}
+        registers = any(call.rpartition(".")[2] in REGISTERING for call in calls)
+        reads = any(each is place for each in inside for place in callback.store.places)
+        if registers or reads or calls & methods or callback.anchor.statement in inside:
+            return statement
+    return None
+
+
+def _module_edits(callbacks: Sequence[Callback]) -> list[Edit]:
+    """Place variables and functions before the first definition, or before whatever needs them sooner.
+
+    Variables go behind the module's own where these stand just there.
+    """
+    source = callbacks[0].store.source
+    start = _before_definitions(source, callbacks)
+    names = [name for callback in callbacks for name in callback.names.values()]
+    initial = "".join(f"{name} = None\n" for name in names)
+    functions = "".join("\n".join(callback.lines()) + "\n\n\n" for callback in callbacks)
+    state = _state(source, start)
+    if state is not None:
+        end = source.line_end(state)
+        return [
+            Edit(end, end, f"\n{initial}".removesuffix("\n")),
+            Edit(start, start, _gap(source, start) + functions),
+        ]
+    return [Edit(start, start, f"{_gap(source, start)}{initial}\n\n{functions}")]
+
+
+def _before_definitions(source: Document, callbacks: Sequence[Callback]) -> int:
+    """Return the offset of the first definition, or of the first statement that needs the callbacks."""
+    needing = [place for each in callbacks for place in each.store.places if place in source.parents]
+    needing += [each.anchor.statement for each in callbacks if each.anchor.source is source]
     definitions = [each for each in source.tree.body if isinstance(each, Function | ast.ClassDef)]
-    return _above_comments(source, min(source.line_start(each) for each in [*definitions, *needing]))
+    first = min(source.line_start(each) for each in [*definitions, *map(source.top_level, needing)])
+    return _above_comments(source, first)
 
 
-def _state(store: Store, anchor: Anchor) -> ast.stmt | None:
-    """Return the variable of the module behind which others read well, or None."""
-    source, limit = store.source, _before_definitions(store, anchor)
+def _gap(source: Document, start: int) -> str:
+    """Return the empty lines that separate a definition from what stands before it."""
+    before = source.text[:start].replace("\r\n", "\n")
+    return "" if before.endswith("\n\n") or not before.strip() else "\n\n"
+
+
+def _state(source: Document, limit: int) -> ast.stmt | None:
+    """Return the variable of the module that stands just before an offset, or None."""
     before = [each for each in source.tree.body if source.end(each) <= limit]
     last = before[-1] if before else None
     return last if isinstance(last, ast.Assign | ast.AnnAssign) and source.alone(last) else None
@@ -107,28 +160,6 @@ def _above_comments(source: Document, start: int) -> int:
     while index > 2 and source.text[source.line_starts[index - 1] :].lstrip(" \t").startswith("#"):
         index -= 1
     return source.line_starts[index]
-
-
-def _first_registration(anchor: Anchor) -> ast.stmt | None:
-    """Return the first statement of a constructor from which a callback can run, if the anchor is in one."""
-    method = anchor.source.method(anchor.statement)
-    if method is None or method[1].name != "__init__":
-        return None
-    for statement in method[1].body:
-        inside = list(ast.walk(statement))
-        called = {ast.unparse(each.func).rpartition(".")[2] for each in inside if isinstance(each, ast.Call)}
-        if called & REGISTERING or anchor.statement in inside:
-            return statement if anchor.source.leads(statement) else None
-    return None
-
-
-def _instance(anchor: Anchor) -> str:
-    method = anchor.source.method(anchor.statement)
-    return method[2] if method else "self"
-
-
-def _kept(store: Store, anchor: Anchor, name: str) -> str:
-    return f"{_instance(anchor)}.{name}" if store.owner else name
 
 
 def _field(message: str, field: str) -> str:

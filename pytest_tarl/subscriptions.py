@@ -7,7 +7,9 @@ import builtins
 import keyword
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import cache
 from typing import TYPE_CHECKING
 
 from pytest_tarl.anchors import Anchor, anchors, is_ros2
@@ -16,7 +18,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.guards import Reading
 from pytest_tarl.imports import Import, import_edits, imported, reference
 from pytest_tarl.sensors import Sensor
-from pytest_tarl.stores import Store, callback_edit, first_statement, variable_edits
+from pytest_tarl.stores import Callback, Store, first_statement, store_edits
 from tarl_lint.model import SiteId
 
 if TYPE_CHECKING:
@@ -55,6 +57,7 @@ class Subscriptions:
         wanted = sensor.field or ""
         if wanted not in subscription.names:
             subscription.names[wanted] = self._fresh(subscription.store, sensor.name)
+        subscription.store.places.append(place)
         code = subscription.store.variable(subscription.names[wanted])
         return Reading(code, code)
 
@@ -65,17 +68,15 @@ class Subscriptions:
         """
         edits: dict[str, list[Edit]] = {}
         imports: dict[str, list[Import]] = {}
-        stores: list[tuple[str, Edit]] = []
+        callbacks: list[Callback] = []
         for each in self._added:
-            place, inside = each.anchor.source.path, each.store.source.path
-            callback = self._callback(each)
-            line, kind = self._registration(each, callback, imports.setdefault(place, []))
-            edits.setdefault(place, []).append(each.anchor.edit(line))
-            annotation = kind if inside == place and each.anchor.annotated else ""
-            added = variable_edits(each.store, each.anchor, list(each.names.values()))
-            added.append(callback_edit(each.store, each.anchor, callback, each.names, annotation))
-            stores += [(inside, edit) for edit in added]
-        for path, edit in stores:
+            source, store = each.anchor.source, each.store
+            name = self._callback(each)
+            line, kind = self._registration(each, name, imports.setdefault(source.path, []))
+            edits.setdefault(source.path, []).append(each.anchor.edit(line))
+            annotation = kind if store.source is source and each.anchor.annotated else ""
+            callbacks.append(Callback(store, each.anchor, name, each.names, annotation))
+        for path, edit in store_edits(callbacks):
             edits.setdefault(path, []).append(edit)
         for path, wanted in imports.items():
             edits[path] += import_edits(self._document(path), wanted)
@@ -85,16 +86,13 @@ class Subscriptions:
         """Return the subscription that serves a place, a new one if need be."""
         anchor, store = self._reach(topic, site, source, place)
         for each in self._added:
-            if (
-                each.topic == topic
-                and each.store.source.path == source.path
-                and each.store.owner is store.owner
-            ):
+            same = each.store.source is source and each.store.owner is store.owner
+            if each.topic == topic and same:
                 return each
-        if topic not in self._topics:
+        if "/" not in self._topics.get(topic, ""):
             raise RepairError(
-                f"The guard has to subscribe to {topic}, but no message arrived there in the run, so that its type "
-                "is not known: have the test publish it, or leave its sensor out."
+                f"The guard has to subscribe to {topic}, but the type of its messages did not show in the run: have "
+                "the test publish a ROS message there, or leave its sensor out."
             )
         self._added.append(Subscription(topic, self._topics[topic], anchor, store))
         return self._added[-1]
@@ -107,7 +105,7 @@ class Subscriptions:
             if anchor.source is source:
                 return anchor, _store(anchor, source, place)
             if reference(anchor.source, site.module, "") is not None:
-                return anchor, Store(source, place, module=site.module)
+                return anchor, Store(source, module=site.module)
         method = source.method(place)
         constructor = _constructor(method[0]) if method else None
         if seen is not None and constructor is not None and not is_ros2(seen.source):
@@ -118,11 +116,11 @@ class Subscriptions:
     def _registration(self, each: Subscription, callback: str, imports: list[Import]) -> tuple[str, str]:
         """Return the call that subscribes, and how the message type is called there; note what it has to import."""
         source = each.anchor.source
-        package, *_, name = re.split(r"[/.]", each.type)
+        package, *_, name = each.type.split("/")
         kind = imported(source, f"{package}.msg", name)
         if not kind:
             free = name not in _names(source)
-            kind = name if free else self._fresh(Store(source, source.tree), f"{name}Message")
+            kind = name if free else self._fresh(Store(source), f"{name}Message")
             imports.append(Import(f"{package}.msg", name, "" if free else kind))
         topic = f"{each.anchor.quote}{each.topic}{each.anchor.quote}"
         target = self._target(each, callback, imports)
@@ -156,11 +154,19 @@ class Subscriptions:
         attribute = store.owner is not None
         key = (store.source.path, attribute)
         if key not in self._taken:
-            self._taken[key] = _attributes(store.source) if attribute else _names(store.source)
+            self._taken[key] = self._attributes(store.source) if attribute else _names(store.source)
         taken = self._taken[key].union(*(() if attribute else (_names(each) for each in elsewhere)))
         name = _free(base, taken)
         self._taken[key].add(name)
         return name
+
+    def _attributes(self, source: Document) -> set[str]:
+        """Return every attribute that a class may have: its own, those of any analysed class, those of a node."""
+        names = set(_NODE_ATTRIBUTES)
+        for path in self._analysis.sources:
+            with suppress(RepairError):  # a file that cannot be read keeps its names to itself
+                names |= _class_attributes(self._document(path))
+        return names | _class_attributes(source)
 
     def _document(self, path: str) -> Document:
         return document(path, self._analysis.sources[path])
@@ -180,7 +186,7 @@ def _store(anchor: Anchor, source: Document, place: ast.AST) -> Store:
     """Keep values on the instance when subscription and use are in methods of one class, else in the module."""
     there, here = source.method(anchor.statement), source.method(place)
     same = there is not None and here is not None and there[0] is here[0]
-    return Store(source, place, here[0], here[2]) if same and here else Store(source, place)
+    return Store(source, here[0], here[2]) if same and here else Store(source)
 
 
 def _constructor(owner: ast.ClassDef) -> Function | None:
@@ -219,10 +225,17 @@ def _names(source: Document) -> set[str]:
     return names
 
 
-def _attributes(source: Document) -> set[str]:
-    """Return every attribute that a module uses, defines in a class, or would inherit from a node."""
-    used = {node.attr for node in ast.walk(source.tree) if isinstance(node, ast.Attribute)}
-    inside = (
-        each for node in ast.walk(source.tree) if isinstance(node, ast.ClassDef) for each in ast.walk(node)
+@cache
+def _class_attributes(source: Document) -> frozenset[str]:
+    """Return the attributes that classes of a module define, or use on their instances."""
+    classes = [node for node in ast.walk(source.tree) if isinstance(node, ast.ClassDef)]
+    inside = [each for owner in classes for each in ast.walk(owner)]
+    names = {str(getattr(each, "name", getattr(each, "id", ""))) for each in inside}
+    return frozenset(
+        names | {each.attr for each in inside if isinstance(each, ast.Attribute) and _is_own(each)}
     )
-    return used | _NODE_ATTRIBUTES | {str(getattr(each, "name", getattr(each, "id", ""))) for each in inside}
+
+
+def _is_own(attribute: ast.Attribute) -> bool:
+    """Tell whether an attribute may be one of the instance: it belongs to a plain name."""
+    return isinstance(attribute.value, ast.Name)

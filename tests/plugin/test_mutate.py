@@ -266,6 +266,8 @@ def test_the_guard_is_told_as_it_is_written() -> None:
     [
         ("a[5]", True), ("a[1:5]", True), ("a[i + 5]", True), ("range(5)", True), ("x == 5", True), ("x << 5", True),
         ("Publisher(queue_size=5)", True), ("'-' * 5", True), ("[0] * 5", True), ("x in (5, 2)", True),
+        ("paint((5, 0, 255))", True),
+        ("array([-5, 2])", True), ("f([5, 0.5])", False), ("f(k=(5, 2))", False), ("y = [5, 2]", False),
         ("5 * x", False), ("x > 5", False), ("f(5)", False), ("x % 5", False), ("a[x] * 5", False), ("x / 5", False),
     ],
 )  # fmt: skip

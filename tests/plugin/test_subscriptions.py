@@ -544,9 +544,10 @@ def test_a_node_that_never_starts_is_refused() -> None:
         repaired({"node.py": "def step(d):\n    return 5 * d\n"})
 
 
-def test_a_topic_of_unknown_type_is_refused() -> None:
-    with pytest.raises(RepairError, match="no message arrived there"):
-        repaired({"node.py": SCRIPT}, topics={})
+@pytest.mark.parametrize("topics", [{}, {"/terrain": "Stub"}])
+def test_a_topic_of_unknown_type_is_refused(topics: dict[str, str]) -> None:
+    with pytest.raises(RepairError, match="the type of its messages did not show"):
+        repaired({"node.py": SCRIPT}, topics=topics)
 
 
 def test_the_same_sensor_in_a_method_and_in_a_function_is_stored_for_both() -> None:
@@ -562,3 +563,50 @@ def test_the_same_sensor_in_a_method_and_in_a_function_is_stored_for_both() -> N
     ros.deliver("/terrain", terrain(True))
     ros.deliver("/odom", odometry(1.0))
     assert [space["step"](1.0), *ros.published] == [12.0, 12.0]
+
+
+@pytest.mark.parametrize("early", ["self.gain = 5 * 1.0", "self.gain = self.compute()"])
+def test_an_attribute_is_set_before_the_constructor_reads_it(early: str) -> None:
+    text = ROSPY_CLASS.replace("        self.pub =", f"        {early}\n        self.pub =")
+    text = text.replace("publish(5 * ", "publish(self.gain * ")
+    if "compute" in early:
+        text = text.replace(
+            "    def on_odom", "    def compute(self):\n        return 5 * 1.0\n\n    def on_odom"
+        )
+    sources = {"node.py": text}
+    flows = subscribing(sources, "node.py", NODES["rospy class"][2], "rospy.Subscriber")
+    ros = TinyRos()
+    assert ros.run(repaired(sources, flows), "node.py")["driver"].gain == 5.0
+
+
+def test_a_constructor_that_leaves_subscribing_to_a_method_gets_a_class_attribute() -> None:
+    text = ROSPY_CLASS.replace(
+        "self.sub = rospy.Sub", "self.connect()\n\n    def connect(self):\n        self.sub = rospy.Sub"
+    )
+    sources = {"node.py": text}
+    flows = subscribing(sources, "node.py", NODES["rospy class"][2], "rospy.Subscriber")
+    changed = repaired(sources, flows)
+    assert "class Driver:\n    terrain = None\n\n    def __init__" in changed["node.py"]
+    ros = TinyRos()
+    ros.run(changed, "node.py")
+    ros.deliver("/odom", odometry(1.0))
+    ros.deliver("/terrain", terrain(True))
+    ros.deliver("/odom", odometry(1.0))
+    assert ros.published == [5.0, 12.0]
+
+
+def test_variables_of_several_topics_stand_together() -> None:
+    front = Sensor("front", topic="/scan", field="angle_min", low=0, high=5, bins=5)
+    sources = {"node.py": SCRIPT}
+    flows = subscribing(sources, "node.py", NODES["rospy script"][2], "rospy.Subscriber")
+    guard = Guard((Conjunct(TERRAIN, 1, 1), Conjunct(front, 0, 1)))
+    changed = repaired(sources, flows, guard)["node.py"]
+    assert "pos = None\nterrain = None\nfront = None\n\n\ndef on_terrain(message):\n" in changed
+    assert "    terrain = message.data\n\n\ndef on_front(message):\n" in changed
+    assert 'on_terrain)\n    rospy.Subscriber("/scan", LaserScan, on_front)\n' in changed
+
+
+def test_methods_without_empty_lines_between_them_stay_apart() -> None:
+    sources = {"node.py": ROSPY_CLASS.replace("\n\n    def on_odom", "\n    def on_odom")}
+    flows = subscribing(sources, "node.py", NODES["rospy class"][2], "rospy.Subscriber")
+    assert "message.data\n\n    def on_odom" in repaired(sources, flows)["node.py"]
