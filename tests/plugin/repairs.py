@@ -16,7 +16,11 @@ from tarl_lint.model import Flow, Operand, Sink, SiteId, Source, Span
 
 TERRAIN = Sensor("terrain", topic="/terrain", field="data")
 POSITION = Sensor("x", topic="/odom", field="pose.pose.position.x", low=0, high=10, bins=10)
-TOPICS = {"/terrain": "std_msgs/msg/Bool", "/odom": "nav_msgs/msg/Odometry", "/scan": "sensor_msgs/msg/LaserScan"}
+TOPICS = {
+    "/terrain": "std_msgs/msg/Bool",
+    "/odom": "nav_msgs/msg/Odometry",
+    "/scan": "sensor_msgs/msg/LaserScan",
+}
 MUD = Guard((Conjunct(TERRAIN, 1, 1),))
 MUDDY_STRETCH = Guard((Conjunct(TERRAIN, 1, 1), Conjunct(POSITION, 4.0, 7.0)))
 
@@ -32,7 +36,9 @@ class HandMade:
     def holders(self, topic: str, field: str, site: SiteId) -> tuple[str, ...]:
         return self.held.get((topic, field), ())
 
-    def operand(self, code: str, value: Any, within: str, path: str = "", literal: bool | None = None) -> Operand:
+    def operand(
+        self, code: str, value: Any, within: str, path: str = "", literal: bool | None = None
+    ) -> Operand:
         """Return the use `code` in the first line that holds `within`."""
         path = path or next(iter(self.sources))
         text = self.sources[path]
@@ -49,7 +55,9 @@ def span_of(path: str, text: str, code: str, start: int) -> Span:
     return Span(path, len(before), len(before[-1]) + 1, len(until), len(until[-1]) + 1)
 
 
-def subscribing(sources: Mapping[str, str], path: str, call: str, api: str, topic: str = "/odom") -> tuple[Flow, ...]:
+def subscribing(
+    sources: Mapping[str, str], path: str, call: str, api: str, topic: str = "/odom"
+) -> tuple[Flow, ...]:
     """Return the flow from the subscription call that `call` is."""
     text = sources[path]
     source = Source("source", span_of(path, text, call, text.index(call)), (topic,), "", "", api)
@@ -112,7 +120,7 @@ class TinyRos:
                 module = ModuleType(name)
                 sys.modules[name] = module
                 module.__dict__["__name__"] = "__main__" if path == main else name
-                exec(compile(text, path, "exec"), module.__dict__)  # noqa: S102
+                exec(compile(text, path, "exec"), module.__dict__)
                 spaces[path] = module.__dict__
         return spaces[main]
 
