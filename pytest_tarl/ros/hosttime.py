@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import queue
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -10,24 +12,31 @@ from typing import Any
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.scheduler import Scheduler, running_task
 
-_IN_SECONDS = ("time", "monotonic", "perf_counter")
-_IN_NANOSECONDS = ("time_ns", "monotonic_ns", "perf_counter_ns")
+_CLOCKS: tuple[tuple[Any, str], ...] = (
+    (time, "time"),
+    (time, "monotonic"),
+    (time, "perf_counter"),
+    (time, "time_ns"),
+    (time, "monotonic_ns"),
+    (time, "perf_counter_ns"),
+    (time, "sleep"),
+    (threading, "_time"),  # these two have bound time.monotonic under their own names
+    (queue, "time"),
+)
 
 
 @contextmanager
 def virtual_host_time(scheduler: Scheduler) -> Iterator[None]:
     """Replace `time.sleep` and the clocks of the `time` module while nodes run."""
-    saved = {name: getattr(time, name) for name in (*_IN_SECONDS, *_IN_NANOSECONDS, "sleep")}
-    for name in _IN_SECONDS:
-        setattr(time, name, _clock(saved[name], lambda: seconds(scheduler.time)))
-    for name in _IN_NANOSECONDS:
-        setattr(time, name, _clock(saved[name], lambda: scheduler.time))
-    setattr(time, "sleep", _sleep(saved["sleep"], scheduler))  # noqa: B010 (mypy knows time.sleep as final)
+    saved = [(owner, name, getattr(owner, name)) for owner, name in _CLOCKS]
+    for owner, name, real in saved:
+        virtual = (lambda: scheduler.time) if name.endswith("_ns") else (lambda: seconds(scheduler.time))
+        setattr(owner, name, _sleep(real, scheduler) if name == "sleep" else _clock(real, virtual))
     try:
         yield
     finally:
-        for name, function in saved.items():
-            setattr(time, name, function)
+        for owner, name, real in saved:
+            setattr(owner, name, real)
 
 
 def _clock(real: Callable[[], Any], virtual: Callable[[], Any]) -> Callable[[], Any]:

@@ -1,0 +1,44 @@
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from textwrap import dedent
+from typing import Any
+
+import pytest
+
+from pytest_tarl.ros import Ros
+
+Start = Callable[..., Ros]
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Start]:
+    """Start the source of a node in an episode of its own, or in the one given; everything is closed at the end."""
+    open_episodes = []
+
+    def start_node(source: str, *, ros: Ros | None = None, argv: tuple[str, ...] = (), **options: Any) -> Ros:
+        path = tmp_path / "node.py"
+        path.write_text(dedent(source))
+        code = compile(path.read_text(), str(path), "exec")
+        if ros is None:
+            ros = Ros(**options)
+            installed = ros.installed()
+            installed.__enter__()
+            open_episodes.append((ros, installed))
+        namespace = {"__name__": "__main__", "__file__": str(path)}
+        ros.start(lambda: exec(code, namespace), name="node.py", argv=argv)
+        ros.namespace = namespace  # type: ignore[attr-defined]
+        return ros
+
+    yield start_node
+    for ros, installed in open_episodes:
+        ros.close()
+        installed.__exit__(None, None, None)
+
+
+def heard(ros: Ros, topic: str) -> list[Any]:
+    """Collect what nodes publish on a topic from now on."""
+    messages: list[Any] = []
+    ros.bus.subscribe(topic, messages.append)
+    return messages
