@@ -24,7 +24,7 @@ def message_type(name: str) -> type[Any]:
     `nav_msgs/Odometry` names the ROS 1 class, `nav_msgs/msg/Odometry` the ROS 2 class, as in the two systems
     themselves. Either can be published to nodes of either kind: subscribers get the class they asked for.
     """
-    package, *middle, short = name.split("/")
+    package, *middle, short = name.split("/") if "/" in name else ("", name)
     if middle not in ([], ["msg"], ["srv"]) or not package or not short:
         raise UnsupportedApiError(f"{name!r} is not the name of a message type: write 'nav_msgs/msg/Odometry' "
                                   "(ROS 2) or 'nav_msgs/Odometry' (ROS 1).")  # fmt: skip

@@ -48,6 +48,9 @@ class Message:
         for name, value in zip(self.__slots__, state, strict=True):
             setattr(self, name, value)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuild, (self._type, self.__getstate__())
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, type(self)):
             return False
@@ -59,6 +62,16 @@ class Message:
         return as_yaml(self)
 
     __repr__ = __str__
+
+
+def _rebuild(name: str, state: list[Any]) -> Message:
+    """Unpickle a message by its type name: the module that it claims to live in exists only within an episode."""
+    built = message_class(*name.split("/"))
+    if built is None:
+        raise FieldError(f"message type {name} is not known")
+    message: Message = object.__new__(built)
+    message.__setstate__(state)
+    return message
 
 
 def as_yaml(value: Any, indent: str = "") -> str:

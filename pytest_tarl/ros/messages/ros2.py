@@ -19,14 +19,16 @@ from pytest_tarl.ros.messages import values
 from pytest_tarl.ros.messages.definitions import Definition, Field, find_message, find_service
 from pytest_tarl.ros.messages.values import CODES, INTEGERS, FieldError
 
-_FLOAT32_LIMIT = 3.402823466e38
+_FLOAT32_LIMIT = (
+    3.402823466e38  # as rosidl rounds it, so that the largest float32 of all is refused there too
+)
 
 
 class Message:
     """Base of all ROS 2 messages built here: keyword arguments only."""
 
     __slots__ = ()
-    _fields: ClassVar[tuple[Field, ...]] = ()
+    _tarl_fields: ClassVar[tuple[Field, ...]] = ()
     _fields_and_field_types: ClassVar[dict[str, str]] = {}
     _tarl_kind: ClassVar[str] = "ros2"
     _tarl_copy: ClassVar[Callable[[Any], Any]]
@@ -37,19 +39,21 @@ class Message:
         return dict(cls._fields_and_field_types)
 
     def __repr__(self) -> str:
-        shown = ", ".join(f"{field.name}={_shown(getattr(self, field.name))}" for field in self._fields)
+        shown = ", ".join(f"{field.name}={_shown(getattr(self, field.name))}" for field in self._tarl_fields)
         return f"{type(self).__module__}.{type(self).__qualname__}({shown})"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, type(self)):
             return False
-        return all(_equal(getattr(self, field.name), getattr(other, field.name)) for field in self._fields)
+        return all(
+            _equal(getattr(self, field.name), getattr(other, field.name)) for field in self._tarl_fields
+        )
 
     __hash__ = None  # type: ignore[assignment]
 
     def __copy__(self) -> Any:
         twin = object.__new__(type(self))
-        for field in self._fields:
+        for field in self._tarl_fields:
             slot = "_" + field.name
             object.__setattr__(twin, slot, getattr(self, slot))
         return twin
@@ -64,7 +68,7 @@ class Message:
         return _rebuild, (
             message_type,
             name,
-            {field.name: getattr(self, field.name) for field in self._fields},
+            {field.name: getattr(self, field.name) for field in self._tarl_fields},
         )
 
 
@@ -123,7 +127,7 @@ def build(definition: Definition, module: str) -> type[Message]:
         "__module__": module,
         "__doc__": f"ROS 2 type {definition.package}/{definition.name}.",
         "__init__": scope["__init__"],
-        "_fields": tuple(fields),
+        "_tarl_fields": tuple(fields),
         "_fields_and_field_types": {field.name: _idl_text(field) for field in fields},
         "_tarl_copy": staticmethod(scope["copy"]),
         **{constant.name: constant.value for constant in definition.constants},
@@ -134,7 +138,7 @@ def build(definition: Definition, module: str) -> type[Message]:
 
 
 def _fill(message: Message, given: dict[str, Any]) -> None:
-    names = [field.name for field in message._fields]
+    names = [field.name for field in message._tarl_fields]
     assert all(key in names for key in given), "Invalid arguments passed to constructor: " + ", ".join(
         sorted(key for key in given if key not in names)
     )
