@@ -32,6 +32,23 @@ if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
 
+_ARITHMETIC = {
+    "abs",
+    "bool",
+    "float",
+    "int",
+    "len",
+    "math",
+    "max",
+    "min",
+    "np",
+    "numpy",
+    "pow",
+    "round",
+    "sum",
+}
+
+
 @dataclass(frozen=True, slots=True)
 class Mutation:
     """Another value for an operand at its use.
@@ -193,10 +210,13 @@ def _joins(source: Document, before: ast.stmt, after: ast.stmt, condition: str, 
 
 
 def _calls(statement: ast.stmt) -> bool:
-    """Tell whether a statement runs other code, which may change what a condition asks."""
-    return any(
-        isinstance(node, ast.Call | ast.Await | ast.Yield | ast.YieldFrom) for node in ast.walk(statement)
-    )
+    """Tell whether a statement runs code that may change what a condition asks; arithmetic does not."""
+    for node in ast.walk(statement):
+        if isinstance(node, ast.Await | ast.Yield | ast.YieldFrom):
+            return True
+        if isinstance(node, ast.Call) and ast.unparse(node.func).partition(".")[0] not in _ARITHMETIC:
+            return True
+    return False
 
 
 def _by_file(

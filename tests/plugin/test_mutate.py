@@ -178,7 +178,7 @@ def written(statement: str, code: str, value: Any, new: Any, guard: Guard) -> st
 
 TWO = """\
 def step(delta, mud, pos):
-    a = 5 * delta
+    a = 5 * abs(delta)
     # then
     b = 0.1 + a
     if b > 3:
@@ -189,19 +189,20 @@ def step(delta, mud, pos):
 
 def test_neighbours_under_one_guard_share_one_if() -> None:
     analysis = HandMade({"node.py": TWO}, held=HELD)
-    uses = [analysis.operand("5", 5, "5 * delta"), analysis.operand("0.1", 0.1, "0.1 + a")]
+    uses = [analysis.operand("5", 5, "5 *"), analysis.operand("0.1", 0.1, "0.1 + a")]
     changed = rewrite(analysis, [Mutation(use, 2.5) for use in reversed(uses)], MUD, TOPICS)
     assert changed["node.py"] == TWO.replace(
-        "    a = 5 * delta\n    # then\n    b = 0.1 + a\n",
-        "    if mud:\n        a = 2.5 * delta\n        b = 2.5 + a\n"
-        "    else:\n        a = 5 * delta\n        # then\n        b = 0.1 + a\n",
+        "    a = 5 * abs(delta)\n    # then\n    b = 0.1 + a\n",
+        "    if mud:\n        a = 2.5 * abs(delta)\n        b = 2.5 + a\n"
+        "    else:\n        a = 5 * abs(delta)\n        # then\n        b = 0.1 + a\n",
     )
 
 
-def test_a_statement_that_changes_the_condition_does_not_share_it() -> None:
-    text = "def step(delta, mud, pos):\n    mud = 5 * delta\n    b = 0.1 + mud\n"
+@pytest.mark.parametrize("first", ["mud = 5 * delta", "log(5 * delta)", "a = yield 5"])
+def test_a_statement_that_may_change_the_condition_does_not_share_it(first: str) -> None:
+    text = f"def step(delta, mud, pos):\n    {first}\n    b = 0.1 + mud\n"
     analysis = HandMade({"node.py": text}, held=HELD)
-    uses = [analysis.operand("5", 5, "5 * delta"), analysis.operand("0.1", 0.1, "0.1 + mud")]
+    uses = [analysis.operand("5", 5, "5"), analysis.operand("0.1", 0.1, "0.1 + mud")]
     changed = rewrite(analysis, [Mutation(use, 2.5) for use in uses], MUD, TOPICS)["node.py"]
     assert changed.count("if mud:") == 2
 
@@ -302,7 +303,7 @@ def test_a_file_that_was_not_analysed_is_named() -> None:
 
 def test_the_same_question_gets_the_same_answer() -> None:
     analysis = HandMade({"node.py": TWO}, held=HELD)
-    change = [Mutation(analysis.operand("5", 5, "5 * delta"), 2.5)]
+    change = [Mutation(analysis.operand("5", 5, "5 *"), 2.5)]
     assert len({rewrite(analysis, change, MUDDY_STRETCH, TOPICS)["node.py"] for _ in range(5)}) == 1
 
 
