@@ -11,6 +11,7 @@ import sys
 from dataclasses import dataclass
 from typing import TypedDict
 
+_BRANCHING = (ast.BoolOp, ast.IfExp, ast.NamedExpr)
 INLINED_COMPREHENSIONS = sys.version_info >= (3, 12)
 _FIRST = {
     ast.Attribute: "value",
@@ -56,9 +57,33 @@ def start_of(node: ast.expr | ast.stmt) -> Where:
 
     A range over several lines would not do: the call of a method stands where its attribute ends.
     """
-    first = first_evaluated(node) if isinstance(node, ast.expr) else node
-    line, column = first.lineno, first.col_offset
+    return collapsed(where(first_evaluated(node) if isinstance(node, ast.expr) else node))
+
+
+def collapsed(at: Where) -> Where:
+    """Return the empty range at the start of another."""
+    line, column = at["lineno"], at["col_offset"]
     return Where(lineno=line, col_offset=column, end_lineno=line, end_col_offset=column)
+
+
+# Code at no line: the compiler gives it the line of what ran before, or none where two ways meet.
+NOWHERE = Where(lineno=-1, col_offset=-1, end_lineno=-1, end_col_offset=-1)
+
+
+def end_of(node: ast.expr, then: Where = NOWHERE) -> Where:
+    """Return where code stands that runs right after an expression, and before code that stands at `then`.
+
+    Of an expression with branches over several lines nobody knows on which line it ends.
+    """
+    several = node.end_lineno != node.lineno
+    return collapsed(then) if several and isinstance(node, _BRANCHING) else where(node)
+
+
+def jumped_on(test: ast.expr) -> ast.expr:
+    """Return the part of a condition that is evaluated: `not` only exchanges the ways to go."""
+    while isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
+        test = test.operand
+    return test
 
 
 def first_evaluated(node: ast.expr) -> ast.expr:
@@ -83,6 +108,11 @@ class Names:
     inline: bool = False
 
     @property
+    def all(self) -> list[str]:
+        """List them."""
+        return [self.hook, self.buffer, self.type, self.float]
+
+    @property
     def buffer(self) -> str:
         """Name the list of events of the running thread."""
         return _derived(self.hook, "list")
@@ -103,14 +133,14 @@ def _derived(hook: str, suffix: str) -> str:
     return f"{hook.removesuffix('__')}_{suffix}__"
 
 
-def recorded(value: ast.expr, number: int, names: Names) -> ast.Call:
-    """Build `hook(number, value)`, which gives `value` back."""
+def recorded(value: ast.expr, number: int, names: Names, then: Where = NOWHERE) -> ast.Call:
+    """Build `hook(number, value)`, which gives `value` back to what stands at `then`."""
     start = start_of(value)
     return ast.Call(
         func=ast.Name(names.hook, ast.Load(), **start),
         args=[ast.Constant(number, **start), value],
         keywords=[],
-        **where(value),
+        **end_of(value, then),
     )
 
 
@@ -138,8 +168,8 @@ def truth(test: ast.expr) -> ast.expr:
     """Build the truth value of a condition, asking each operand once, as a jump does."""
     if isinstance(test, ast.Compare) and len(test.ops) == 1:
         return test
-    at = where(test)
-    return ast.IfExp(test, ast.Constant(True, **at), ast.Constant(False, **at), **at)
+    at = end_of(test)
+    return ast.IfExp(test, ast.Constant(True, **at), ast.Constant(False, **at), **where(test))
 
 
 def reached(call: ast.Call, number: int, names: Names) -> ast.Call:

@@ -6,15 +6,20 @@ import ast
 from collections.abc import Collection, Mapping
 from typing import Literal, TypeVar
 
+from pytest_tarl.blocks import enter, entry_of, first_evaluated_in, message_parameter, parameters
 from pytest_tarl.forms import (
     Names,
     Where,
+    collapsed,
+    end_of,
+    jumped_on,
     note,
     note_constant,
     reached,
     recorded,
     start_of,
     truth,
+    where,
 )
 
 Offset = tuple[int, int]  # line from 1 and column in UTF-8 bytes from 0, as `ast` counts
@@ -90,8 +95,11 @@ class _Recording(ast.NodeTransformer):
         self._scope.pop()
 
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.ClassDef:
-        """Enter a class."""
+        """Enter a class, whose namespace may answer to any name: ours are looked up outside of it."""
+        before = len(self._placed)
         self._inside(node, "class")
+        if len(self._placed) > before:
+            enter(node, ast.Global(self._names.all, **start_of(node)))
         return node
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
@@ -103,26 +111,26 @@ class _Recording(ast.NodeTransformer):
         return self._function(node)
 
     def _function(self, node: Function) -> Function:
-        numbers = [(self._number(parameter), parameter) for parameter in _parameters(node.args)]
-        at = _entry_place(node)
+        numbers = [(self._number(parameter), parameter) for parameter in parameters(node.args)]
+        at = entry_of(node)
         self._inside(node, "function")
         for number, parameter in reversed(numbers):
             if number is not None:
-                _enter(node, note(parameter.arg, number, self._names, at))
+                enter(node, note(parameter.arg, number, self._names, at))
         return node
 
     def visit_Lambda(self, node: ast.Lambda) -> ast.Lambda:
         """Record the body, and the message where the site is the lambda itself."""
         body, receives = self._number(node.body), self._number(node)
         same = (node.lineno, node.col_offset) == (node.body.lineno, node.body.col_offset)
-        publish = isinstance(node.body, ast.Call) and self._publishing(node.body, body)
+        publish = self._publishing(node.body, body)
         self._inside(node, "function")
         if body is not None:
-            node.body = self._value(node.body, body, publish=publish)
-        parameters = _parameters(node.args)
-        if receives is not None and parameters and not same:
+            node.body = self._value(node.body, body, where(node.body), publish=publish)
+        received = parameters(node.args)
+        if receives is not None and received and not same:
             at = start_of(node.body)
-            message = recorded(ast.Name(parameters[0].arg, ast.Load(), **at), receives, self._names)
+            message = recorded(ast.Name(received[0].arg, ast.Load(), **at), receives, self._names)
             pair = ast.Tuple([message, node.body], ast.Load(), **at)
             node.body = ast.Subscript(pair, ast.Constant(1, **at), ast.Load(), **at)
         return node
@@ -132,7 +140,7 @@ class _Recording(ast.NodeTransformer):
         number = self._number(node)
         self.generic_visit(node)
         if number is not None:
-            node.body[:0] = note_constant(0.0, number, self._names, start_of(first_statement(node.body)))
+            node.body[:0] = note_constant(0.0, number, self._names, start_of(first_evaluated_in(node.body)))
         return node
 
     def visit_match_case(self, node: ast.match_case) -> ast.match_case:
@@ -146,32 +154,33 @@ class _Recording(ast.NodeTransformer):
     # Statements
 
     def _record_functiondef(self, node: Function, number: int) -> list[ast.stmt]:
-        at = _entry_place(node)
-        message = _message(node, in_class=self._scope[-1] == "class")
+        at = entry_of(node)
+        message = message_parameter(node, in_class=self._scope[-1] == "class")
         if message is None:
             for statement in reversed(note_constant(0.0, number, self._names, at)):
-                _enter(node, statement)
+                enter(node, statement)
         else:
-            _enter(node, note(message, number, self._names, at))
+            enter(node, note(message, number, self._names, at))
         return [node]
 
     _record_asyncfunctiondef = _record_functiondef
 
     def _record_assign(self, node: ast.Assign, number: int) -> list[ast.stmt]:
         target = node.targets[0]
-        if len(node.targets) == 1 and isinstance(target, ast.Name) and self._rereadable():
-            return [node, note(target.id, number, self._names, start_of(target))]
+        plain = len(node.targets) == 1 and isinstance(target, ast.Name) and self._rereadable()
+        if plain and isinstance(target, ast.Name) and not self._publishing(node.value, number):
+            return [node, note(target.id, number, self._names, where(target))]
         return self._before_or_around(node, node.value, number)
 
     def _record_annassign(self, node: ast.AnnAssign, number: int) -> list[ast.stmt]:
         if node.value is None:
             return [node]
-        node.value = self._value(node.value, number)
+        node.value = self._value(node.value, number, where(node))
         return [node]
 
     def _record_augassign(self, node: ast.AugAssign, number: int) -> list[ast.stmt]:
         if isinstance(node.target, ast.Name):
-            return [node, note(node.target.id, number, self._names, start_of(node.target))]
+            return [node, note(node.target.id, number, self._names, where(node.target))]
         return self._before_or_around(node, node.value, number)
 
     def _record_return(self, node: ast.Return, number: int) -> list[ast.stmt]:
@@ -186,7 +195,7 @@ class _Recording(ast.NodeTransformer):
         if isinstance(value, ast.Yield):
             if value.value is None:
                 return [*self._nothing(node, number), node]
-            value.value = recorded(value.value, number, self._names)
+            value.value = recorded(value.value, number, self._names, where(value))
             return [node]
         return self._before_or_around(node, value, number)
 
@@ -194,14 +203,15 @@ class _Recording(ast.NodeTransformer):
         return [*self._nothing(node, number), node]
 
     def _record_assert(self, node: ast.Assert, number: int) -> list[ast.stmt]:
-        node.test = recorded(truth(node.test), number, self._names)
-        return [node]
+        # A failing one leaves no event: the exception tells, and its caret depends on how the test is compiled.
+        return [node, *note_constant(1.0, number, self._names, collapsed(end_of(node.test)))]
 
     def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:
         if isinstance(node.test, ast.Constant):
             return [node]  # nothing is evaluated, `while True` has no line of its own
-        true = start_of(first_statement(node.body))
-        false = start_of(first_statement(node.orelse) if node.orelse else node.test)
+        true = start_of(first_evaluated_in(node.body))
+        after_test = collapsed(end_of(jumped_on(node.test)))
+        false = start_of(first_evaluated_in(node.orelse)) if node.orelse else after_test
         node.body[:0] = note_constant(1.0, number, self._names, true)
         node.orelse[:0] = note_constant(0.0, number, self._names, false)
         return [node]
@@ -210,9 +220,9 @@ class _Recording(ast.NodeTransformer):
 
     def _record_for(self, node: Loop, number: int) -> list[ast.stmt]:
         if isinstance(node.target, ast.Name) and self._rereadable():
-            node.body.insert(0, note(node.target.id, number, self._names, start_of(node.target)))
+            node.body.insert(0, note(node.target.id, number, self._names, where(node.target)))
         else:
-            node.iter = recorded(node.iter, number, self._names)
+            node.iter = recorded(node.iter, number, self._names, where(node.iter))
         return [node]
 
     _record_asyncfor = _record_for
@@ -220,7 +230,7 @@ class _Recording(ast.NodeTransformer):
     def _record_with(self, node: Block, number: int) -> list[ast.stmt]:
         last = node.items[-1]
         if isinstance(last.optional_vars, ast.Name) and self._rereadable():
-            node.body.insert(0, note(last.optional_vars.id, number, self._names, start_of(last.optional_vars)))
+            node.body.insert(0, note(last.optional_vars.id, number, self._names, where(last.optional_vars)))
         else:
             last.context_expr = recorded(last.context_expr, number, self._names)
         return [node]
@@ -241,63 +251,23 @@ class _Recording(ast.NodeTransformer):
         self, node: ast.Assign | ast.AugAssign | ast.Return | ast.Expr, value: ast.expr, number: int
     ) -> list[ast.stmt]:
         if isinstance(value, ast.Name) and self._rereadable() and not isinstance(node, ast.AugAssign):
-            return [note(value.id, number, self._names, start_of(value)), node]
-        publish = isinstance(value, ast.Call) and self._publishing(value, number)
+            return [note(value.id, number, self._names, where(value)), node]
+        publish = self._publishing(value, number)
         if publish and isinstance(value, ast.Call) and not (value.args or value.keywords):
             return [*self._nothing(node, number), node]
-        node.value = self._value(value, number, publish=publish)
+        node.value = self._value(value, number, where(node), publish=publish)
         return [node]
 
-    def _publishing(self, call: ast.Call, number: int | None) -> bool:
-        named = isinstance(call.func, ast.Attribute) and call.func.attr == "publish"
+    def _publishing(self, value: ast.expr, number: int | None) -> bool:
+        if not isinstance(value, ast.Call):
+            return False
+        named = isinstance(value.func, ast.Attribute) and value.func.attr == "publish"
         return named or number in self._publishes
 
-    def _value(self, value: ast.expr, number: int, *, publish: bool = False) -> ast.expr:
+    def _value(self, value: ast.expr, number: int, then: Where, *, publish: bool = False) -> ast.expr:
         if publish and isinstance(value, ast.Call) and (value.args or value.keywords):
             return reached(value, number, self._names)
-        return recorded(value, number, self._names)
+        return recorded(value, number, self._names, then)
 
     def _nothing(self, node: ast.stmt, number: int) -> list[ast.stmt]:
-        return note_constant(0.0, number, self._names, start_of(first_statement([node])))
-
-
-def first_statement(body: list[ast.stmt]) -> ast.expr | ast.stmt:
-    """Return what runs first in a block that starts with this statement."""
-    node = next((s for s in body if not _is_declaration(s)), body[0])
-    decorators: list[ast.expr] = getattr(node, "decorator_list", [])
-    for part in (*decorators, *(getattr(node, name, None) for name in ("value", "test", "iter"))):
-        if isinstance(part, ast.expr):
-            return part
-    return node
-
-
-def _is_declaration(node: ast.stmt) -> bool:
-    """Tell whether no code runs for a statement: docstring, global, bare annotation."""
-    docstring = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
-    bare = isinstance(node, ast.AnnAssign) and node.value is None
-    return docstring or bare or isinstance(node, (ast.Global, ast.Nonlocal))
-
-
-def _entry_place(node: ast.FunctionDef | ast.AsyncFunctionDef) -> Where:
-    return start_of(first_statement(node.body))
-
-
-def _enter(node: ast.FunctionDef | ast.AsyncFunctionDef, statement: ast.stmt) -> None:
-    """Put a statement at the entry of a function, behind its docstring and declarations."""
-    at = next((i for i, inner in enumerate(node.body) if not _is_declaration(inner)), len(node.body))
-    node.body.insert(at, statement)
-
-
-def _parameters(arguments: ast.arguments) -> list[ast.arg]:
-    extra = [one for one in (arguments.vararg, arguments.kwarg) if one is not None]
-    return [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, *extra]
-
-
-def _message(node: ast.FunctionDef | ast.AsyncFunctionDef, *, in_class: bool) -> str | None:
-    """Name the parameter that receives the message: the first one, behind `self` or `cls`."""
-    static = any(isinstance(d, ast.Name) and d.id == "staticmethod" for d in node.decorator_list)
-    bound = in_class and not static
-    positional = [parameter.arg for parameter in (*node.args.posonlyargs, *node.args.args)]
-    named = positional[1:] if bound else positional
-    rest = [one.arg for one in (node.args.vararg, *node.args.kwonlyargs) if one is not None]
-    return next(iter([*named, *rest]), None)
+        return note_constant(0.0, number, self._names, start_of(first_evaluated_in([node])))

@@ -24,6 +24,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from functools import lru_cache
 from itertools import islice
+from operator import attrgetter
 from types import MemberDescriptorType
 from typing import Any
 
@@ -172,8 +173,9 @@ def _parts(kind: type) -> Parts | None:
     slots = [_slot(kind, name) for name in names]
     if not names:
         return None
-    if all(slot is not None for slot in slots):
-        return lambda message: [slot.__get__(message, kind) for slot in slots if slot is not None]
+    known = [slot.__name__ for slot in slots if slot is not None]
+    if len(known) == len(names) > 1 and kind.__getattribute__ is object.__getattribute__:
+        return attrgetter(*known)
     return lambda message: [_stored(message, slot, name) for slot, name in zip(slots, names, strict=True)]
 
 
@@ -195,10 +197,10 @@ def _fields(kind: type) -> tuple[str, ...]:
 def _slot(kind: type, name: str) -> MemberDescriptorType | None:
     """Return where a field is stored; as `_name` where a property checks assignments to it."""
     for stored in (name, f"_{name}"):
-        for base in kind.__mro__:
-            slot = base.__dict__.get(stored)
-            if isinstance(slot, MemberDescriptorType):
-                return slot
+        holder = next((base for base in kind.__mro__ if stored in base.__dict__), object)
+        slot = holder.__dict__.get(stored)
+        if isinstance(slot, MemberDescriptorType):
+            return slot
     return None
 
 
