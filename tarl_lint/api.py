@@ -1,0 +1,78 @@
+"""What other programs use: files become flows, sites, the operands of a site and what holds a topic's field."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from tarl_lint import discover, engine
+from tarl_lint.config import Config
+from tarl_lint.model import Flow, Operand, SiteId, Step
+from tarl_lint.probe import Prober
+from tarl_lint.source import Module, SourceError, parse
+from tarl_lint.valueflow.link import Linker
+
+
+@dataclass(frozen=True, eq=False)
+class Analysis:
+    """Everything found in a set of files. `sources` holds the text of each file by its path."""
+
+    flows: tuple[Flow, ...]
+    errors: tuple[SourceError, ...]
+    sources: Mapping[str, str]
+    machine: Linker = field(repr=False)
+
+    @cached_property
+    def sites(self) -> tuple[Step, ...]:
+        """Return every distinct data or control step, sorted by path, line and column."""
+        found: dict[SiteId, Step] = {}
+        for flow in self.flows:
+            for step in flow.steps:
+                if step.dependence == "context":
+                    continue
+                known = found.get(step.site)
+                if known is None or (known.dependence == "control" and step.dependence == "data"):
+                    found[step.site] = step
+        return tuple(sorted(found.values(), key=lambda s: s.span))
+
+    @cached_property
+    def prober(self) -> Prober:
+        """Return who runs the analysis once more, looking at single statements."""
+        return Prober(self.machine)
+
+    def operands(self, site: SiteId) -> tuple[Operand, ...]:
+        """Return the constants that a site uses, in the order of the text."""
+        return self.prober.operands(site)
+
+    def holders(self, topic: str, field: str, site: SiteId) -> tuple[str, ...]:
+        """Return expressions that hold a topic's field unchanged at a site, shortest first."""
+        return self.prober.holders(topic, field, site)
+
+
+def analyse(paths: Sequence[Path], *, root: Path | None = None) -> Analysis:
+    """Analyse the files at and below the paths.
+
+    `root` is where settings that name places start; it defaults to the working directory.
+    Raises UsageError for a path that does not exist.
+    """
+    config = Config(root=root)
+    files = discover.find(paths, config).files
+    parsed = [_read(file.path, file.shown, file.name) for file in files]
+    modules = [p for p in parsed if isinstance(p, Module)]
+    machine, flows = engine.trace(modules, config)
+    return Analysis(
+        flows=flows,
+        errors=tuple(p for p in parsed if isinstance(p, SourceError)),
+        sources={m.path: m.text for m in modules},
+        machine=machine,
+    )
+
+
+def _read(path: Path, shown: str, name: str) -> Module | SourceError:
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        return SourceError(shown, 1, f"The file cannot be read: {error.strerror or error}.")
+    return parse(shown, data, name)

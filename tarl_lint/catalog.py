@@ -1,0 +1,156 @@
+"""What ROS and the usual libraries do, as data: who subscribes, publishes, waits, changes its arguments."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """One call that matters. Numbers are positions of arguments, names their keywords."""
+
+    kind: str
+    api: str
+    topic: tuple[int, str] = (-1, "")
+    type: tuple[int, str] = (-1, "")
+    callback: tuple[int, str] = (-1, "")
+    extra: tuple[int, str] = (-1, "")
+
+
+ROSPY_SUBSCRIBER = Fact(
+    "subscribe", "rospy.Subscriber", (0, "name"), (1, "data_class"), (2, "callback"), (3, "callback_args")
+)
+ROSPY_PUBLISHER = Fact("publisher", "rospy.Publisher", (0, "name"), (1, "data_class"))
+ROSPY_WAIT = Fact("receive", "rospy.wait_for_message", (0, "topic"), (1, "topic_type"))
+RCLPY_WAIT = Fact("receive", "rclpy.wait_for_message.wait_for_message", (2, "topic"), (0, "msg_type"))
+
+FUNCTIONS: Final[Mapping[str, Fact]] = {
+    "rospy.Subscriber": ROSPY_SUBSCRIBER,
+    "rospy.topics.Subscriber": ROSPY_SUBSCRIBER,
+    "rospy.Publisher": ROSPY_PUBLISHER,
+    "rospy.topics.Publisher": ROSPY_PUBLISHER,
+    "rospy.wait_for_message": ROSPY_WAIT,
+    "rospy.client.wait_for_message": ROSPY_WAIT,
+    "rclpy.wait_for_message.wait_for_message": RCLPY_WAIT,
+    "rospy.Timer": Fact("timer", "rospy.Timer", callback=(1, "callback")),
+    "rospy.on_shutdown": Fact("call later", "rospy.on_shutdown", callback=(0, "h")),
+    "rospy.Service": Fact("service", "rospy.Service", (0, "name"), (1, "service_class"), (2, "handler")),
+    "actionlib.SimpleActionServer": Fact(
+        "service", "actionlib.SimpleActionServer", (0, "name"), (1, "ActionSpec"), (2, "execute_cb")
+    ),
+    "rclpy.action.ActionServer": Fact(
+        "service", "rclpy.action.ActionServer", (2, "action_name"), (1, "action_type"), (3, "execute_callback")
+    ),
+    "rclpy.action.server.ActionServer": Fact(
+        "service", "rclpy.action.ActionServer", (2, "action_name"), (1, "action_type"), (3, "execute_callback")
+    ),
+    "message_filters.Subscriber": Fact(
+        "filter", "message_filters.Subscriber", (0, "topic"), (1, "data_class")
+    ),
+    "message_filters.ApproximateTimeSynchronizer": Fact("synchronizer", "message_filters", (0, "fs")),
+    "message_filters.TimeSynchronizer": Fact("synchronizer", "message_filters", (0, "fs")),
+    "message_filters.Cache": Fact("synchronizer", "message_filters", (0, "f")),
+    "threading.Thread": Fact("thread", "threading.Thread", callback=(1, "target"), extra=(3, "args")),
+    "threading.Timer": Fact("thread", "threading.Timer", callback=(1, "function"), extra=(2, "args")),
+    "multiprocessing.Process": Fact("thread", "multiprocessing.Process", callback=(1, "target"), extra=(3, "args")),
+    "functools.partial": Fact("partial", "functools.partial", callback=(0, "func")),
+    "copy.copy": Fact("copy", "copy.copy"),
+    "copy.deepcopy": Fact("copy", "copy.deepcopy"),
+    "rospy.get_param": Fact("parameter", "rospy.get_param", (0, "param_name"), extra=(1, "default")),
+}
+
+METHODS: Final[Mapping[str, Fact]] = {
+    "create_subscription": Fact(
+        "subscribe", "rclpy.create_subscription", (1, "topic"), (0, "msg_type"), (2, "callback")
+    ),
+    "create_publisher": Fact("publisher", "rclpy.create_publisher", (1, "topic"), (0, "msg_type")),
+    "create_lifecycle_publisher": Fact(
+        "publisher", "rclpy.create_lifecycle_publisher", (1, "topic"), (0, "msg_type")
+    ),
+    "create_timer": Fact("timer", "rclpy.create_timer", callback=(1, "callback")),
+    "create_service": Fact("service", "rclpy.create_service", (1, "srv_name"), (0, "srv_type"), (2, "callback")),
+    "add_done_callback": Fact("call later", "add_done_callback", callback=(0, "callback")),
+    "add_on_set_parameters_callback": Fact(
+        "call later", "rclpy.add_on_set_parameters_callback", callback=(0, "callback")
+    ),
+    "declare_parameter": Fact("declare", "rclpy.declare_parameter", (0, "name"), extra=(1, "value")),
+    "get_parameter": Fact("parameter object", "rclpy.get_parameter", (0, "name")),
+    "registerCallback": Fact("register", "message_filters", callback=(0, "cb")),
+}
+
+FILTER_WITH_NODE: Final = Fact("filter", "message_filters.Subscriber", (2, "topic"), (1, "msg_type"))
+
+PARAMETER_VALUES: Final = frozenset(
+    ["value", "double_value", "integer_value", "bool_value", "string_value", "get_parameter_value"]
+)
+
+WAITS: Final = frozenset(
+    [
+        "rospy.sleep", "rospy.spin", "rospy.rostime.wallsleep", "rospy.wait_for_service", "rospy.wait_for_message",
+        "rclpy.spin", "rclpy.spin_once", "rclpy.spin_until_future_complete", "time.sleep", "asyncio.sleep",
+        "rclpy.wait_for_message.wait_for_message",
+    ]
+)  # fmt: skip
+
+WAITING_METHODS: Final = frozenset(
+    [
+        "sleep", "spin", "spin_once", "spin_until_future_complete", "wait_for_service", "wait_for_server",
+        "wait_for_result", "wait", "acquire", "join", "wait_for_message", "send_goal_and_wait",
+    ]
+)  # fmt: skip
+
+MUTATORS: Final = frozenset(
+    [
+        "append", "appendleft", "extend", "extendleft", "insert", "add", "update", "put", "put_nowait", "push",
+        "fill", "set", "setdefault", "itemset", "write", "push_back", "send", "set_result",
+    ]
+)  # fmt: skip
+
+ELEMENT_READERS: Final = frozenset(
+    ["pop", "popleft", "get", "get_nowait", "values", "itervalues", "popitem", "setdefault", "next"]
+)
+
+PAIR_READERS: Final = frozenset(["items", "iteritems"])
+
+SCALAR_FUNCTIONS: Final = frozenset(
+    [
+        "abs", "bool", "float", "int", "len", "max", "min", "pow", "round", "str", "sum", "repr", "hash", "ord", "chr",
+        "any", "all", "isinstance", "hasattr", "format", "divmod", "type", "id", "input", "bytes", "print",
+    ]
+)  # fmt: skip
+
+SCALAR_MODULES: Final = ("math.", "time.", "random.", "cmath.", "operator.")
+
+DRAWING: Final = frozenset(
+    ["circle", "line", "rectangle", "putText", "polylines", "drawContours", "ellipse", "fillPoly", "arrowedLine"]
+)
+
+ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
+    **{f"cv2.{name}": 0 for name in sorted(DRAWING)},
+    "numpy.copyto": 0, "numpy.put": 0, "numpy.place": 0, "numpy.putmask": 0, "random.shuffle": 0,
+    "heapq.heappush": 0, "setattr": 0,
+}  # fmt: skip
+
+NODE_BASES: Final = frozenset(
+    [
+        "rclpy.node.Node", "rclpy.lifecycle.Node", "rclpy.lifecycle.LifecycleNode", "object", "Exception",
+        "enum.Enum", "enum.IntEnum", "abc.ABC", "typing.NamedTuple", "typing.Protocol", "threading.Thread",
+    ]
+)  # fmt: skip
+
+LOGGING: Final = frozenset(
+    ["debug", "info", "warn", "warning", "error", "fatal", "critical", "get_logger", "exception", "log"]
+)
+
+
+def fact(qualified: str) -> Fact | None:
+    """Return what a function or class of a library does, None when it is nothing special."""
+    return FUNCTIONS.get(qualified)
+
+
+def scalar(qualified: str) -> bool:
+    """Tell whether a function returns a plain value, not an object that could be changed later."""
+    name = qualified.removeprefix("builtins.")
+    return name in SCALAR_FUNCTIONS or qualified.startswith(SCALAR_MODULES)

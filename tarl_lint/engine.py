@@ -1,0 +1,47 @@
+"""Modules and settings become flows and findings. Pure: the same files give the same answer everywhere."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+from tarl_lint.config import Config
+from tarl_lint.model import Finding, Flow
+from tarl_lint.rules import tarl101, tarl102
+from tarl_lint.source import Module
+from tarl_lint.taint import Tracer
+from tarl_lint.valueflow.link import Linker
+
+
+def analyse(modules: Sequence[Module], config: Config) -> tuple[Flow, ...]:
+    """Return every flow, sorted by publish call and subscription."""
+    return trace(modules, config)[1]
+
+
+def trace(modules: Sequence[Module], config: Config) -> tuple[Linker, tuple[Flow, ...]]:
+    """Return the flows and the machine that found them, which can be asked more."""
+    machine = Linker(sorted(modules, key=lambda m: m.path), config)
+    with _without_collection():
+        machine.link()
+        flows = Tracer(machine).flows()
+    return machine, flows
+
+
+def findings(flows: Sequence[Flow]) -> tuple[Finding, ...]:
+    """Return one finding per flow, at the publish call."""
+    return tuple(
+        tarl101.finding(flow) if flow.kind == "explicit" else tarl102.finding(flow) for flow in flows
+    )
+
+
+@contextmanager
+def _without_collection() -> Iterator[None]:
+    """Keep the garbage collector from walking the live trees again and again."""
+    active = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if active:
+            gc.enable()

@@ -1,0 +1,47 @@
+"""Modules by name: which file an import means, where several could be meant."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Iterable, Mapping
+
+from tarl_lint.source import Module
+
+
+class Index:
+    """The modules of one run by dotted name; a monorepo may have several of one name."""
+
+    def __init__(self, modules: Iterable[Module]) -> None:
+        self._by_name: dict[str, list[Module]] = {}
+        for module in modules:
+            for name in _names(module):
+                self._by_name.setdefault(name, []).append(module)
+
+    def find(self, name: str, importer: Module) -> Module | None:
+        """Return the module that `importer` means: of several, the one that shares most of its path."""
+        candidates = self._by_name.get(name, [])
+        if not candidates:
+            return None
+        return max(candidates, key=lambda m: (_shared(m.path, importer.path), m.path))
+
+    @property
+    def names(self) -> Mapping[str, list[Module]]:
+        """Return the modules by name."""
+        return self._by_name
+
+
+def _names(module: Module) -> list[str]:
+    """Return what a module may be imported as: its name, and its bare name beside it in a directory."""
+    bare = module.name.rpartition(".")[2]
+    return [module.name] if bare == module.name else [module.name, f"<beside>.{bare}"]
+
+
+def _shared(a: str, b: str) -> int:
+    """Count the leading directories that two paths have in common."""
+    pairs = zip(posixpath.dirname(a).split("/"), posixpath.dirname(b).split("/"), strict=False)
+    count = 0
+    for x, y in pairs:
+        if x != y:
+            break
+        count += 1
+    return count

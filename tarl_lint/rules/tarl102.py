@@ -1,0 +1,54 @@
+"""TARL102: a subscribed topic decides what, or whether, a node publishes.
+
+No data of the message is sent, but a condition on it chooses between constants or between publishing and
+not (an *implicit* flow). What merely comes after a loop does not depend on the loop, and the arrival of a
+message by itself decides nothing.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tarl_lint.model import Finding, Flow
+from tarl_lint.rules.wording import end
+
+CODE: Final = "TARL102"
+SUMMARY: Final = "a subscribed topic decides what, or whether, a node publishes"
+
+INVALID: Final = (
+    """
+    import rospy
+    from sensor_msgs.msg import Range
+    from std_msgs.msg import Bool
+
+    stop = rospy.Publisher("/stop", Bool, queue_size=1)
+
+    def on_range(msg):
+        if msg.range < 0.3:
+            stop.publish(True)
+
+    rospy.Subscriber("/range", Range, on_range)
+    """,
+)
+
+VALID: Final = (
+    """
+    import rospy
+    from sensor_msgs.msg import Range
+    from std_msgs.msg import Bool
+
+    alive = rospy.Publisher("/alive", Bool, queue_size=1)
+
+    def on_range(msg):
+        if msg.range < 0.3:
+            rospy.loginfo("near")
+        alive.publish(True)
+
+    rospy.Subscriber("/range", Range, on_range)
+    """,
+)
+
+
+def finding(flow: Flow) -> Finding:
+    """Return the note for a flow, at its publish call."""
+    return Finding(CODE, flow.sink.span, f"{end(flow.source)} decides on {end(flow.sink)}", flow)

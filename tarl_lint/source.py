@@ -1,0 +1,88 @@
+"""Bytes become a `Module`, or a `SourceError` that says why not: a bad file is a value, not an exception."""
+
+from __future__ import annotations
+
+import ast
+import io
+import re
+import tokenize
+import warnings
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Module:
+    """One Python file. `path` is as shown to people, `name` dotted from the nearest import root."""
+
+    path: str
+    name: str
+    text: str
+    tree: ast.Module
+    is_package: bool = False
+
+
+@dataclass(frozen=True)
+class SourceError:
+    """Why a file cannot be analysed: a sentence, and the line it is about."""
+
+    path: str
+    line: int
+    message: str
+
+
+PYTHON_2 = re.compile(
+    r"""^\s*(?: print\s+["'\w%(]           # print statement
+              | print\s*>>                 # print to a stream
+              | exec\s+["'\w]
+              | raise\s+[\w.]+\s*,         # raise Error, "text"
+              | except\s+[\w.()\s,]+,\s*\w+\s*:
+        )""",
+    re.VERBOSE | re.MULTILINE,
+)
+
+
+def parse(path: str, data: bytes, name: str) -> Module | SourceError:
+    """Decode as PEP 263 says and parse. Never raises."""
+    decoded = _decode(path, data)
+    if isinstance(decoded, SourceError):
+        return decoded
+    if "\0" in decoded:
+        line = decoded.count("\n", 0, decoded.index("\0")) + 1
+        return SourceError(path, line, "The file holds a null byte, so it is not Python source: leave it out.")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # invalid escapes and the like are another linter's business
+            tree = ast.parse(decoded)
+    except SyntaxError as error:
+        return _syntax_error(path, decoded, error)
+    except (RecursionError, MemoryError):
+        return SourceError(path, 1, "The code is nested too deeply to be parsed: split the expression.")
+    except ValueError as error:
+        return SourceError(path, 1, f"The file cannot be parsed: {error}.")
+    return Module(path, name, decoded, tree, path.rpartition("/")[2] == "__init__.py")
+
+
+def _decode(path: str, data: bytes) -> str | SourceError:
+    """Return the text with `\\n` line ends and without byte order mark."""
+    try:
+        encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
+        text = data.decode(encoding)
+    except SyntaxError as error:
+        return SourceError(path, 1, f"The encoding is not known: {error}. Save the file as UTF-8.")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        return SourceError(
+            path, line, f"The bytes are not valid {error.encoding}: name the encoding in the first line or save as UTF-8."
+        )
+    except LookupError as error:
+        return SourceError(path, 1, f"The encoding is not known: {error}. Save the file as UTF-8.")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _syntax_error(path: str, text: str, error: SyntaxError) -> SourceError:
+    """Say what is wrong, and whether it is Python 2 rather than a mistake."""
+    line = max(error.lineno or 1, 1)
+    if PYTHON_2.search(text):
+        return SourceError(path, line, "This is Python 2, which is not analysed: port the file to Python 3.")
+    reason = (error.msg or "invalid syntax").rstrip(".")
+    return SourceError(path, line, f"The file is not valid Python: {reason}.")

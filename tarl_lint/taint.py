@@ -1,0 +1,268 @@
+"""From sources to sinks: which pairs are flows, and through which statements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from tarl_lint.model import Dependence, Flow, Role, Sink, Source, Span, Step
+from tarl_lint.order import in_order
+from tarl_lint.valueflow.context import Surroundings
+from tarl_lint.valueflow.graph import Place
+from tarl_lint.valueflow.link import Linker
+from tarl_lint.valueflow.machine import SinkRecord, SourceRecord
+from tarl_lint.valueflow.sites import Text, Written
+
+ROLES: Mapping[str, Role] = {
+    "Return": "return",
+    "If": "condition",
+    "While": "condition",
+    "Try": "condition",
+    "Match": "condition",
+    "match_case": "condition",
+    "Assert": "condition",
+    "Expr": "call",
+}
+
+
+@dataclass(slots=True)
+class Reach:
+    """What a source reaches: by data alone, and in any way."""
+
+    data: set[int]
+    any: set[int]
+
+
+class Tracer:
+    """Finds the flows of a linked set of modules."""
+
+    def __init__(self, machine: Linker) -> None:
+        self.machine = machine
+        self.graph = machine.graph
+        self.texts = {path: Text(module) for path, module in machine.modules.items() if _involved(machine, path)}
+        self.surroundings = Surroundings(self.texts)
+        self.forward_data = _reversed(self.graph.data)
+        self.forward_control = _reversed(self.graph.control)
+
+    def flows(self) -> tuple[Flow, ...]:
+        """Return every flow, sorted by sink and source."""
+        found: list[Flow] = []
+        sources = [(self.source(r), r, self.reach(r)) for r in self.machine.sources.values()]
+        for record in self.machine.sinks.values():
+            sink = self.sink(record)
+            for source, origin, reach in sources:
+                flow = self.flow(source, origin, reach, sink, record)
+                if flow is not None:
+                    found.append(flow)
+        return tuple(sorted(found, key=lambda f: (f.sink.span, f.source.span)))
+
+    def reach(self, record: SourceRecord) -> Reach:
+        """Return what the messages of a source reach."""
+        data = closure(record.nodes, [self.forward_data])
+        return Reach(data, closure(record.nodes, [self.forward_data, self.forward_control]))
+
+    def flow(
+        self, source: Source, origin: SourceRecord, reach: Reach, sink: Sink, record: SinkRecord
+    ) -> Flow | None:
+        """Return the flow of a pair, None when nothing of the source reaches the sink."""
+        ends = record.nodes & reach.any
+        if not ends:
+            return None
+        explicit = bool(record.nodes & reach.data)
+        graph = self.graph
+        on_data = closure(record.nodes & reach.data, [graph.data], reach.data) if explicit else set()
+        on_any = closure(ends, [graph.data, graph.control], reach.any)
+        steps = self.steps(origin, on_data, on_any, record)
+        return Flow("explicit" if explicit else "implicit", source, sink, steps)
+
+    # --- steps --------------------------------------------------------------------------------------------
+
+    def steps(
+        self, origin: SourceRecord, on_data: set[int], on_any: set[int], record: SinkRecord
+    ) -> tuple[Step, ...]:
+        """Return the taint list: data and control steps of the nodes, and what is around them."""
+        dependence: dict[int, Dependence] = {}
+        written: dict[int, Written] = {}
+        statement_of: dict[int, int] = {}
+        for node in sorted(on_any):
+            found = self.statement(self.graph.places[node])
+            if found is None:
+                continue
+            key = id(found)
+            written[key] = found
+            statement_of[node] = key
+            if node in on_data:
+                dependence[key] = "data"
+            else:
+                dependence.setdefault(key, "control")
+        edges = self.edges(on_any, statement_of, written)
+        steps = {(self.graph.places[n].frame, k): written[k] for n, k in statement_of.items()}
+        context, outer = self.surroundings.context(origin, [(f, w) for (f, _), w in steps.items()])
+        for item in context:
+            if id(item) not in written:
+                written[id(item)] = item
+                dependence[id(item)] = "context"
+        registration = self.surroundings.registration(origin)
+        edges += outer + [(id(registration), a) for a in self.arrivals(origin)]
+        spans = {key: self.text_of(w).span(w) for key, w in written.items()}
+        order = in_order(spans, edges)
+        sinks = {id(w) for n in record.nodes if (w := self.statement(self.graph.places[n])) is not None}
+        return tuple(
+            self.step(written[k], spans[k], dependence[k], k in sinks, registration is written[k], origin)
+            for k in order
+        )
+
+    def statement(self, place: Place) -> Written | None:
+        """Return the statement that a node belongs to; of a message arriving, the callback's header."""
+        text = self.texts.get(place.frame.program.path)
+        if text is None:
+            return None
+        if place.statement is not None:
+            return text.statement(place.statement.pos)
+        return text.function(place.pos) if place.role == "receive" else None
+
+    def arrivals(self, origin: SourceRecord) -> list[int]:
+        """Return the steps at which messages of a source arrive."""
+        found = (self.statement(self.graph.places[n]) for n in sorted(origin.nodes))
+        return [id(w) for w in found if w is not None]
+
+    def edges(
+        self, nodes: Iterable[int], statement_of: Mapping[int, int], written: Mapping[int, Written]
+    ) -> list[tuple[int, int]]:
+        """Return which statement comes before which; what a loop carries to its next turn says nothing."""
+        found: dict[tuple[int, int], None] = {}
+        turns: list[tuple[int, int]] = []
+        function: dict[int, object] = {}
+        for node in sorted(nodes):
+            after = statement_of.get(node)
+            if after is None:
+                continue
+            function[after] = self.graph.places[node].frame.function
+            for former in sorted(self.graph.data[node] | self.graph.control[node]):
+                before = statement_of.get(former)
+                if before is None or before == after:
+                    continue
+                same = self.graph.places[former].frame.function is function[after]
+                if same and written[before].start > written[after].start:
+                    turns.append((before, after))
+                else:
+                    found[before, after] = None
+        return [*found, *_before_loops(found, turns, function)]
+
+    def step(
+        self, written: Written, span: Span, dependence: Dependence, sink: bool, registers: bool, origin: SourceRecord
+    ) -> Step:
+        """Return a statement as a step."""
+        text = self.text_of(written)
+        role = ROLES.get(type(written.node).__name__, "assign")
+        if id(written) in self.arrivals(origin):
+            role = "receive"
+        elif sink:
+            role = "publish"
+        elif registers:
+            role = "register"
+        elif written.qualname.endswith("<lambda>") and role == "assign":
+            role = "return"
+        elif type(written.node).__name__ in ("For", "AsyncFor") and dependence != "data":
+            role = "condition"
+        return Step(text.site(written), span, text.code(span), role, dependence)
+
+    def text_of(self, written: Written) -> Text:
+        """Return the text that a statement belongs to."""
+        return self.surroundings.text_of(written)
+
+    # --- ends ---------------------------------------------------------------------------------------------
+
+    def source(self, record: SourceRecord) -> Source:
+        """Return a source as others see it."""
+        topics = tuple(sorted(record.topics))
+        callback = ", ".join(sorted(record.callbacks))
+        name = ", ".join(topics) or f"line {record.pos[0]}"
+        return Source(
+            id=f"{record.module}:{record.qualname or '<module>'}:{name}:{callback or record.api}",
+            span=self._span(record.path, record.pos),
+            topics=topics,
+            type=" | ".join(sorted(record.types)),
+            callback=callback,
+            api=record.api,
+            registered=self._spans(record.registered or {(record.path, record.pos)}),
+            via=self._spans(record.via),
+            module=record.module,
+            qualname=record.qualname,
+        )
+
+    def sink(self, record: SinkRecord) -> Sink:
+        """Return a sink as others see it."""
+        topics = tuple(sorted(record.topics))
+        name = ", ".join(topics) or f"line {record.pos[0]}"
+        same = sorted(
+            r.pos for r in self.machine.sinks.values() if (r.module, r.qualname, r.topics) == _kin(record)
+        )
+        ordinal = f"#{same.index(record.pos) + 1}" if len(same) > 1 else ""
+        return Sink(
+            id=f"{record.module}:{record.qualname or '<module>'}:{name}{ordinal}",
+            span=self._span(record.path, record.pos),
+            topics=topics,
+            type=" | ".join(sorted(record.types)),
+            api=record.api,
+            module=record.module,
+            qualname=record.qualname,
+        )
+
+    def _span(self, path: str, pos: tuple[int, int, int, int]) -> Span:
+        return self.texts[path].stretch(pos)
+
+    def _spans(self, places: set[tuple[str, tuple[int, int, int, int]]]) -> tuple[Span, ...]:
+        return tuple(sorted(self._span(*p) for p in places))
+
+
+def _before_loops(
+    edges: Iterable[tuple[int, int]], turns: Iterable[tuple[int, int]], function: Mapping[int, object]
+) -> list[tuple[int, int]]:
+    """What a loop carries to its head was fed from outside the function before: that comes before the head."""
+    formers: dict[int, list[int]] = {}
+    for before, after in edges:
+        formers.setdefault(after, []).append(before)
+    found: list[tuple[int, int]] = []
+    for carried, head in turns:
+        seen, pending = {carried}, [carried]
+        while pending:
+            for before in formers.get(pending.pop(), ()):
+                if before not in seen:
+                    seen.add(before)
+                    pending.append(before)
+        found += [(s, head) for s in seen if function.get(s) is not function.get(head)]
+    return found
+
+
+def _kin(record: SinkRecord) -> tuple[str, str, set[str]]:
+    return record.module, record.qualname, record.topics
+
+
+def _involved(machine: Linker, path: str) -> bool:
+    """Texts are needed of files that some node belongs to."""
+    return bool(machine.sources) and bool(machine.sinks) and path in machine.modules
+
+
+def _reversed(edges: Sequence[set[int]]) -> list[list[int]]:
+    forward: list[list[int]] = [[] for _ in edges]
+    for node, formers in enumerate(edges):
+        for former in formers:
+            forward[former].append(node)
+    return forward
+
+
+def closure(
+    start: Iterable[int], tables: Sequence[Sequence[Iterable[int]]], within: set[int] | None = None
+) -> set[int]:
+    """Return all nodes reached from `start` along any of the tables, inside a set."""
+    found = set(start)
+    pending = list(found)
+    while pending:
+        node = pending.pop()
+        for table in tables:
+            for following in table[node]:
+                if following not in found and (within is None or following in within):
+                    found.add(following)
+                    pending.append(following)
+    return found

@@ -1,0 +1,79 @@
+"""What is around the steps of a flow: the registration, the `__main__` guard, loops around steps and calls."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping, Sequence
+
+from tarl_lint.valueflow.machine import SourceRecord
+from tarl_lint.valueflow.sites import Text, Written
+from tarl_lint.valueflow.values import Frame
+
+LOOPS = (ast.For, ast.AsyncFor, ast.While)
+
+
+class Surroundings:
+    """Finds context steps."""
+
+    def __init__(self, texts: Mapping[str, Text]) -> None:
+        self.texts = texts
+        self.owners: dict[int, Text] = {}
+        for text in texts.values():
+            for written in (*text.by_start.values(), *text.functions.values()):
+                self.owners[id(written)] = text
+
+    def text_of(self, written: Written) -> Text:
+        """Return the text that a statement belongs to."""
+        return self.owners[id(written)]
+
+    def registration(self, origin: SourceRecord) -> Written | None:
+        """Return the statement that subscribes."""
+        text = self.texts.get(origin.path)
+        return text.statement(origin.statement.pos) if text is not None else None
+
+    def context(
+        self, origin: SourceRecord, steps: Sequence[tuple[Frame, Written]]
+    ) -> tuple[list[Written], list[tuple[int, int]]]:
+        """Return the statements around the steps and the registration, and which step each comes before."""
+        found: dict[int, Written] = {}
+        edges: dict[tuple[int, int], None] = {}
+        registration = self.registration(origin)
+        if registration is not None:
+            found[id(registration)] = registration
+            self._around(registration, registration, found, edges)
+            self._callers(origin.frame, registration, found, edges)
+        for frame, written in steps:
+            self._around(written, written, found, edges)
+            self._callers(frame, written, found, edges)
+        return list(found.values()), list(edges)
+
+    def _callers(
+        self, frame: Frame, step: Written, found: dict[int, Written], edges: dict[tuple[int, int], None]
+    ) -> None:
+        current: Frame | None = frame
+        while current is not None and current.caller is not None and current.call is not None:
+            text = self.texts.get(current.caller.program.path)
+            call = text.statement(current.call.pos) if text is not None else None
+            if call is not None:
+                self._around(call, step, found, edges)
+            current = current.caller
+
+    def _around(
+        self, written: Written, step: Written, found: dict[int, Written], edges: dict[tuple[int, int], None]
+    ) -> None:
+        around, inner = written.around, step
+        while around is not None:
+            if isinstance(around.node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+                return
+            if isinstance(around.node, LOOPS) or is_main_guard(around.node):
+                found[id(around)] = around
+                edges[id(around), id(step)] = None
+                if inner is not step:
+                    edges[id(around), id(inner)] = None
+                inner = around
+            around = around.around
+
+
+def is_main_guard(node: ast.AST) -> bool:
+    """Tell whether a statement is `if __name__ == "__main__":`."""
+    return isinstance(node, ast.If) and any(isinstance(n, ast.Name) and n.id == "__name__" for n in ast.walk(node.test))

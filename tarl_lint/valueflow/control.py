@@ -1,0 +1,195 @@
+"""Control dependence inside one function, after Ferrante, Ottenstein and Warren (TOPLAS 1987).
+
+Termination-insensitive: what follows a loop does not depend on the loop's condition. Exceptions come only
+from `raise`. Sets of statements are bit masks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from tarl_lint.valueflow import ir
+
+Branch = tuple[int, str]  # number of the deciding statement, the way it went
+
+EXIT = 0
+
+
+@dataclass(slots=True)
+class Control:
+    """For each statement: the branches it directly depends on, and all that those depend on in turn."""
+
+    direct: Mapping[int, frozenset[Branch]]
+    closure: Mapping[int, frozenset[Branch]]
+    always: frozenset[int]  # statements that run whenever the function is entered
+
+
+@dataclass(slots=True)
+class _Graph:
+    """Control-flow edges: statement → its successors by the way that leads there."""
+
+    edges: dict[int, dict[str, int]] = field(default_factory=dict)
+
+    def link(self, source: int, way: str, target: int) -> None:
+        self.edges.setdefault(source, {})[way] = target
+
+
+@dataclass(frozen=True, slots=True)
+class _Exits:
+    """Where jumps lead from here."""
+
+    on_break: int = EXIT
+    on_continue: int = EXIT
+    on_raise: int = EXIT
+
+
+def control_dependence(body: Sequence[ir.Stmt]) -> Control:
+    """Return the control dependence of a function's statements."""
+    graph = _Graph()
+    entry = _block(graph, body, EXIT, _Exits())
+    order = _reachable(graph, entry)
+    after = _postdominators(graph, order)
+    direct = _direct(graph, order, after)
+    always = frozenset(n for n in order if after.get(entry, 0) >> n & 1)
+    return Control(direct, _closure(direct), always)
+
+
+def _block(graph: _Graph, body: Sequence[ir.Stmt], follow: int, exits: _Exits) -> int:
+    """Enter statements, last first; return the number of the first."""
+    for statement in reversed(body):
+        follow = _statement(graph, statement, follow, exits)
+    return follow
+
+
+def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
+    if isinstance(s, ir.If):
+        graph.link(s.id, "then", _block(graph, s.body, follow, exits))
+        graph.link(s.id, "else", _block(graph, s.orelse, follow, exits))
+    elif isinstance(s, ir.Loop):
+        inner = _Exits(follow, s.id, exits.on_raise)
+        graph.link(s.id, "body", _block(graph, s.body, s.id, inner))
+        if not s.endless:
+            graph.link(s.id, "done", _block(graph, s.orelse, follow, exits))
+        elif not _breaks(s.body):
+            graph.link(s.id, "never", EXIT)  # so that every statement reaches the exit
+    elif isinstance(s, ir.Try):
+        return _try(graph, s, follow, exits)
+    elif isinstance(s, ir.With):
+        graph.link(s.id, "", _block(graph, s.body, follow, exits))
+    elif isinstance(s, ir.Return):
+        graph.link(s.id, "", EXIT)
+    elif isinstance(s, ir.Raise):
+        graph.link(s.id, "", exits.on_raise)
+    elif isinstance(s, ir.Jump):
+        graph.link(s.id, "", exits.on_break if s.kind == "break" else exits.on_continue)
+    else:
+        graph.link(s.id, "", follow)
+    return s.id
+
+
+def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
+    """The statement itself chooses a handler: which one, nothing tells."""
+    after = _block(graph, s.final, follow, exits)
+    handlers = [_block(graph, body, after, exits) for _, _, body in s.handlers]
+    inner = _Exits(exits.on_break, exits.on_continue, handlers[0] if handlers else after)
+    orelse = _block(graph, s.orelse, after, exits)
+    graph.link(s.id, "body", _block(graph, s.body, orelse, inner))
+    for number, handler in enumerate(handlers):
+        graph.link(s.id, f"except {number}", handler)
+    return s.id
+
+
+def _breaks(body: Sequence[ir.Stmt]) -> bool:
+    """Tell whether a loop's body can leave the loop."""
+    for s in body:
+        if isinstance(s, (ir.Return, ir.Raise)) or (isinstance(s, ir.Jump) and s.kind == "break"):
+            return True
+        if isinstance(s, ir.Loop):
+            if _returns(s.body):
+                return True
+        elif any(_breaks(b) for b in _bodies(s)):
+            return True
+    return False
+
+
+def _returns(body: Sequence[ir.Stmt]) -> bool:
+    return any(
+        isinstance(s, (ir.Return, ir.Raise)) or any(_returns(b) for b in (*_bodies(s), *_loop_bodies(s)))
+        for s in body
+    )
+
+
+def _loop_bodies(s: ir.Stmt) -> tuple[Sequence[ir.Stmt], ...]:
+    return (s.body, s.orelse) if isinstance(s, ir.Loop) else ()
+
+
+def _bodies(s: ir.Stmt) -> tuple[Sequence[ir.Stmt], ...]:
+    """Return the blocks inside a statement that is not a loop."""
+    if isinstance(s, ir.If):
+        return (s.body, s.orelse)
+    if isinstance(s, ir.With):
+        return (s.body,)
+    if isinstance(s, ir.Try):
+        return (s.body, s.orelse, s.final, *(body for _, _, body in s.handlers))
+    return ()
+
+
+def _reachable(graph: _Graph, entry: int) -> list[int]:
+    """Return the statements in depth-first order from the entry."""
+    seen: dict[int, None] = {}
+    pending = [entry]
+    while pending:
+        node = pending.pop()
+        if node != EXIT and node not in seen:
+            seen[node] = None
+            pending.extend(graph.edges.get(node, {}).values())
+    return list(seen)
+
+
+def _postdominators(graph: _Graph, order: Sequence[int]) -> dict[int, int]:
+    """Return for each statement the mask of those that every way to the exit passes, itself included."""
+    everything = 1
+    for node in order:
+        everything |= 1 << node
+    after = dict.fromkeys(order, everything)
+    after[EXIT] = 1
+    changed = True
+    while changed:
+        changed = False
+        for node in reversed(order):
+            common = everything
+            for target in graph.edges[node].values():
+                common &= after[target]
+            common |= 1 << node
+            if common != after[node]:
+                after[node], changed = common, True
+    return after
+
+
+def _direct(graph: _Graph, order: Sequence[int], after: Mapping[int, int]) -> dict[int, frozenset[Branch]]:
+    """Statement n depends on branch (a, b) when n follows every way from b but not every way from a."""
+    found: dict[int, set[Branch]] = {n: set() for n in order}
+    for node in order:
+        ways = graph.edges[node]
+        if len(ways) < 2:
+            continue
+        strict = after[node] & ~(1 << node)
+        for way, target in ways.items():
+            mask = after[target] & ~strict
+            for dependent in order:
+                if mask >> dependent & 1:
+                    found[dependent].add((node, way))
+    return {n: frozenset(branches) for n, branches in found.items()}
+
+
+def _closure(direct: Mapping[int, frozenset[Branch]]) -> dict[int, frozenset[Branch]]:
+    closed = dict(direct)
+    changed = True
+    while changed:
+        changed = False
+        for node, branches in closed.items():
+            wider = branches.union(*(closed[b[0]] for b in branches)) if branches else branches
+            if wider != branches:
+                closed[node], changed = wider, True
+    return closed

@@ -1,0 +1,100 @@
+"""The value-flow graph: nodes are values that statements make, edges say what each is made from."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable
+from dataclasses import dataclass, field
+
+from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.values import Branches, Frame, Nodes
+
+
+@dataclass(slots=True)
+class Place:
+    """Where a node belongs: a statement in an activation; no statement for a message arriving."""
+
+    frame: Frame
+    statement: ir.Stmt | None
+    role: str
+    pos: ir.Pos
+
+
+@dataclass(slots=True)
+class Graph:
+    """Edges lead backwards, from a node to what it depends on.
+
+    `held[c]` holds the nodes that were inside an object when `c` passed the object on; so a value read
+    out of it later is known to have come that way.
+    """
+
+    places: list[Place] = field(default_factory=list)
+    data: list[set[int]] = field(default_factory=list)
+    control: list[set[int]] = field(default_factory=list)
+    branches: list[Branches] = field(default_factory=list)
+    held: dict[int, set[int]] = field(default_factory=dict)
+    numbers: dict[Hashable, int] = field(default_factory=dict)
+    literals: dict[int, tuple[object, ir.Pos, str]] = field(default_factory=dict)  # node → constant it is
+    copies: set[int] = field(default_factory=set)  # nodes that pass on their only input unchanged
+    walking: set[int] = field(default_factory=set)  # carriers being followed upwards
+
+    def node(self, key: Hashable, place: Place, branches: Branches) -> int:
+        """Return the node with this key, made at the first time."""
+        number = self.numbers.get(key)
+        if number is None:
+            number = self.numbers[key] = len(self.places)
+            self.places.append(place)
+            self.data.append(set())
+            self.control.append(set())
+            self.branches.append(branches)
+        return number
+
+    def flow(self, deps: Iterable[int], node: int) -> None:
+        """Let data of `deps` reach `node`, and the choice that was made for them."""
+        edges = self.data[node]
+        mine = self.branches[node]
+        for dep in deps:
+            if dep in edges or dep == node:
+                continue
+            edges.add(dep)
+            theirs = self.branches[dep]
+            if theirs and not theirs <= mine:
+                self._choose(dep, theirs - mine, node)
+
+    def _choose(self, dep: int, choice: Branches, node: int) -> None:
+        """Say that which value arrives at `node` was decided by conditions that `node` is not under."""
+        gate = self.node((dep, choice), self.places[dep], self.branches[node])
+        self.control[gate].update(branch[0] for branch in choice)
+        self.control[node].add(gate)
+
+    def through(self, content: Nodes, carriers: Nodes) -> Nodes:
+        """Return content as it arrives through pointers that the carriers passed on.
+
+        Where a carrier passed the object when the content was already inside, a node of the carrier
+        stands between.
+        """
+        if not content or not carriers:
+            return content
+        found: set[int] = set()
+        for item in content:
+            hits = [c for c in carriers if item in self.held.get(c, ())]
+            if not hits:
+                found.add(item)
+            for carrier in hits:
+                found.add(self._carry(carrier, item))
+        return frozenset(found)
+
+    def _carry(self, carrier: int, item: int) -> int:
+        """Return the node of `item` being passed on inside an object by `carrier`."""
+        if carrier == item:
+            return item
+        node = self.node(("carry", carrier, item), self.places[carrier], self.branches[carrier])
+        if node not in self.walking:
+            self.walking.add(node)
+            self.flow(self.through(frozenset([item]), frozenset(self.data[carrier])), node)
+            self.walking.discard(node)
+        return node
+
+    def hold(self, carrier: int, content: Nodes) -> None:
+        """Remember what was inside an object when `carrier` passed it on."""
+        if content:
+            self.held.setdefault(carrier, set()).update(content)

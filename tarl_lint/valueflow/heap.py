@@ -1,0 +1,288 @@
+"""Objects: their fields, what is inside them, and new ones."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+
+from tarl_lint.valueflow.machine import Machine
+from tarl_lint.valueflow.values import (
+    ABSENT,
+    BOTTOM,
+    NONE,
+    ClassInfo,
+    Frame,
+    Nodes,
+    Obj,
+    Value,
+    join,
+    lineage,
+    pointer,
+)
+
+ANY = "*"  # the field that stands for all elements
+HOLLOW = frozenset(["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super"])
+MAX_NESTING = 7
+
+
+def item_field(constant: object) -> str:
+    """Return the field that a constant index or key stands for."""
+    return f"[{constant!r}]"
+
+
+class Heap(Machine):
+    """Reads and writes fields."""
+
+    def intern(self, kind: str, key: Hashable, name: str = "") -> Obj:
+        """Return the object with this key, made at the first time."""
+        found = self.objects.get((kind, key))
+        if found is None:
+            found = self.objects[kind, key] = Obj(kind, key, name)
+        return found
+
+    def allocate(self, kind: str, frame: Frame, slot: Hashable) -> Obj:
+        """Return the newest object of an allocation site; what it stood for until now becomes the older ones."""
+        statement = frame.statement
+        key = (frame.id, statement.id if statement is not None else -1, slot)
+        obj = self.objects.get((kind, key))
+        if obj is None:
+            obj = self.objects[kind, key] = Obj(kind, key)
+            return obj
+        if kind == "lib" and obj.fields:
+            self._age(obj)
+        self._clear(obj)
+        return obj
+
+    def _age(self, obj: Obj) -> None:
+        """Where the former object is still held, let it be one of the older ones."""
+        holders = [k for k in obj.holders if k[0] is not obj and self._holds(k, obj)]
+        if not holders:
+            return
+        older = self.objects.get(("lib", (obj.key, "older")))
+        if older is None:
+            older = self.objects["lib", (obj.key, "older")] = Obj("lib", (obj.key, "older"))
+            older.many = True
+        self._copy_fields(obj, older)
+        for key in holders:
+            value = self.store.get(key)
+            if value is not None:
+                self.store.put(key, Value(value.deps, (value.pts - {obj}) | {older}, value.consts))
+
+    def _holds(self, key: tuple[Obj, str], obj: Obj) -> bool:
+        value = self.store.get(key)
+        return value is not None and obj in value.pts
+
+    def _copy_fields(self, obj: Obj, older: Obj, depth: int = 0) -> None:
+        for name in list(obj.fields):
+            value = self.store.get((obj, name))
+            if value is not None:
+                before = self.store.get((older, name))
+                self.store.put((older, name), value if before is None else join(before, value))
+        if depth < MAX_NESTING:
+            for name, sub in list(obj.subs.items()):
+                self._copy_fields(sub, older.sub(name), depth + 1)
+
+    def _clear(self, obj: Obj, depth: int = 0) -> None:
+        for name in list(obj.fields):
+            self.store.put((obj, name), ABSENT)
+        if depth < MAX_NESTING:
+            for sub in list(obj.subs.values()):
+                if sub is not obj:
+                    self._clear(sub, depth + 1)
+
+    # --- reading ------------------------------------------------------------------------------------------
+
+    def content(self, obj: Obj) -> Value:
+        """Return what any element or unknown field of an object may be."""
+        own = self.store.get((obj, ANY))
+        if own is not None:
+            return own
+        if obj.parent is not None:
+            outer = self.content(obj.parent)
+            return Value(outer.deps) if outer is not BOTTOM else BOTTOM
+        if obj.kind == "message" and isinstance(obj.info, int):
+            return Value(frozenset([obj.info]))
+        return BOTTOM
+
+    def read_field(self, obj: Obj, name: str) -> Value:
+        """Return what a field of one object may be."""
+        stored = self.store.get((obj, name))
+        if stored is not None:
+            if obj.root().kind == "message" and not self._written_here(obj, name):
+                return join(stored, pointer(obj.sub(name)))  # each message brings its own
+            return stored
+        return self.default(obj, name)
+
+    def _written_here(self, obj: Obj, name: str) -> bool:
+        return any((obj, name) in layer for layer in self.store.layers)
+
+    def default(self, obj: Obj, name: str) -> Value:
+        """Return what a field is to which nothing was stored."""
+        kind = obj.kind
+        if kind in ("message", "lib"):
+            content = self.content(obj)
+            if content.pts and name.startswith("["):
+                return content
+            return pointer(obj.sub(name))
+        if kind in ("sequence", "mapping"):
+            return self.content(obj) if name.startswith("[") else BOTTOM
+        if kind == "instance" and isinstance(obj.info, Obj):
+            return self._inherited(obj, obj.info, name)
+        if kind == "class":
+            return self._class_field(obj, name)
+        if kind == "ext":
+            return pointer(self.intern("ext", f"{obj.name}.{name}", f"{obj.name}.{name}"))
+        if kind == "module":
+            return self._opened(obj, name)
+        return BOTTOM
+
+    def _inherited(self, obj: Obj, cls: Obj, name: str) -> Value:
+        """Return a class attribute seen through an instance: functions become bound methods."""
+        for owner in lineage(cls):
+            value = self.store.get((owner, name))
+            if value is not None:
+                return self.bind(value, obj, owner)
+        if isinstance(cls.info, ClassInfo) and cls.info.opaque and not name.startswith("["):
+            holder = self.intern("lib", ("inherited", obj.key, name), name)
+            return pointer(holder)
+        return self.content(obj) if name.startswith("[") else BOTTOM
+
+    def bind(self, value: Value, receiver: Obj, owner: Obj) -> Value:
+        """Return a value with its functions bound to a receiver."""
+        if not any(o.kind == "closure" for o in value.pts):
+            return value
+        bound = []
+        for target in value.pts:
+            if target.kind != "closure":
+                bound.append(target)
+                continue
+            method = self.intern("bound", (target.key, receiver), target.name)
+            method.info = (target, receiver, owner)
+            bound.append(method)
+        return Value(value.deps, frozenset(bound), value.consts)
+
+    def _class_field(self, cls: Obj, name: str) -> Value:
+        for owner in lineage(cls)[1:]:
+            value = self.store.get((owner, name))
+            if value is not None:
+                return value
+        return BOTTOM
+
+    def _opened(self, module: Obj, name: str) -> Value:
+        """Return a name of a module that came in through `import *`."""
+        result = BOTTOM
+        program = self.programs.get(module.name)
+        if program is None:
+            return result
+        for star in program.stars:
+            target = self.module_objects.get(star)
+            if target is not None and target is not module:
+                value = self.store.get((target, name))
+                if value is not None:
+                    result = join(result, value)
+        return result
+
+    def read_any(self, obj: Obj) -> Value:
+        """Return what any element of an object may be."""
+        result = self.content(obj)
+        for name in list(obj.fields):
+            if name.startswith("["):
+                value = self.store.get((obj, name))
+                if value is not None:
+                    result = join(result, value)
+        if obj.kind in ("message", "lib") and not result.pts:
+            result = join(result, pointer(obj.sub("[]")))
+            result = Value(NONE, result.pts) if result.deps == self.content(obj).deps else result
+        return result
+
+    def read(self, base: Value, name: str) -> Value:
+        """Return a field read through a pointer, as it arrives through all who passed the pointer on."""
+        result = Value(base.deps, consts=frozenset())
+        for obj in base.pts:
+            value = self.read_field(obj, name)
+            result = join(result, self.arrive(value, base.deps))
+        return result if base.pts else Value(base.deps)
+
+    def arrive(self, value: Value, carriers: Nodes) -> Value:
+        """Return a field's value with the carriers of the pointer it was read through."""
+        deps = self.graph.through(value.deps, carriers) | carriers
+        return Value(deps, value.pts, value.consts)
+
+    def deep(self, objects: frozenset[Obj]) -> Nodes:
+        """Return all nodes whose data is inside objects."""
+        found: set[int] = set()
+        seen: set[Obj] = set()
+        for obj in objects:
+            self._deep(obj, found, seen, 0)
+        return frozenset(found)
+
+    def _deep(self, obj: Obj, found: set[int], seen: set[Obj], depth: int) -> None:
+        if obj in seen or depth > MAX_NESTING or obj.kind in HOLLOW or self._node_like(obj):
+            return
+        seen.add(obj)
+        found |= self.content(obj).deps
+        for name in list(obj.fields):
+            value = self.store.get((obj, name))
+            if value is None:
+                continue
+            found |= value.deps
+            if value.pts:
+                inner: set[int] = set()
+                for target in value.pts:
+                    self._deep(target, inner, seen, depth + 1)
+                found |= self.graph.through(frozenset(inner), value.deps)
+        for name, sub in list(obj.subs.items()):
+            if sub is not obj and self.store.get((obj, name)) is None:
+                self._deep(sub, found, seen, depth + 1)
+
+    def _node_like(self, obj: Obj) -> bool:
+        """Tell whether an object is a program rather than data: passing it on passes no data."""
+        if obj.kind != "instance" or not isinstance(obj.info, Obj):
+            return False
+        info = obj.info.info
+        if any(f.fields.get("self", 1) is None and self._is_self(f, obj) for f in self.stack):
+            return True
+        return isinstance(info, ClassInfo) and info.opaque
+
+    def _is_self(self, frame: Frame, obj: Obj) -> bool:
+        value = self.store.get((frame, "self"))
+        return value is not None and obj in value.pts
+
+    # --- writing ------------------------------------------------------------------------------------------
+
+    def write_field(self, base: Value, name: str, value: Value) -> None:
+        """Store into a field; for certain when there is only one object that it can be."""
+        certain = len(base.pts) == 1
+        for obj in base.pts:
+            if obj.kind in ("closure", "bound", "ext", "method"):
+                continue
+            if certain and not obj.many:
+                self.store.put((obj, name), value)
+            else:
+                self.weaken(obj, name, value)
+
+    def weaken(self, obj: Obj, name: str, value: Value) -> None:
+        """Store into a field of one of several objects."""
+        before = self.store.get((obj, name))
+        if before is None:
+            before = self.default(obj, name)
+        self.store.put((obj, name), join(before, value))
+
+    def add_element(self, base: Value, value: Value) -> None:
+        """Store into an element that is not known."""
+        for obj in base.pts:
+            if obj.kind in HOLLOW:
+                continue
+            before = self.content(obj)
+            self.store.put((obj, ANY), join(before, value))
+            for name in list(obj.fields):
+                if name.startswith("["):
+                    known = self.store.get((obj, name))
+                    if known is not None:
+                        self.store.put((obj, name), join(known, value))
+
+    def write_item(self, base: Value, index: Value, value: Value) -> None:
+        """Store into an element."""
+        if index.consts is None or not index.consts or len(index.consts) > 1:
+            self.add_element(base, value)
+            return
+        self.write_field(base, item_field(next(iter(index.consts))), value)

@@ -1,0 +1,329 @@
+"""The compact form that functions are lowered to: few kinds of statements and expressions, names resolved."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal, Union
+
+Pos = tuple[int, int, int, int]  # line, column, end line, end column as `ast` counts them
+Scope = Literal["local", "free", "global"]
+FunctionNode = Union[ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda]
+
+
+@dataclass(slots=True, eq=False)
+class Const:
+    """A literal, also a signed one."""
+
+    value: object
+    pos: Pos
+
+
+@dataclass(slots=True, eq=False)
+class Name:
+    """A variable; `level` counts the enclosing functions to walk up when it is free."""
+
+    name: str
+    scope: Scope
+    level: int
+    pos: Pos
+
+
+@dataclass(slots=True, eq=False)
+class Attribute:
+    """`base.name`."""
+
+    base: Expr
+    name: str
+    pos: Pos
+    slot: int = 0
+
+
+@dataclass(slots=True, eq=False)
+class Item:
+    """`base[index]`."""
+
+    base: Expr
+    index: Expr
+    pos: Pos
+
+
+@dataclass(slots=True, eq=False)
+class Slice:
+    """`lower:upper:step`, and what else selects several elements."""
+
+    parts: Sequence[Expr]
+    pos: Pos
+
+
+@dataclass(slots=True, eq=False)
+class Call:
+    """A call; keyword None stands for `**`."""
+
+    function: Expr
+    arguments: Sequence[Expr]
+    keywords: Sequence[tuple[str | None, Expr]]
+    pos: Pos
+    slot: int
+
+
+@dataclass(slots=True, eq=False)
+class Operation:
+    """Any operator: the result holds data of all parts. `operator` names those that are folded."""
+
+    operator: str
+    parts: Sequence[Expr]
+    pos: Pos
+
+
+@dataclass(slots=True, eq=False)
+class Choice:
+    """`then if test else other`."""
+
+    test: Expr
+    then: Expr
+    other: Expr
+    pos: Pos
+    slot: int
+
+
+@dataclass(slots=True, eq=False)
+class Sequence_:
+    """A tuple, list or set display."""
+
+    items: Sequence[Expr]
+    pos: Pos
+    slot: int
+
+
+@dataclass(slots=True, eq=False)
+class Mapping_:
+    """A dict display; key None stands for `**`."""
+
+    items: Sequence[tuple[Expr | None, Expr]]
+    pos: Pos
+    slot: int
+
+
+@dataclass(slots=True, eq=False)
+class Comprehension:
+    """List, set, dict comprehension or generator expression; a dict yields its values."""
+
+    loops: Sequence[tuple[Expr, Expr, Sequence[Expr]]]
+    key: Expr | None
+    element: Expr
+    pos: Pos
+    slot: int
+
+
+@dataclass(slots=True, eq=False)
+class Starred:
+    """`*value` among arguments, elements or targets."""
+
+    value: Expr
+    pos: Pos
+
+
+@dataclass(slots=True, eq=False)
+class Walrus:
+    """`(target := value)`."""
+
+    target: Expr
+    value: Expr
+    pos: Pos
+    slot: int
+
+
+@dataclass(slots=True, eq=False)
+class Yield:
+    """`yield value`, `yield from value` and `await value`."""
+
+    value: Expr
+    kind: Literal["yield", "from", "await"]
+    pos: Pos
+
+
+@dataclass(slots=True, eq=False)
+class Parameter:
+    """One parameter; `default` is lowered in the scope around the function."""
+
+    name: str
+    kind: Literal["plain", "star", "keyword", "mapping"]
+    default: Expr | None = None
+
+
+@dataclass(slots=True, eq=False)
+class Function:
+    """A function or lambda. Its body is lowered when it is first called."""
+
+    name: str
+    qualname: str
+    parameters: Sequence[Parameter]
+    decorators: Sequence[Expr]
+    node: FunctionNode
+    module: str
+    scope: object
+    pos: Pos
+    body: Sequence[Stmt] | None = None
+    control: object = None
+    generator: bool = False
+
+
+@dataclass(slots=True, eq=False)
+class Lambda:
+    """A lambda where it is written."""
+
+    function: Function
+    pos: Pos
+    slot: int
+
+
+Expr = Union[
+    Const,
+    Name,
+    Attribute,
+    Item,
+    Slice,
+    Call,
+    Operation,
+    Choice,
+    Sequence_,
+    Mapping_,
+    Comprehension,
+    Starred,
+    Walrus,
+    Yield,
+    Lambda,
+]
+
+
+@dataclass(slots=True, eq=False)
+class Stmt:
+    """What all statements have: a number within their function and the position of their header's first part."""
+
+    id: int
+    pos: Pos
+
+
+@dataclass(slots=True, eq=False)
+class Assign(Stmt):
+    """Assignment; `augmented` when the value already holds the target's former value."""
+
+    targets: Sequence[Expr]
+    value: Expr
+    augmented: bool = False
+
+
+@dataclass(slots=True, eq=False)
+class Evaluate(Stmt):
+    """An expression for its effect."""
+
+    value: Expr
+
+
+@dataclass(slots=True, eq=False)
+class If(Stmt):
+    """`if`, one arm of `match`, `assert` (whose arm raises)."""
+
+    test: Expr
+    body: Sequence[Stmt]
+    orelse: Sequence[Stmt] = ()
+
+
+@dataclass(slots=True, eq=False)
+class Loop(Stmt):
+    """`while test` (without target) or `for target in source`."""
+
+    source: Expr
+    target: Expr | None
+    body: Sequence[Stmt]
+    orelse: Sequence[Stmt]
+    endless: bool = False
+
+
+@dataclass(slots=True, eq=False)
+class Try(Stmt):
+    """`try` with its handlers: (types, name to bind, body)."""
+
+    body: Sequence[Stmt]
+    handlers: Sequence[tuple[Expr | None, Name | None, Sequence[Stmt]]]
+    orelse: Sequence[Stmt]
+    final: Sequence[Stmt]
+
+
+@dataclass(slots=True, eq=False)
+class With(Stmt):
+    """`with`: (context expression, target) and the body."""
+
+    items: Sequence[tuple[Expr, Expr | None]]
+    body: Sequence[Stmt]
+
+
+@dataclass(slots=True, eq=False)
+class Return(Stmt):
+    """`return`, also the body of a lambda."""
+
+    value: Expr | None
+
+
+@dataclass(slots=True, eq=False)
+class Raise(Stmt):
+    """`raise`."""
+
+    value: Expr | None
+
+
+@dataclass(slots=True, eq=False)
+class Jump(Stmt):
+    """`break` or `continue`."""
+
+    kind: Literal["break", "continue"]
+
+
+@dataclass(slots=True, eq=False)
+class Define(Stmt):
+    """`def`, bound to its name."""
+
+    target: Expr
+    function: Function
+
+
+@dataclass(slots=True, eq=False)
+class Class(Stmt):
+    """`class`: its body runs with the class as its frame."""
+
+    target: Expr
+    name: str
+    qualname: str
+    bases: Sequence[Expr]
+    body: Sequence[Stmt]
+    decorators: Sequence[Expr] = ()
+    fields: tuple[str, ...] = ()  # names annotated in the body
+    control: object = None
+
+
+@dataclass(slots=True, eq=False)
+class Import(Stmt):
+    """Bindings (target, dotted module, member or None); a member `*` binds nothing but opens the module."""
+
+    bindings: Sequence[tuple[Expr | None, str, str | None]]
+
+
+@dataclass(slots=True, eq=False)
+class Delete(Stmt):
+    """`del`."""
+
+    targets: Sequence[Expr]
+
+
+@dataclass(slots=True, eq=False)
+class Program:
+    """A module's lowered top level; bodies of functions follow on demand."""
+
+    name: str
+    path: str
+    body: Sequence[Stmt]
+    function: Function
+    package: str = ""
+    stars: list[str] = field(default_factory=list)

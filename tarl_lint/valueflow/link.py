@@ -1,0 +1,277 @@
+"""The whole set of modules: imports, and everything that runs on its own until nothing new is stored."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator, Sequence
+
+from tarl_lint import catalog
+from tarl_lint.config import Config
+from tarl_lint.source import Module
+from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.calls import ROOT_CALL
+from tarl_lint.valueflow.execute import Execution
+from tarl_lint.valueflow.lower import lower_module
+from tarl_lint.valueflow.store import Root, Store
+from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, ClassInfo, Frame, Obj, Value, join, lineage, pointer
+
+MAX_ROUNDS = 12
+STARTS = frozenset(["init_node", "init", "create_node", "spin", "Subscriber", "create_subscription"])
+
+
+class Linker(Execution):
+    """Runs modules, then callbacks, timers, threads and main functions, until the shared memory is stable."""
+
+    def __init__(self, modules: Sequence[Module], config: Config) -> None:
+        super().__init__(modules, config)
+        self.pending: dict[Root, None] = {}
+        for module in modules:
+            program = lower_module(module)
+            key = module.name if module.name not in self.programs else module.path
+            program.name = key
+            self.programs[key] = program
+            self.module_objects[key] = Obj("module", key, key)
+
+    def link(self) -> None:
+        """Run everything to the fixed point."""
+        for program in self.programs.values():
+            self._module_root(program)
+        self._settle()
+        for _ in range(3):
+            before = len(self.roots)
+            self._mains()
+            self._settle()
+            self._frameworks()
+            self._settle()
+            if len(self.roots) == before:
+                break
+
+    def replay(self) -> None:
+        """Run every root once more, for a probe that looks on."""
+        for root, run in list(self.roots.values()):
+            self._run(root, run)
+
+    # --- roots --------------------------------------------------------------------------------------------
+
+    def add_root(self, root: Root, run: Callable[[Root], None]) -> None:
+        """Have something run on its own; seen again, its arguments may be news."""
+        known = self.roots.get(root.key)
+        if known is None:
+            self.roots[root.key] = (root, run)
+            self.pending[root] = None
+        else:
+            self.roots[root.key] = (known[0], run)
+
+    def _settle(self) -> None:
+        for _ in range(MAX_ROUNDS):
+            batch = list(self.pending)
+            if not batch:
+                return
+            self.pending.clear()
+            for root in batch:
+                self._run(root, self.roots[root.key][1])
+                for news in self.shared.dirty:
+                    self.pending[news] = None
+                self.shared.dirty.clear()
+
+    def _run(self, root: Root, run: Callable[[Root], None]) -> None:
+        self.pending.pop(root, None)
+        self.store = Store(self.shared, root)
+        self.stack = []
+        run(root)
+        for key in self.store.own():
+            value = self._at_end(key)
+            if value is not None:
+                self.shared.leave(self.shared.ends, root, key, value)
+
+    def _at_end(self, key: tuple[Obj, str]) -> Value | None:
+        for layer in reversed(self.store.layers):
+            if key in layer:
+                value = layer[key]
+                if value is ABSENT:
+                    value = BOTTOM if key[1] == "*" else self.default(*key)
+                    return None if value is BOTTOM else value
+                return value
+        return None
+
+    def wait(self, frame: Frame) -> None:
+        """Let other roots see what was stored, and store what they may."""
+        root = self.store.root
+        for key in list(self.store.own()):
+            value = self.store.get(key)
+            if value is None:
+                continue
+            self.shared.leave(self.shared.pauses, root, key, value)
+            news = self.shared.others(key, root)
+            if news is not None:
+                both = join(value, news)
+                if both is not value:
+                    self.store.put(key, both)
+
+    def root_frame(self, root: Root) -> Frame:
+        """Return the frame that stands for ROS itself, calling."""
+        key = ("root", root.key)
+        frame = self.frames.get(key)
+        if frame is None:
+            program = next(iter(self.programs.values()))
+            frame = Frame(key, len(self.frames) + 1, program.function, program, self.module_objects[program.name])
+            self.frames[key] = frame
+        frame.root_waits = root.once
+        return frame
+
+    def _module_root(self, program: ir.Program) -> None:
+        root = Root(("module", program.path), "module", program.name, once=True)
+
+        def run(root: Root) -> None:
+            key = ("module", program.path)
+            frame = self.frames.get(key)
+            if frame is None:
+                module = self.module_objects[program.name]
+                frame = Frame(key, len(self.frames) + 1, program.function, program, module)
+                self.frames[key] = frame
+            frame.root_waits = True
+            self.stack.append(frame)
+            self.run(frame)
+
+        self.add_root(root, run)
+
+    # --- what nothing in the files calls -------------------------------------------------------------------
+
+    def _mains(self) -> None:
+        """Run functions and make nodes that are there to be started from outside (entry points)."""
+        for program in list(self.programs.values()):
+            module = self.module_objects[program.name]
+            for statement in _definitions(program.body):
+                if isinstance(statement, ir.Define):
+                    self._main_function(statement, module)
+                else:
+                    self._node_class(statement, program)
+
+    def _main_function(self, statement: ir.Define, module: Obj) -> None:
+        function = statement.function
+        if (function.module, function.pos[0]) in self.called or not _starts_node(function):
+            return
+        for obj in self._values(module, function.name):
+            if obj.kind == "closure":
+                self._start(obj, "main")
+
+    def _values(self, holder: Obj, name: str) -> list[Obj]:
+        owners = self.shared.ends.get((holder, name), {})
+        return sorted({o for v in owners.values() for o in v.pts}, key=lambda o: str(o.key))
+
+    def _start(self, target: Obj, kind: str) -> None:
+        root = Root((kind, target.kind, target.key), kind, target.name, once=True)
+
+        def run(root: Root) -> None:
+            self.call_object(target, ([], {}), self.root_frame(root), ROOT_CALL)
+
+        self.add_root(root, run)
+
+    def _node_class(self, statement: ir.Class, program: ir.Program) -> None:
+        """Make an instance of a class that registers something and that nothing instantiates."""
+        for cls in self._values(self.module_objects[program.name], statement.name):
+            if cls.kind != "class" or cls.key in self.made or self._has_made_heir(cls):
+                continue
+            if _registers(statement):
+                self._start(cls, "node")
+
+    def _has_made_heir(self, cls: Obj) -> bool:
+        return any(
+            obj.kind == "class" and obj.key in self.made and cls in lineage(obj) for obj in self.objects.values()
+        )
+
+    def _frameworks(self) -> None:
+        """Run methods that a base class of a library may call: nothing in the files tells when."""
+        for obj in list(self.objects.values()):
+            if obj.kind != "instance" or not isinstance(obj.info, Obj):
+                continue
+            for owner in lineage(obj.info):
+                if isinstance(owner.info, ClassInfo) and owner.info.statement is not None:
+                    self._framework_methods(obj, owner, owner.info)
+
+    def _framework_methods(self, obj: Obj, owner: Obj, info: ClassInfo) -> None:
+        cls = obj.info.info if isinstance(obj.info, Obj) else None
+        external = _external(cls) if isinstance(cls, ClassInfo) else set()
+        unknown = external - catalog.NODE_BASES
+        for statement in info.statement.body if info.statement is not None else ():
+            if not isinstance(statement, ir.Define):
+                continue
+            name, function = statement.function.name, statement.function
+            hooked = (unknown and not name.startswith("_")) or (external and name.startswith("on_"))
+            hooked = hooked or (name == "run" and any("Thread" in e for e in external))
+            if not hooked or (function.module, function.pos[0]) in self.called:
+                continue
+            for closure in self._values(owner, name):
+                if closure.kind == "closure":
+                    self._start_method(closure, obj, owner)
+
+    def _start_method(self, closure: Obj, obj: Obj, owner: Obj) -> None:
+        method = self.intern("bound", (closure.key, obj), closure.name)
+        method.info = (closure, obj, owner)
+        self.call_when("framework", method, [], "callback")
+
+    # --- imports ------------------------------------------------------------------------------------------
+
+    def imported(self, module: str, member: str | None, importer: object) -> Value:
+        """Return what an import binds: a module of ours, a name in one, or something of a library."""
+        assert isinstance(importer, Module)  # noqa: S101 - what execute passes
+        found = self._module(module, importer)
+        if member is None:
+            return found if found is not None else self.external(module)
+        if found is not None:
+            for obj in found.pts:
+                value = self.store.get((obj, member))
+                if value is None:
+                    value = self._opened(obj, member)
+                if value is not BOTTOM:
+                    return value
+        inner = self._module(f"{module}.{member}" if module else member, importer)
+        if inner is not None:
+            return inner
+        return BOTTOM if found is not None else self.external(f"{module}.{member}")
+
+    def _module(self, name: str, importer: Module) -> Value | None:
+        found = self.index.find(name, importer)
+        if found is None:
+            return None
+        for program in self.programs.values():
+            if program.path == found.path:
+                return pointer(self.module_objects[program.name])
+        return None
+
+    def default(self, obj: Obj, name: str) -> Value:
+        """Return a field to which nothing was stored; of a package, its modules."""
+        value = super().default(obj, name)
+        if obj.kind == "module" and value is BOTTOM:
+            inner = self.module_objects.get(f"{obj.name}.{name}")
+            return pointer(inner) if inner is not None else UNKNOWN
+        return value
+
+
+def _external(info: ClassInfo) -> set[str]:
+    found = set(info.external)
+    for base in info.bases:
+        if isinstance(base.info, ClassInfo):
+            found |= _external(base.info)
+    return found
+
+
+def _definitions(body: Sequence[ir.Stmt]) -> Iterator[ir.Define | ir.Class]:
+    for statement in body:
+        if isinstance(statement, (ir.Define, ir.Class)):
+            yield statement
+
+
+def _starts_node(function: ir.Function) -> bool:
+    """Tell whether a function is there to be started: it is called main, or it starts a node."""
+    return function.name == "main" or _mentions(function.node)
+
+
+def _registers(statement: ir.Class) -> bool:
+    return any(isinstance(s, ir.Define) and _mentions(s.function.node) for s in statement.body)
+
+
+def _mentions(node: ast.AST) -> bool:
+    return any(
+        isinstance(n, ast.Call) and isinstance(n.func, ast.Attribute) and n.func.attr in STARTS for n in ast.walk(node)
+    )

@@ -1,0 +1,228 @@
+"""Statements of `ast` become the compact form: one pass per function, when it is first needed."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Sequence
+
+from tarl_lint.source import Module
+from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.lower_expr import OPERATORS, Expressions, position
+from tarl_lint.valueflow.scopes import Scope, collect
+
+
+def lower_module(module: Module) -> ir.Program:
+    """Lower the top level of a module."""
+    scope = Scope("module", "")
+    lowering = Lowering(module.name)
+    package = module.name if module.is_package else module.name.rpartition(".")[0]
+    lowering.package = package
+    body = lowering.block(module.tree.body, scope)
+    node = ast.Lambda(args=_no_arguments(), body=ast.Constant(value=None))
+    function = ir.Function("", "", [], [], node, module.name, scope, (1, 0, 1, 0), body)
+    return ir.Program(module.name, module.path, body, function, package)
+
+
+def lower_body(function: ir.Function, package: str) -> Sequence[ir.Stmt]:
+    """Return a function's body, lowered at the first time."""
+    if function.body is None:
+        scope = function.scope
+        assert isinstance(scope, Scope)  # noqa: S101 - what lower_expr puts there
+        lowering = Lowering(function.module)
+        lowering.package = package
+        node = function.node
+        if isinstance(node, ast.Lambda):
+            function.body = [ir.Return(scope.next(), position(node.body), lowering.expr(node.body, scope))]
+        else:
+            function.body = lowering.block(node.body, scope)
+    return function.body
+
+
+def _no_arguments() -> ast.arguments:
+    return ast.arguments(posonlyargs=[], args=[], kwonlyargs=[], kw_defaults=[], defaults=[])
+
+
+class Lowering(Expressions):
+    """Lowers the statements of one module or function."""
+
+    package = ""
+
+    def block(self, nodes: Sequence[ast.stmt], scope: Scope) -> list[ir.Stmt]:
+        """Lower statements in order."""
+        lowered: list[ir.Stmt] = []
+        for node in nodes:
+            method = STATEMENTS.get(type(node))
+            if method is not None:
+                lowered.extend(method(self, node, scope))
+        return lowered
+
+    def assign(self, node: ast.Assign, scope: Scope) -> list[ir.Stmt]:
+        value = self.expr(node.value, scope)
+        return [ir.Assign(scope.next(), position(node), self.all(node.targets, scope), value)]
+
+    def annotated(self, node: ast.AnnAssign, scope: Scope) -> list[ir.Stmt]:
+        if node.value is None:
+            return []
+        value = self.expr(node.value, scope)
+        return [ir.Assign(scope.next(), position(node), [self.expr(node.target, scope)], value)]
+
+    def augmented(self, node: ast.AugAssign, scope: Scope) -> list[ir.Stmt]:
+        target = self.expr(node.target, scope)
+        operator = OPERATORS.get(type(node.op), "")
+        value = ir.Operation("+=" if operator == "+" else "", [target, self.expr(node.value, scope)], position(node))
+        return [ir.Assign(scope.next(), position(node), [target], value, augmented=True)]
+
+    def evaluate(self, node: ast.Expr, scope: Scope) -> list[ir.Stmt]:
+        if isinstance(node.value, ast.Constant):
+            return []
+        return [ir.Evaluate(scope.next(), position(node), self.expr(node.value, scope))]
+
+    def if_(self, node: ast.If, scope: Scope) -> list[ir.Stmt]:
+        test, number = self.expr(node.test, scope), scope.next()
+        return [ir.If(number, position(node), test, self.block(node.body, scope), self.block(node.orelse, scope))]
+
+    def assert_(self, node: ast.Assert, scope: Scope) -> list[ir.Stmt]:
+        failed = ir.Raise(scope.next(), position(node), None)
+        return [ir.If(scope.next(), position(node), self.expr(node.test, scope), [], [failed])]
+
+    def while_(self, node: ast.While, scope: Scope) -> list[ir.Stmt]:
+        test, number = self.expr(node.test, scope), scope.next()
+        endless = isinstance(test, ir.Const) and bool(test.value)
+        body, orelse = self.block(node.body, scope), self.block(node.orelse, scope)
+        return [ir.Loop(number, position(node), test, None, body, orelse, endless)]
+
+    def for_(self, node: ast.For | ast.AsyncFor, scope: Scope) -> list[ir.Stmt]:
+        source, target, number = self.expr(node.iter, scope), self.expr(node.target, scope), scope.next()
+        body, orelse = self.block(node.body, scope), self.block(node.orelse, scope)
+        return [ir.Loop(number, position(node), source, target, body, orelse)]
+
+    def try_(self, node: ast.Try, scope: Scope) -> list[ir.Stmt]:
+        number = scope.next()
+        handlers: list[tuple[ir.Expr | None, ir.Name | None, Sequence[ir.Stmt]]] = []
+        for handler in node.handlers:
+            types = self.expr(handler.type, scope) if handler.type is not None else None
+            name = ir.Name(*scope.resolve(handler.name), position(handler)) if handler.name else None
+            handlers.append((types, name, self.block(handler.body, scope)))
+        parts = [self.block(b, scope) for b in (node.body, node.orelse, node.finalbody)]
+        return [ir.Try(number, position(node), parts[0], handlers, parts[1], parts[2])]
+
+    def with_(self, node: ast.With | ast.AsyncWith, scope: Scope) -> list[ir.Stmt]:
+        items = [
+            (self.expr(i.context_expr, scope), self.expr(i.optional_vars, scope) if i.optional_vars else None)
+            for i in node.items
+        ]
+        return [ir.With(scope.next(), position(node), items, self.block(node.body, scope))]
+
+    def return_(self, node: ast.Return, scope: Scope) -> list[ir.Stmt]:
+        value = self.expr(node.value, scope) if node.value is not None else None
+        return [ir.Return(scope.next(), position(node), value)]
+
+    def raise_(self, node: ast.Raise, scope: Scope) -> list[ir.Stmt]:
+        value = self.expr(node.exc, scope) if node.exc is not None else None
+        return [ir.Raise(scope.next(), position(node), value)]
+
+    def jump(self, node: ast.Break | ast.Continue, scope: Scope) -> list[ir.Stmt]:
+        kind = "break" if isinstance(node, ast.Break) else "continue"
+        return [ir.Jump(scope.next(), position(node), "break" if kind == "break" else "continue")]
+
+    def define(self, node: ast.FunctionDef | ast.AsyncFunctionDef, scope: Scope) -> list[ir.Stmt]:
+        target = ir.Name(*scope.resolve(node.name), position(node))
+        return [ir.Define(scope.next(), position(node), target, self.function(node, scope))]
+
+    def class_(self, node: ast.ClassDef, scope: Scope) -> list[ir.Stmt]:
+        inner = Scope("class", scope.child(node.name), scope)
+        collect(inner, node.body)
+        target = ir.Name(*scope.resolve(node.name), position(node))
+        bases, decorators = self.all(node.bases, scope), self.all(node.decorator_list, scope)
+        body = self.block(node.body, inner)
+        fields = tuple(
+            n.target.id for n in node.body if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)
+        )
+        return [
+            ir.Class(
+                scope.next(), position(node), target, node.name, inner.qualname, bases, body, decorators, fields
+            )
+        ]
+
+    def import_(self, node: ast.Import, scope: Scope) -> list[ir.Stmt]:
+        bindings: list[tuple[ir.Expr | None, str, str | None]] = []
+        for alias in node.names:
+            bound = alias.asname or alias.name.partition(".")[0]
+            module = alias.name if alias.asname else bound
+            bindings.append((ir.Name(*scope.resolve(bound), position(node)), module, None))
+        return [ir.Import(scope.next(), position(node), bindings)]
+
+    def import_from(self, node: ast.ImportFrom, scope: Scope) -> list[ir.Stmt]:
+        module = node.module or ""
+        if node.level:
+            parts = self.package.split(".") if self.package else []
+            kept = parts[: len(parts) - node.level + 1]
+            module = ".".join([*kept, module] if module else kept)
+        bindings: list[tuple[ir.Expr | None, str, str | None]] = []
+        for alias in node.names:
+            bound = ir.Name(*scope.resolve(alias.asname or alias.name), position(node)) if alias.name != "*" else None
+            bindings.append((bound, module, alias.name))
+        return [ir.Import(scope.next(), position(node), bindings)]
+
+    def delete(self, node: ast.Delete, scope: Scope) -> list[ir.Stmt]:
+        return [ir.Delete(scope.next(), position(node), self.all(node.targets, scope))]
+
+    def match(self, node: ast.Match, scope: Scope) -> list[ir.Stmt]:
+        """Lower to a chain of conditions; captured names take the subject's parts."""
+        subject = self.expr(node.subject, scope)
+        orelse: list[ir.Stmt] = []
+        for case in reversed(node.cases):
+            body = self.captures(case, subject, scope) + self.block(case.body, scope)
+            tests = [n for n in ast.walk(case.pattern) if isinstance(n, ast.expr) and not isinstance(n, ast.Name)]
+            if _irrefutable(case) and not tests:
+                orelse = body
+                continue
+            parts = [subject, *self.all(tests, scope), *([self.expr(case.guard, scope)] if case.guard else [])]
+            where = position(node) if case is node.cases[0] else _case_position(case)
+            orelse = [ir.If(scope.next(), where, ir.Operation("", parts, where), body, orelse)]
+        return orelse
+
+    def captures(self, case: ast.match_case, subject: ir.Expr, scope: Scope) -> list[ir.Stmt]:
+        """Return assignments of the names that a pattern binds."""
+        where = _case_position(case)
+        names = [n.name for n in ast.walk(case.pattern) if isinstance(n, (ast.MatchAs, ast.MatchStar)) and n.name]
+        targets: list[ir.Expr] = [ir.Name(*scope.resolve(n), where) for n in names]
+        return [ir.Assign(scope.next(), where, targets, ir.Operation("", [subject], where))] if targets else []
+
+
+def _irrefutable(case: ast.match_case) -> bool:
+    return case.guard is None and isinstance(case.pattern, ast.MatchAs) and case.pattern.pattern is None
+
+
+def _case_position(case: ast.match_case) -> ir.Pos:
+    pattern = case.pattern
+    return (pattern.lineno, pattern.col_offset, pattern.end_lineno, pattern.end_col_offset)
+
+
+STATEMENTS: dict[type[ast.AST], Callable[..., list[ir.Stmt]]] = {
+    ast.Assign: Lowering.assign,
+    ast.AnnAssign: Lowering.annotated,
+    ast.AugAssign: Lowering.augmented,
+    ast.Expr: Lowering.evaluate,
+    ast.If: Lowering.if_,
+    ast.Assert: Lowering.assert_,
+    ast.While: Lowering.while_,
+    ast.For: Lowering.for_,
+    ast.AsyncFor: Lowering.for_,
+    ast.Try: Lowering.try_,
+    ast.With: Lowering.with_,
+    ast.AsyncWith: Lowering.with_,
+    ast.Return: Lowering.return_,
+    ast.Raise: Lowering.raise_,
+    ast.Break: Lowering.jump,
+    ast.Continue: Lowering.jump,
+    ast.FunctionDef: Lowering.define,
+    ast.AsyncFunctionDef: Lowering.define,
+    ast.ClassDef: Lowering.class_,
+    ast.Import: Lowering.import_,
+    ast.ImportFrom: Lowering.import_from,
+    ast.Delete: Lowering.delete,
+    ast.Match: Lowering.match,
+}
+if hasattr(ast, "TryStar"):
+    STATEMENTS[ast.TryStar] = Lowering.try_

@@ -1,0 +1,210 @@
+"""Expressions of `ast` become expressions of the compact form."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Sequence
+
+from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.scopes import Scope, collect
+
+OPERATORS: dict[type[ast.AST], str] = {
+    ast.Add: "+",
+    ast.Sub: "-",
+    ast.Mult: "*",
+    ast.Div: "/",
+    ast.Mod: "%",
+    ast.USub: "neg",
+    ast.Not: "not",
+    ast.Eq: "==",
+    ast.NotEq: "!=",
+    ast.Is: "is",
+    ast.IsNot: "is not",
+    ast.Lt: "<",
+    ast.LtE: "<=",
+    ast.Gt: ">",
+    ast.GtE: ">=",
+    ast.And: "and",
+    ast.Or: "or",
+}
+
+
+def position(node: ast.expr | ast.stmt | ast.excepthandler) -> ir.Pos:
+    """Return where a node stands."""
+    return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or node.col_offset)
+
+
+class Expressions:
+    """Lowers the expressions of one scope."""
+
+    def __init__(self, module: str) -> None:
+        self.module = module
+
+    def expr(self, node: ast.expr, scope: Scope) -> ir.Expr:
+        """Lower one expression; what has no form of its own becomes an operation on its parts."""
+        method = LOWER.get(type(node))
+        if method is not None:
+            return method(self, node, scope)
+        parts = [self.expr(n, scope) for n in ast.iter_child_nodes(node) if isinstance(n, ast.expr)]
+        return ir.Operation("", parts, position(node))
+
+    def all(self, nodes: Sequence[ast.expr], scope: Scope) -> list[ir.Expr]:
+        """Lower several."""
+        return [self.expr(n, scope) for n in nodes]
+
+    def constant(self, node: ast.Constant, scope: Scope) -> ir.Expr:  # noqa: ARG002 - one signature for all
+        return ir.Const(node.value, position(node))
+
+    def name(self, node: ast.Name, scope: Scope) -> ir.Name:
+        return ir.Name(*scope.resolve(node.id), position(node))
+
+    def attribute(self, node: ast.Attribute, scope: Scope) -> ir.Expr:
+        return ir.Attribute(self.expr(node.value, scope), node.attr, position(node), scope.next())
+
+    def subscript(self, node: ast.Subscript, scope: Scope) -> ir.Expr:
+        return ir.Item(self.expr(node.value, scope), self.expr(node.slice, scope), position(node))
+
+    def slice(self, node: ast.Slice, scope: Scope) -> ir.Expr:
+        parts = [self.expr(n, scope) for n in (node.lower, node.upper, node.step) if n is not None]
+        return ir.Slice(parts, position(node))
+
+    def call(self, node: ast.Call, scope: Scope) -> ir.Expr:
+        function = self.expr(node.func, scope)
+        keywords = [(k.arg, self.expr(k.value, scope)) for k in node.keywords]
+        return ir.Call(function, self.all(node.args, scope), keywords, position(node), scope.next())
+
+    def binary(self, node: ast.BinOp, scope: Scope) -> ir.Expr:
+        parts = [self.expr(node.left, scope), self.expr(node.right, scope)]
+        return ir.Operation(OPERATORS.get(type(node.op), ""), parts, position(node))
+
+    def unary(self, node: ast.UnaryOp, scope: Scope) -> ir.Expr:
+        if isinstance(node.operand, ast.Constant) and isinstance(node.operand.value, (int, float)):
+            if isinstance(node.op, ast.USub):
+                return ir.Const(-node.operand.value, position(node))
+            if isinstance(node.op, ast.UAdd):
+                return ir.Const(node.operand.value, position(node))
+        return ir.Operation(OPERATORS.get(type(node.op), ""), [self.expr(node.operand, scope)], position(node))
+
+    def boolean(self, node: ast.BoolOp, scope: Scope) -> ir.Expr:
+        return ir.Operation(OPERATORS[type(node.op)], self.all(node.values, scope), position(node))
+
+    def compare(self, node: ast.Compare, scope: Scope) -> ir.Expr:
+        operator = OPERATORS.get(type(node.ops[0]), "") if len(node.ops) == 1 else ""
+        return ir.Operation(operator, self.all([node.left, *node.comparators], scope), position(node))
+
+    def choice(self, node: ast.IfExp, scope: Scope) -> ir.Expr:
+        test, then, other = self.all([node.test, node.body, node.orelse], scope)
+        return ir.Choice(test, then, other, position(node), scope.next())
+
+    def sequence(self, node: ast.Tuple | ast.List | ast.Set, scope: Scope) -> ir.Expr:
+        return ir.Sequence_(self.all(node.elts, scope), position(node), scope.next())
+
+    def mapping(self, node: ast.Dict, scope: Scope) -> ir.Expr:
+        items = [
+            (self.expr(k, scope) if k is not None else None, self.expr(v, scope))
+            for k, v in zip(node.keys, node.values, strict=True)
+        ]
+        return ir.Mapping_(items, position(node), scope.next())
+
+    def text(self, node: ast.JoinedStr, scope: Scope) -> ir.Expr:
+        return ir.Operation("text", self.all(node.values, scope), position(node))
+
+    def comprehension(
+        self, node: ast.ListComp | ast.SetComp | ast.GeneratorExp | ast.DictComp, scope: Scope
+    ) -> ir.Expr:
+        """Lower in place: its targets become locals of the function under names of their own."""
+        before, slot = dict(scope.renamed), scope.next()
+        loops: list[tuple[ir.Expr, ir.Expr, Sequence[ir.Expr]]] = []
+        for generator in node.generators:
+            source = self.expr(generator.iter, scope)
+            for name in ast.walk(generator.target):
+                if isinstance(name, ast.Name):
+                    scope.renamed[name.id] = f"{name.id}<{slot}>"
+                    scope.bound.add(f"{name.id}<{slot}>")
+            loops.append((self.expr(generator.target, scope), source, self.all(generator.ifs, scope)))
+        key = self.expr(node.key, scope) if isinstance(node, ast.DictComp) else None
+        element = self.expr(node.value if isinstance(node, ast.DictComp) else node.elt, scope)
+        scope.renamed = before
+        return ir.Comprehension(loops, key, element, position(node), slot)
+
+    def starred(self, node: ast.Starred, scope: Scope) -> ir.Expr:
+        return ir.Starred(self.expr(node.value, scope), position(node))
+
+    def walrus(self, node: ast.NamedExpr, scope: Scope) -> ir.Expr:
+        target, value = self.all([node.target, node.value], scope)
+        return ir.Walrus(target, value, position(node), scope.next())
+
+    def await_(self, node: ast.Await, scope: Scope) -> ir.Expr:
+        return ir.Yield(self.expr(node.value, scope), "await", position(node))
+
+    def yield_(self, node: ast.Yield | ast.YieldFrom, scope: Scope) -> ir.Expr:
+        value = self.expr(node.value, scope) if node.value is not None else ir.Const(None, position(node))
+        return ir.Yield(value, "from" if isinstance(node, ast.YieldFrom) else "yield", position(node))
+
+    def lambda_(self, node: ast.Lambda, scope: Scope) -> ir.Expr:
+        return ir.Lambda(self.function(node, scope), position(node), scope.next())
+
+    def function(self, node: ir.FunctionNode, scope: Scope) -> ir.Function:
+        """Describe a function; its body waits for the first call."""
+        name = node.name if not isinstance(node, ast.Lambda) else "<lambda>"
+        inner = Scope("function", scope.child(name), scope, around=dict(scope.renamed))
+        inner.bound.update(p.arg for p in _arguments(node.args))
+        generator = collect(inner, node.body if not isinstance(node, ast.Lambda) else [node.body])
+        decorators = [] if isinstance(node, ast.Lambda) else self.all(node.decorator_list, scope)
+        return ir.Function(
+            name, inner.qualname, self.parameters(node.args, scope), decorators, node, self.module, inner,
+            position(node), generator=generator,
+        )  # fmt: skip
+
+    def parameters(self, arguments: ast.arguments, scope: Scope) -> list[ir.Parameter]:
+        """Return the parameters in order, with their defaults."""
+        plain = [*arguments.posonlyargs, *arguments.args]
+        defaults: list[ast.expr | None] = [*([None] * (len(plain) - len(arguments.defaults))), *arguments.defaults]
+        found = [
+            ir.Parameter(a.arg, "plain", self.expr(d, scope) if d is not None else None)
+            for a, d in zip(plain, defaults, strict=True)
+        ]
+        if arguments.vararg:
+            found.append(ir.Parameter(arguments.vararg.arg, "star"))
+        found.extend(
+            ir.Parameter(a.arg, "keyword", self.expr(d, scope) if d is not None else None)
+            for a, d in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
+        )
+        if arguments.kwarg:
+            found.append(ir.Parameter(arguments.kwarg.arg, "mapping"))
+        return found
+
+
+def _arguments(arguments: ast.arguments) -> list[ast.arg]:
+    extra = [a for a in (arguments.vararg, arguments.kwarg) if a is not None]
+    return [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, *extra]
+
+
+LOWER: dict[type[ast.AST], Callable[..., ir.Expr]] = {
+    ast.Constant: Expressions.constant,
+    ast.Name: Expressions.name,
+    ast.Attribute: Expressions.attribute,
+    ast.Subscript: Expressions.subscript,
+    ast.Slice: Expressions.slice,
+    ast.Call: Expressions.call,
+    ast.BinOp: Expressions.binary,
+    ast.UnaryOp: Expressions.unary,
+    ast.BoolOp: Expressions.boolean,
+    ast.Compare: Expressions.compare,
+    ast.IfExp: Expressions.choice,
+    ast.Tuple: Expressions.sequence,
+    ast.List: Expressions.sequence,
+    ast.Set: Expressions.sequence,
+    ast.Dict: Expressions.mapping,
+    ast.JoinedStr: Expressions.text,
+    ast.ListComp: Expressions.comprehension,
+    ast.SetComp: Expressions.comprehension,
+    ast.GeneratorExp: Expressions.comprehension,
+    ast.DictComp: Expressions.comprehension,
+    ast.Starred: Expressions.starred,
+    ast.NamedExpr: Expressions.walrus,
+    ast.Await: Expressions.await_,
+    ast.Yield: Expressions.yield_,
+    ast.YieldFrom: Expressions.yield_,
+    ast.Lambda: Expressions.lambda_,
+}

@@ -1,0 +1,217 @@
+"""The abstract machine: what its parts share. The parts call each other through the methods declared here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from tarl_lint.config import Config
+from tarl_lint.names import Index
+from tarl_lint.source import Module
+from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.control import Branch, Control, control_dependence
+from tarl_lint.valueflow.graph import Graph, Place
+from tarl_lint.valueflow.lower import lower_body
+from tarl_lint.valueflow.store import Root, Shared, Store
+from tarl_lint.valueflow.values import NONE, Branches, Frame, Nodes, Obj, Value
+
+MAX_CALLS = 24  # nested calls that are told apart; deeper ones are taken for library calls
+MAX_FRAMES = 4000  # activations per root
+
+
+@dataclass(slots=True, eq=False)
+class SourceRecord:
+    """A subscription as found: where, what, and the nodes at which its messages arrive."""
+
+    path: str
+    pos: ir.Pos
+    api: str
+    module: str
+    qualname: str
+    statement: ir.Stmt
+    frame: Frame
+    topics: set[str] = field(default_factory=set)
+    types: set[str] = field(default_factory=set)
+    callbacks: set[str] = field(default_factory=set)
+    nodes: set[int] = field(default_factory=set)
+    registered: set[tuple[str, ir.Pos]] = field(default_factory=set)
+    via: set[tuple[str, ir.Pos]] = field(default_factory=set)
+    messages: dict[Hashable, Obj] = field(default_factory=dict)
+
+
+@dataclass(slots=True, eq=False)
+class SinkRecord:
+    """A publish call as found."""
+
+    path: str
+    pos: ir.Pos
+    api: str
+    module: str
+    qualname: str
+    topics: set[str] = field(default_factory=set)
+    types: set[str] = field(default_factory=set)
+    nodes: set[int] = field(default_factory=set)
+
+
+@dataclass(slots=True, eq=False)
+class Publisher:
+    """What a publisher object is for."""
+
+    topics: set[str] = field(default_factory=set)
+    types: set[str] = field(default_factory=set)
+    api: str = ""
+
+
+Arguments = tuple[list[Value], dict[str, Value]]
+Probe = Callable[["Machine", Frame, ir.Stmt, ir.Expr, Value], None]
+
+
+class Machine:
+    """State of the interpretation of a whole set of modules."""
+
+    def __init__(self, modules: Sequence[Module], config: Config) -> None:
+        self.config = config
+        self.modules = {m.path: m for m in modules}
+        self.index = Index(modules)
+        self.programs: dict[str, ir.Program] = {}
+        self.module_objects: dict[str, Obj] = {}
+        self.graph = Graph()
+        self.shared = Shared()
+        self.store = Store(self.shared, Root("none", "none"))
+        self.objects: dict[Hashable, Obj] = {}
+        self.frames: dict[Hashable, Frame] = {}
+        self.frame_numbers: dict[Hashable, int] = {}
+        self.stack: list[Frame] = []
+        self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
+        self.sources: dict[tuple[str, ir.Pos], SourceRecord] = {}
+        self.sinks: dict[tuple[str, ir.Pos], SinkRecord] = {}
+        self.called: set[tuple[str, int]] = set()  # functions that something calls: module, line
+        self.made: set[Hashable] = set()  # classes that something instantiates
+        self.probe: Probe | None = None
+        self.watch: Callable[[Frame, ir.Stmt], None] | None = None
+
+    # --- places -----------------------------------------------------------------------------------------
+
+    def branches(self, frame: Frame, statement: ir.Stmt | None) -> Branches:
+        """Return every condition that a statement is under, callers' conditions included."""
+        if statement is None:
+            return frame.base
+        known = frame.closures.get(statement.id)
+        if known is None:
+            local = self.control(frame).closure.get(statement.id, frozenset())
+            known = frame.base | {self.branch(frame, b) for b in local}
+            frame.closures[statement.id] = known
+        return known
+
+    def branch(self, frame: Frame, branch: Branch) -> tuple[int, str]:
+        """Return a branch of a function as a branch of one of its activations."""
+        number, way = branch
+        key = (frame.id, number, "condition")
+        node = self.graph.numbers.get(key)
+        if node is None:
+            place = Place(frame, None, "condition", (0, 0, 0, 0))
+            node = self.graph.node(key, place, NONE)  # type: ignore[arg-type]
+        return node, way
+
+    def condition(self, frame: Frame, statement: ir.Stmt) -> int:
+        """Return the node of a statement's decision."""
+        node, _ = self.branch(frame, (statement.id, ""))
+        place = self.graph.places[node]
+        if place.statement is None:
+            self.graph.places[node] = Place(frame, statement, "condition", statement.pos)
+            self.graph.branches[node] = self.branches(frame, statement)
+        return node
+
+    def control(self, frame: Frame) -> Control:
+        """Return the control dependence of a frame's function."""
+        if frame.control is None:
+            function = frame.function
+            if function.control is None:
+                body = lower_body(function, frame.program.package)
+                function.control = control_dependence(body)
+            frame.control = function.control
+        assert isinstance(frame.control, Control)  # noqa: S101 - set above
+        return frame.control
+
+    def node(self, frame: Frame, slot: Hashable, role: str, pos: ir.Pos | None = None) -> int:
+        """Return the node of a value that the frame's current statement makes."""
+        statement = frame.statement
+        key = (frame.id, statement.id if statement is not None else -1, slot)
+        known = self.graph.numbers.get(key)
+        if known is not None:
+            return known
+        where = pos or (statement.pos if statement is not None else frame.function.pos)
+        return self.graph.node(key, Place(frame, statement, role, where), self.branches(frame, statement))
+
+    def carry(self, value: Value, node: int) -> Value:
+        """Return the value as passed on by a statement's node."""
+        self.graph.flow(value.deps, node)
+        if value.pts:
+            self.graph.hold(node, self.deep(value.pts))
+        return Value(frozenset([node]), value.pts, value.consts)
+
+    def use(self, value: Value) -> Nodes:
+        """Return the nodes whose data is used when the whole value is."""
+        if not value.pts:
+            return value.deps
+        content = self.deep(value.pts)
+        if not content:
+            return value.deps
+        return value.deps | self.graph.through(content, value.deps)
+
+    # --- what the parts provide --------------------------------------------------------------------------
+
+    def deep(self, objects: frozenset[Obj]) -> Nodes:
+        """Return all nodes whose data is inside objects."""
+        raise NotImplementedError
+
+    def evaluate(self, expr: ir.Expr, frame: Frame) -> Value:
+        """Return what an expression may be."""
+        raise NotImplementedError
+
+    def assign(self, target: ir.Expr, value: Value, frame: Frame) -> None:
+        """Store into a target."""
+        raise NotImplementedError
+
+    def call_value(self, function: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+        """Call whatever a value may be."""
+        raise NotImplementedError
+
+    def call_object(self, target: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+        """Call one object."""
+        raise NotImplementedError
+
+    def call_method(
+        self, base: Value, target: Obj | None, name: str, arguments: Arguments, frame: Frame, call: ir.Call
+    ) -> Value:
+        """Call a method of an object that is not a class of ours."""
+        raise NotImplementedError
+
+    def call_library(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+        """Call a function or class of a library."""
+        raise NotImplementedError
+
+    def run(self, frame: Frame) -> Value:
+        """Execute a frame's body and return its result."""
+        raise NotImplementedError
+
+    def run_class(self, statement: ir.Class, frame: Frame) -> None:
+        """Execute a class statement."""
+        raise NotImplementedError
+
+    def wait(self, frame: Frame) -> None:
+        """Let other roots run."""
+        raise NotImplementedError
+
+    def add_root(self, root: Root, run: Callable[[Root], None]) -> None:
+        """Have something run on its own."""
+        raise NotImplementedError
+
+    def assign_fallback(self, expr: ir.Expr, value: Value, frame: Frame) -> None:
+        """Add data to the variable that holds an object of which nothing is known."""
+        raise NotImplementedError
+
+    def ros_call(self, fact: Any, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+        """Do what the catalog says about a call."""
+        raise NotImplementedError

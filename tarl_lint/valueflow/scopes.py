@@ -1,0 +1,90 @@
+"""Who owns a name: locals of a function, names of an enclosing function, globals."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from tarl_lint.valueflow.ir import Scope as ScopeKind
+
+COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
+
+
+@dataclass(slots=True, eq=False)
+class Scope:
+    """The names that a module, class or function binds; `parent` is where it is written."""
+
+    kind: str
+    qualname: str
+    parent: Scope | None = None
+    bound: set[str] = field(default_factory=set)
+    globals: set[str] = field(default_factory=set)
+    nonlocals: set[str] = field(default_factory=set)
+    counter: int = 0  # slots and statement numbers handed out
+    renamed: dict[str, str] = field(default_factory=dict)  # targets of comprehensions being lowered
+    around: dict[str, str] = field(default_factory=dict)  # the same of the parent, where this one is written
+
+    def resolve(self, name: str) -> tuple[str, ScopeKind, int]:
+        """Return the name as stored, its kind, and how many functions up it lives."""
+        name = self.renamed.get(name, name)
+        if name in self.globals or self.kind == "module":
+            return name, "global", 0
+        if name in self.bound and name not in self.nonlocals:
+            return name, "local", 0
+        level, scope = 0, self
+        while scope.parent is not None:
+            if scope.kind == "function":
+                level += 1
+            stored = scope.around.get(name, name)
+            scope = scope.parent
+            if scope.kind == "function" and stored in scope.bound and stored not in scope.nonlocals:
+                return stored, "free", level
+        return name, "global", 0
+
+    def child(self, name: str) -> str:
+        """Return the qualified name of what is defined here, without `<locals>`."""
+        return f"{self.qualname}.{name}" if self.qualname else name
+
+    def next(self) -> int:
+        """Hand out a number that is unique in this function."""
+        self.counter += 1
+        return self.counter
+
+
+def collect(scope: Scope, body: Iterable[ast.AST]) -> bool:
+    """Enter into `scope` the names that statements bind. Tell whether one of them yields."""
+    yields = False
+    for node in _own_nodes(body):
+        if isinstance(node, ast.Name):
+            if not isinstance(node.ctx, ast.Load):
+                scope.bound.add(node.id)
+        elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            scope.bound.add(node.name)
+        elif isinstance(node, (ast.Import, ast.ImportFrom)):
+            scope.bound.update((a.asname or a.name.partition(".")[0]) for a in node.names if a.name != "*")
+        elif isinstance(node, ast.Global):
+            scope.globals.update(node.names)
+        elif isinstance(node, ast.Nonlocal):
+            scope.nonlocals.update(node.names)
+        elif isinstance(node, (ast.ExceptHandler, ast.MatchAs, ast.MatchStar)) and node.name:
+            scope.bound.add(node.name)
+        elif isinstance(node, ast.MatchMapping) and node.rest:
+            scope.bound.add(node.rest)
+        elif isinstance(node, (ast.Yield, ast.YieldFrom)):
+            yields = True
+    return yields
+
+
+def _own_nodes(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
+    """Yield the nodes below, without those of nested functions, classes and comprehension targets."""
+    pending = list(body)
+    while pending:
+        node = pending.pop()
+        yield node
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+            pending.extend(node.decorator_list)
+        elif isinstance(node, COMPREHENSIONS):
+            pending.extend(n for n in ast.walk(node) if isinstance(n, ast.NamedExpr))
+        elif not isinstance(node, ast.Lambda):
+            pending.extend(ast.iter_child_nodes(node))

@@ -1,0 +1,206 @@
+"""Statements as people see them: where they stand, their text, and an identity that survives moved lines."""
+
+from __future__ import annotations
+
+import ast
+import copy
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from tarl_lint.model import SiteId, Span
+from tarl_lint.source import Module
+from tarl_lint.valueflow.ir import Pos
+
+COMPOUND = (ast.If, ast.For, ast.AsyncFor, ast.While, ast.With, ast.AsyncWith, ast.Try, ast.Match)
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+@dataclass(slots=True, eq=False)
+class Written:
+    """A statement (or the body of a lambda, or an arm of `match`) and the statements around it."""
+
+    node: ast.AST
+    qualname: str
+    around: Written | None
+    start: tuple[int, int]
+
+
+@dataclass(slots=True)
+class Text:
+    """Finds the statements of one module by position."""
+
+    module: Module
+    by_start: dict[tuple[int, int], Written] = field(default_factory=dict)
+    functions: dict[tuple[int, int], Written] = field(default_factory=dict)
+    by_name: dict[str, list[Written]] = field(default_factory=dict)
+    texts: dict[int, str] = field(default_factory=dict)
+    lines: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.lines = self.module.text.split("\n")
+        self._body(self.module.tree.body, "", None)
+
+    def _body(self, body: list[ast.stmt], qualname: str, around: Written | None) -> None:
+        for node in body:
+            self._enter(node, qualname, around)
+
+    def _enter(self, node: ast.stmt | ast.match_case, qualname: str, around: Written | None) -> None:
+        start = _start(node)
+        written = Written(node, qualname, around, start)
+        if isinstance(node, FUNCTIONS):
+            inner = f"{qualname}.{node.name}" if qualname else node.name
+            arriving = Written(node, inner, around, start)
+            self.functions[start] = arriving
+            self.by_name.setdefault(inner, []).append(arriving)
+            self._lambdas([*node.decorator_list, *node.args.defaults], qualname, written)
+            self._body(node.body, inner, written)
+            return
+        if isinstance(node, ast.ClassDef):
+            self._body(node.body, f"{qualname}.{node.name}" if qualname else node.name, written)
+            return
+        self.by_start[start] = written
+        self.by_name.setdefault(qualname, []).append(written)
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, (ast.stmt, ast.match_case)):
+                self._enter(child, qualname, written)
+            elif isinstance(child, ast.excepthandler):
+                self._body(child.body, qualname, written)
+            elif isinstance(child, ast.expr):
+                self._lambdas([child], qualname, written)
+            elif isinstance(child, ast.withitem):
+                self._lambdas([child.context_expr], qualname, written)
+
+    def _lambdas(self, nodes: list[ast.expr], qualname: str, around: Written) -> None:
+        for node in nodes:
+            for child in _outer_lambdas(node):
+                inner = f"{qualname}.<lambda>" if qualname else "<lambda>"
+                written = Written(child.body, inner, around, _start(child.body))
+                self.functions[_start(child)] = written
+                self.by_start.setdefault(written.start, written)
+                self.by_name.setdefault(inner, []).append(written)
+                self._lambdas([child.body], inner, written)
+
+    def statement(self, pos: Pos) -> Written | None:
+        """Return the statement that starts here."""
+        return self.by_start.get((pos[0], pos[1]))
+
+    def function(self, pos: Pos) -> Written | None:
+        """Return the function whose header starts here, as the place where a message arrives."""
+        return self.functions.get((pos[0], pos[1]))
+
+    def site(self, written: Written) -> SiteId:
+        """Return a statement's identity."""
+        text = self.text(written)
+        ordinal = 0
+        for other in self.by_name.get(written.qualname, ()):
+            if other is written:
+                break
+            ordinal += self.text(other) == text
+        return SiteId(self.module.name, written.qualname, text, ordinal)
+
+    def text(self, written: Written) -> str:
+        """Return a statement as `ast.unparse` writes it, of a compound one the header."""
+        known = self.texts.get(id(written))
+        if known is None:
+            known = self.texts[id(written)] = ast.unparse(_header(written.node)).strip()
+        return known
+
+    def span(self, written: Written) -> Span:
+        """Return where a statement (its header) stands."""
+        node = written.node
+        line, column = written.start
+        end_line, end_column = self._end(node)
+        return Span(
+            self.module.path, line, self._column(line, column), end_line, self._column(end_line, end_column)
+        )
+
+    def stretch(self, pos: Pos) -> Span:
+        """Return a position as a span."""
+        line, column, end_line, end_column = pos
+        return Span(
+            self.module.path, line, self._column(line, column), end_line, self._column(end_line, end_column)
+        )
+
+    def code(self, span: Span) -> str:
+        """Return the source text of a span."""
+        if span.line == span.end_line:
+            return self.lines[span.line - 1][span.column - 1 : span.end_column - 1]
+        first = self.lines[span.line - 1][span.column - 1 :]
+        last = self.lines[span.end_line - 1][: span.end_column - 1]
+        return "\n".join([first, *self.lines[span.line : span.end_line - 1], last])
+
+    def _column(self, line: int, offset: int) -> int:
+        """Turn an offset in UTF-8 bytes into a column that counts characters from 1."""
+        text = self.lines[line - 1] if 0 < line <= len(self.lines) else ""
+        return offset + 1 if text.isascii() else len(text.encode()[:offset].decode(errors="replace")) + 1
+
+    def _end(self, node: ast.AST) -> tuple[int, int]:
+        """Return the end of a statement; of a compound one, its header's colon included."""
+        last = _last_of_header(node)
+        if last is None:
+            return getattr(node, "end_lineno", 1) or 1, getattr(node, "end_col_offset", 0) or 0
+        line, offset = last
+        while line <= len(self.lines):
+            raw = self.lines[line - 1].encode()
+            for index in range(offset, len(raw)):
+                if raw[index : index + 1] == b":":
+                    return line, index + 1
+                if raw[index : index + 1] == b"#":
+                    break
+            line, offset = line + 1, 0
+        return last
+
+
+def _start(node: ast.AST) -> tuple[int, int]:
+    if isinstance(node, ast.match_case):
+        return node.pattern.lineno, node.pattern.col_offset
+    return getattr(node, "lineno", 1), getattr(node, "col_offset", 0)
+
+
+def _header(node: ast.AST) -> ast.AST:
+    """Return a copy of a compound statement without what is below its header."""
+    if isinstance(node, ast.match_case):
+        return ast.match_case(pattern=node.pattern, guard=node.guard, body=[])
+    if not isinstance(node, (*COMPOUND, *FUNCTIONS)):
+        return node
+    header = copy.copy(node)
+    for name in ("body", "orelse", "finalbody", "handlers", "cases", "decorator_list"):
+        if hasattr(header, name):
+            setattr(header, name, [])
+    return header
+
+
+def _last_of_header(node: ast.AST) -> tuple[int, int] | None:
+    """Return where the last expression of a header ends, None for simple statements."""
+    if isinstance(node, FUNCTIONS):
+        parts: list[ast.AST] = [*ast.walk(node.args)]
+        parts += [node.returns] if node.returns is not None else []
+        ends = [_ends(p) for p in parts if hasattr(p, "end_lineno")]
+        return max(ends, default=(node.lineno, node.col_offset))
+    if isinstance(node, (ast.If, ast.While)):
+        return _ends(node.test)
+    if isinstance(node, (ast.For, ast.AsyncFor)):
+        return _ends(node.iter)
+    if isinstance(node, (ast.With, ast.AsyncWith)):
+        item = node.items[-1]
+        return _ends(item.optional_vars or item.context_expr)
+    if isinstance(node, ast.Match):
+        return _ends(node.subject)
+    if isinstance(node, ast.match_case):
+        return _ends(node.guard or node.pattern)
+    return (node.lineno, node.col_offset) if isinstance(node, ast.Try) else None
+
+
+def _ends(node: ast.AST) -> tuple[int, int]:
+    return getattr(node, "end_lineno", 1) or 1, getattr(node, "end_col_offset", 0) or 0
+
+
+def _outer_lambdas(node: ast.expr) -> Iterator[ast.Lambda]:
+    """Yield the lambdas in an expression which are not inside another one."""
+    pending: list[ast.AST] = [node]
+    while pending:
+        current = pending.pop(0)
+        if isinstance(current, ast.Lambda):
+            yield current
+        else:
+            pending.extend(ast.iter_child_nodes(current))

@@ -1,0 +1,122 @@
+"""Memory: the state of one run in layers, and what all runs have stored."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable
+from dataclasses import dataclass, field
+
+from tarl_lint.valueflow.values import ABSENT, Frame, Key, Value, join
+
+Delta = dict[Key, Value]
+
+
+@dataclass(slots=True, eq=False)
+class Root:
+    """What ROS, the interpreter or a thread runs on its own. `once`: it does not run beside an earlier self."""
+
+    key: Hashable
+    kind: str
+    name: str = ""
+    once: bool = False
+
+
+@dataclass(slots=True)
+class Shared:
+    """What each root leaves behind at its end, and what others can see of it while it waits."""
+
+    ends: dict[Key, dict[Root, Value]] = field(default_factory=dict)
+    pauses: dict[Key, dict[Root, Value]] = field(default_factory=dict)
+    readers: dict[Key, set[Root]] = field(default_factory=dict)
+    dirty: set[Root] = field(default_factory=set)
+
+    def entry(self, key: Key, root: Root) -> Value | None:
+        """Return what a root finds when it starts: the join of all that any other can have stored."""
+        self.readers.setdefault(key, set()).add(root)
+        result: Value | None = None
+        for owner, value in self.ends.get(key, {}).items():
+            if owner is not root or not root.once:
+                result = value if result is None else join(result, value)
+        for owner, value in self.pauses.get(key, {}).items():
+            if owner is not root:
+                result = value if result is None else join(result, value)
+        return result
+
+    def others(self, key: Key, root: Root) -> Value | None:
+        """Return what other roots may store while this one waits."""
+        result: Value | None = None
+        for table in (self.ends, self.pauses):
+            for owner, value in table.get(key, {}).items():
+                if owner is not root:
+                    result = value if result is None else join(result, value)
+        self.readers.setdefault(key, set()).add(root)
+        return result
+
+    def leave(self, table: dict[Key, dict[Root, Value]], root: Root, key: Key, value: Value) -> None:
+        """Record a value; roots that read it have to run again when it is news."""
+        owners = table.setdefault(key, {})
+        before = owners.get(root)
+        after = value if before is None else join(before, value)
+        if before is None or after != before:
+            owners[root] = after
+            self.dirty |= self.readers.get(key, set()) - ({root} if root.once else set())
+
+
+def private(key: Key) -> bool:
+    """Tell whether a variable dies with its function."""
+    owner = key[0]
+    return isinstance(owner, Frame) and not owner.captured
+
+
+@dataclass(slots=True)
+class Store:
+    """The state of one root's run: writes go to the top layer, reads fall through to the shared memory."""
+
+    shared: Shared
+    root: Root
+    layers: list[Delta] = field(default_factory=lambda: [{}])
+    found: dict[Key, Value | None] = field(default_factory=dict)
+
+    def get(self, key: Key) -> Value | None:
+        """Return the value now, None where nothing was stored."""
+        for layer in reversed(self.layers):
+            value = layer.get(key)
+            if value is not None:
+                return None if value is ABSENT else value
+        if key in self.found:
+            return self.found[key]
+        value = None if private(key) else self.shared.entry(key, self.root)
+        self.found[key] = value
+        return value
+
+    def put(self, key: Key, value: Value) -> None:
+        """Store for certain."""
+        self.layers[-1][key] = value
+        owner, name = key
+        owner.fields[name] = None
+        for obj in value.pts:
+            if obj.kind == "lib":
+                obj.holders[key] = None
+
+    def push(self, delta: Delta | None = None) -> None:
+        """Open a layer."""
+        self.layers.append({} if delta is None else dict(delta))
+
+    def pop(self) -> Delta:
+        """Close the top layer and return it."""
+        return self.layers.pop()
+
+    def since(self, depth: int) -> Delta:
+        """Return all that was stored above a number of layers."""
+        merged: Delta = {}
+        for layer in self.layers[depth:]:
+            merged.update(layer)
+        return merged
+
+    def own(self) -> Iterable[Key]:
+        """Return the keys written in this run which others can see."""
+        keys: dict[Key, None] = {}
+        for layer in self.layers:
+            for key in layer:
+                if not private(key):
+                    keys[key] = None
+        return keys

@@ -1,0 +1,221 @@
+"""Abstract values and the objects they point to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from tarl_lint.valueflow import ir
+
+Nodes = frozenset[int]
+Consts = frozenset[object] | None  # None: anything
+Branches = frozenset[tuple[int, str]]
+
+NONE: Nodes = frozenset()
+MAX_CONSTS = 4
+MAX_DEPTH = 6  # of objects embedded in objects
+
+
+class Obj:
+    """An object, known by what makes it: allocation site, definition, or the object it is embedded in."""
+
+    __slots__ = ("depth", "fields", "holders", "info", "key", "kind", "many", "name", "parent", "subs")
+
+    def __init__(self, kind: str, key: object, name: str = "", parent: Obj | None = None) -> None:
+        self.kind = kind
+        self.key = key
+        self.name = name
+        self.parent = parent
+        self.depth: int = parent.depth + 1 if parent is not None else 0
+        self.many = parent.many if parent is not None else False
+        self.fields: dict[str, None] = {}  # every field ever stored, in order
+        self.subs: dict[str, Obj] = {}
+        self.holders: dict[tuple[Obj, str], None] = {}  # where pointers to it were stored
+        self.info: object = None
+
+    def sub(self, name: str) -> Obj:
+        """Return the object embedded under a field; deep nesting folds into one."""
+        if self.depth >= MAX_DEPTH:
+            return self
+        found = self.subs.get(name)
+        if found is None:
+            found = self.subs[name] = Obj(self.kind, (self.key, name), name, self)
+        return found
+
+    def path(self) -> str:
+        """Return the dotted field that leads here from the outermost object."""
+        if self.parent is None:
+            return ""
+        outer = self.parent.path()
+        return f"{outer}.{self.name}" if outer else self.name
+
+    def root(self) -> Obj:
+        """Return the outermost object."""
+        return self if self.parent is None else self.parent.root()
+
+    def __repr__(self) -> str:
+        return f"<{self.kind} {self.name or self.key}>"
+
+
+Key = tuple[Obj, str]
+
+
+class Frame(Obj):
+    """One activation of a function, known by its chain of calls. Its fields are the local variables."""
+
+    __slots__ = (
+        "arguments", "base", "call", "call_pos", "caller", "captured", "closures", "cls", "control",
+        "depth_of_layers", "root_waits", "function", "id", "jumps",
+        "module", "outer", "owner", "program", "result", "returns", "slot", "statement", "tries", "yielded",
+    )  # fmt: skip
+
+    def __init__(self, key: object, number: int, function: ir.Function, program: ir.Program, module: Obj) -> None:
+        super().__init__("frame", key, function.name)
+        self.id = number
+        self.function = function
+        self.program = program
+        self.module = module
+        self.caller: Frame | None = None
+        self.call: ir.Stmt | None = None
+        self.call_pos: ir.Pos | None = None
+        self.slot: object = 0
+        self.outer: Frame | None = None
+        self.owner: Obj | None = None  # the class a method is defined in, for super()
+        self.cls: Obj | None = None  # the class that is being made, when this is a class body
+        self.base: Branches = frozenset()
+        self.statement: ir.Stmt | None = None
+        self.closures: dict[int, Branches] = {}
+        self.control: object = None
+        self.captured = False
+        self.returns: list[tuple[dict[Key, Value], Value]] = []
+        self.jumps: list[tuple[int, dict[str, list[dict[Key, Value]]]]] = []
+        self.depth_of_layers = 0
+        self.root_waits = False  # runs beside callbacks: every turn of a loop may find news
+        self.tries: list[tuple[int, list[dict[Key, Value]]]] = []
+        self.result = BOTTOM
+        self.yielded = BOTTOM
+        self.arguments: list[Value] = []
+
+    def owner_class(self) -> Obj | None:
+        """Return the class whose body this is, None in functions."""
+        return self.cls
+
+
+class Value:
+    """What an expression may be: the nodes its data comes from, the objects it may be, its constants."""
+
+    __slots__ = ("consts", "deps", "pts")
+
+    def __init__(self, deps: Nodes = NONE, pts: frozenset[Obj] = frozenset(), consts: Consts = None) -> None:
+        self.deps = deps
+        self.pts = pts
+        self.consts = consts
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, Value)
+            and self.deps == other.deps
+            and self.pts == other.pts
+            and self.consts == other.consts
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"Value({sorted(self.deps)}, {list(self.pts)}, {self.consts})"
+
+    def constant(self) -> tuple[bool, object]:
+        """Return whether the value is one known constant, and it."""
+        if self.consts is not None and len(self.consts) == 1 and not self.pts:
+            return True, next(iter(self.consts))
+        return False, None
+
+    def texts(self) -> tuple[str, ...]:
+        """Return the texts it may be, sorted; none when it may be another thing."""
+        if self.consts is None or not all(isinstance(c, str) for c in self.consts):
+            return ()
+        return tuple(sorted(str(c) for c in self.consts))
+
+
+BOTTOM = Value(consts=frozenset())
+UNKNOWN = Value()
+ABSENT = Value(consts=frozenset(["<absent>"]))  # a field that a new object does not have yet
+
+
+def join(a: Value, b: Value) -> Value:
+    """Return what is either; `a` itself when it covers `b`."""
+    if a is b or b is BOTTOM:
+        return a
+    if a is BOTTOM:
+        return b
+    deps = a.deps if b.deps <= a.deps else a.deps | b.deps
+    pts = a.pts if b.pts <= a.pts else a.pts | b.pts
+    consts = join_consts(a.consts, b.consts)
+    if deps is a.deps and pts is a.pts and consts == a.consts:
+        return a
+    return Value(deps, pts, consts)
+
+
+def join_consts(a: Consts, b: Consts) -> Consts:
+    """Return the constants of either, None when there are too many."""
+    if a is None or b is None:
+        return None
+    if b <= a:
+        return a
+    both = a | b
+    return both if len(both) <= MAX_CONSTS else None
+
+
+def join_all(values: Iterable[Value]) -> Value:
+    """Join any number of values."""
+    result = BOTTOM
+    for value in values:
+        result = join(result, value)
+    return result
+
+
+def pointer(obj: Obj, deps: Nodes = NONE) -> Value:
+    """Return a value that is one object."""
+    return Value(deps, frozenset([obj]))
+
+
+def const(value: object) -> Value:
+    """Return a value that is one constant; what cannot be hashed is anything."""
+    try:
+        return Value(consts=frozenset([value]))
+    except TypeError:
+        return UNKNOWN
+
+
+@dataclass(slots=True, eq=False)
+class ClassInfo:
+    """A class of the analysed files. `opaque` when a base is not among them."""
+
+    name: str
+    qualname: str
+    bases: list[Obj] = field(default_factory=list)
+    external: list[str] = field(default_factory=list)
+    statement: ir.Class | None = None
+    module: str = ""
+    fields: tuple[str, ...] = ()  # annotated in its body, as dataclasses have them
+
+    @property
+    def opaque(self) -> bool:
+        """Tell whether code that is not analysed may see its instances' attributes and call its methods."""
+        return bool(self.external) or any(
+            isinstance(b.info, ClassInfo) and b.info.opaque for b in self.bases
+        )
+
+
+def lineage(cls: Obj) -> list[Obj]:
+    """Return the class and its known bases in method resolution order, depth first without repeats."""
+    found: dict[Obj, None] = {}
+    pending = [cls]
+    while pending:
+        current = pending.pop(0)
+        if current in found:
+            del found[current]
+        found[current] = None
+        if isinstance(current.info, ClassInfo) and len(found) < 50:
+            pending = [*current.info.bases, *pending]
+    return list(found)
