@@ -21,6 +21,7 @@ REGISTERING = {
     "Subscriber", "create_subscription", "create_timer", "Timer", "Service", "create_service", "TimeSynchronizer",
     "ApproximateTimeSynchronizer", "SimpleActionServer", "ActionServer", "registerCallback",
 }  # fmt: skip
+_NO_START = 9
 _NODE_METHODS = {
     "create_subscription",
     "create_publisher",
@@ -57,13 +58,14 @@ class Anchor:
 
 
 def anchors(analysis: Analysis, site: SiteId, path: str) -> Iterator[Anchor]:
-    """Yield the places where the node subscribes, nearest first: for this site, in its file, anywhere."""
-    flows = sorted(analysis.flows, key=lambda flow: all(step.site != site for step in flow.steps))
-    sources = list(dict.fromkeys(flow.source for flow in flows))
-    for near in (True, False):
-        for each in sources:
-            if (each.span.path == path) is near:
-                yield from _registered(analysis, each)
+    """Yield the places where the node subscribes: for this site before others, in its file before others.
+
+    Last come the places where nodes start, for nodes whose subscriptions say nothing.
+    """
+    own = {flow.source for flow in analysis.flows if any(step.site == site for step in flow.steps)}
+    sources = dict.fromkeys(flow.source for flow in analysis.flows)
+    for each in sorted(sources, key=lambda each: (each not in own, each.span.path != path)):
+        yield from _registered(analysis, each)
     for name in sorted(analysis.sources, key=lambda name: (name != path, name)):
         with suppress(RepairError):  # a file that cannot be read starts no node
             yield from _started(document(name, analysis.sources[name]))
@@ -114,31 +116,33 @@ def _registered(analysis: Analysis, origin: Source) -> Iterator[Anchor]:
 
 
 def _started(source: Document) -> Iterator[Anchor]:
-    """Yield the places behind the call that starts a node."""
+    """Yield the places behind the calls that start a node, or else those that use it."""
     ros2 = is_ros2(source)
-    for call in ast.walk(source.tree):
-        if isinstance(call, ast.Call):
-            starts = _starts_ros2(source, call) if ros2 else _called(call) == "init_node"
-            node = _node(source, call) if starts and ros2 else ""
-            anchor = beside(source, call, node) if starts and node is not None else None
-            if anchor is not None:
-                yield anchor
+    calls = [node for node in ast.walk(source.tree) if isinstance(node, ast.Call)]
+    ranked = [(_start_rank(source, call, ros2), call) for call in calls]
+    for rank, call in sorted(ranked, key=lambda each: each[0]):
+        node = _node(source, call) if ros2 else ""
+        anchor = beside(source, call, node) if rank < _NO_START and node is not None else None
+        if anchor is not None:
+            yield anchor
 
 
-def _starts_ros2(source: Document, call: ast.Call) -> bool:
-    if _called(call) in _NODE_METHODS | {"create_node"}:
-        return True
-    return _called(call) == "__init__" and _is_node_class(source, call)
+def _start_rank(source: Document, call: ast.Call, ros2: bool) -> int:
+    """Return how surely a call runs once, when its node starts; `_NO_START` for calls that tell nothing."""
+    name = _called(call)
+    if not ros2:
+        return 0 if name == "init_node" else _NO_START
+    if name == "create_node" or (name == "__init__" and _is_node_class(source, call)):
+        return 0
+    function = source.function(call)
+    early = function is None or function.name in ("__init__", "main")
+    return _NO_START if name not in _NODE_METHODS else 1 if early else 2
 
 
 def _node(source: Document, call: ast.expr) -> str | None:
     """Return the expression of the rclpy node at a call, or None."""
-    if (
-        isinstance(call, ast.Call)
-        and isinstance(call.func, ast.Attribute)
-        and call.func.attr in _NODE_METHODS
-    ):
-        return ast.unparse(call.func.value)
+    if isinstance(call, ast.Call) and _receiver(call):
+        return _receiver(call)
     statement = source.statement(call)
     if _called(call) == "create_node" and isinstance(statement, ast.Assign) and statement.value is call:
         return ast.unparse(statement.targets[0])
@@ -146,14 +150,17 @@ def _node(source: Document, call: ast.expr) -> str | None:
     if method is not None and _is_node_class(source, call):
         return method[2]
     around = source.function(call) or source.tree
-    for other in ast.walk(around):
-        if (
-            isinstance(other, ast.Call)
-            and isinstance(other.func, ast.Attribute)
-            and other.func.attr in _NODE_METHODS
-        ):
-            return ast.unparse(other.func.value)
-    return None
+    found = [_receiver(each) for each in ast.walk(around) if isinstance(each, ast.Call)]
+    if method is not None:
+        everywhere = [_receiver(each) for each in ast.walk(method[0]) if isinstance(each, ast.Call)]
+        found += [each for each in everywhere if each.startswith(f"{method[2]}.")]
+    return next(filter(None, found), None)
+
+
+def _receiver(call: ast.Call) -> str:
+    """Return the node of a call `node.create_…(…)`, or an empty text."""
+    named = isinstance(call.func, ast.Attribute) and call.func.attr in _NODE_METHODS
+    return ast.unparse(call.func.value) if named and isinstance(call.func, ast.Attribute) else ""
 
 
 def _is_node_class(source: Document, place: ast.AST) -> bool:

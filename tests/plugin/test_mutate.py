@@ -230,6 +230,14 @@ def test_a_condition_asked_twice_in_a_header_gets_a_name() -> None:
     )
 
 
+def test_the_condition_of_an_elif_stays_where_it_is() -> None:
+    text = "def step(delta, mud):\n    if mud:\n        pass\n    elif 5 < delta < 9:\n        pass\n"
+    analysis = HandMade({"node.py": text}, held=HELD)
+    uses = [analysis.operand("5", 5, "5 < d"), analysis.operand("9", 9, "< 9")]
+    changed = rewrite(analysis, [Mutation(use, 7.5) for use in uses], MUD, TOPICS)["node.py"]
+    assert "    elif (7.5 if mud else 5) < delta < (7.5 if mud else 9):\n" in changed
+
+
 def test_the_condition_of_a_loop_is_asked_every_time() -> None:
     text = "def step(delta, mud):\n    while 5 < delta < 9:\n        delta = move()\n"
     analysis = HandMade({"node.py": text}, held=HELD)

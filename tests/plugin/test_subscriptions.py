@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from textwrap import dedent
 from types import SimpleNamespace
 from typing import Any
@@ -13,6 +14,7 @@ from pytest_tarl import Sensor
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.mutate import Mutation, rewrite
+from tarl_lint.model import SiteId, Step
 from tests.plugin.repairs import (
     MUD,
     POSITION,
@@ -610,3 +612,51 @@ def test_methods_without_empty_lines_between_them_stay_apart() -> None:
     sources = {"node.py": ROSPY_CLASS.replace("\n\n    def on_odom", "\n    def on_odom")}
     flows = subscribing(sources, "node.py", NODES["rospy class"][2], "rospy.Subscriber")
     assert "message.data\n\n    def on_odom" in repaired(sources, flows)["node.py"]
+
+
+WRAPPED = """\
+import rclpy
+from nav_msgs.msg import Odometry
+
+
+class Helper:
+    def __init__(self, node):
+        self.node = node
+        self.x = 0.0
+        self.listen("/odom", self.on_odom)
+
+    def listen(self, topic, callback):
+        return self.node.create_subscription(Odometry, topic, callback, 10)
+
+    def on_odom(self, msg):
+        self.x = 5 * msg.pose.pose.position.x
+
+
+rclpy.init()
+helper = Helper(rclpy.create_node("helper"))
+"""
+
+
+def test_beside_a_wrapper_the_node_of_its_class_subscribes_once() -> None:
+    sources = {"node.py": WRAPPED}
+    call = 'self.listen("/odom", self.on_odom)'
+    changed = repaired(sources, subscribing(sources, "node.py", call, "rclpy"))
+    assert (
+        f'{call}\n        self.node.create_subscription(Bool, "/terrain", self.on_terrain, 10)\n'
+        in changed["node.py"]
+    )
+    ros = TinyRos()
+    helper = ros.run(changed, "node.py")["helper"]
+    ros.deliver("/terrain", terrain(True))
+    ros.deliver("/odom", odometry(1.0))
+    assert helper.x == 12.0
+
+
+def test_the_flow_of_the_site_decides_which_node_subscribes() -> None:
+    other = "def other(O, cb):\n    rospy.Subscriber('/a', O, cb)\n\n\n"
+    sources = {"node.py": SCRIPT.replace("# Keeps", f"{other}# Keeps")}
+    foreign = subscribing(sources, "node.py", "rospy.Subscriber('/a', O, cb)", "rospy.Subscriber", "/a")
+    (own,) = subscribing(sources, "node.py", NODES["rospy script"][2], "rospy.Subscriber")
+    step = Step(SiteId("node", "", "5 *"), own.source.span, "", "publish", "data")
+    changed = repaired(sources, (*foreign, replace(own, steps=(step,))))["node.py"]
+    assert f'    {NODES["rospy script"][2]}\n    rospy.Subscriber("/terrain"' in changed
