@@ -66,24 +66,14 @@ def collapsed(at: Where) -> Where:
     return Where(lineno=line, col_offset=column, end_lineno=line, end_col_offset=column)
 
 
-# Code at no line: the compiler gives it the line of what ran before, or none where two ways meet.
-NOWHERE = Where(lineno=-1, col_offset=-1, end_lineno=-1, end_col_offset=-1)
-
-
-def end_of(node: ast.expr, then: Where = NOWHERE) -> Where:
+def end_of(node: ast.expr, then: Where) -> Where:
     """Return where code stands that runs right after an expression, and before code that stands at `then`.
 
-    Of an expression with branches over several lines nobody knows on which line it ends.
+    Of an expression with branches over several lines nobody knows on which line it ends. (Code without a
+    line is no way out: CPython 3.13.0 copies such blocks and then runs both copies.)
     """
     several = node.end_lineno != node.lineno
     return collapsed(then) if several and isinstance(node, _BRANCHING) else where(node)
-
-
-def jumped_on(test: ast.expr) -> ast.expr:
-    """Return the part of a condition that is evaluated: `not` only exchanges the ways to go."""
-    while isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
-        test = test.operand
-    return test
 
 
 def first_evaluated(node: ast.expr) -> ast.expr:
@@ -133,14 +123,14 @@ def _derived(hook: str, suffix: str) -> str:
     return f"{hook.removesuffix('__')}_{suffix}__"
 
 
-def recorded(value: ast.expr, number: int, names: Names, then: Where = NOWHERE) -> ast.Call:
+def recorded(value: ast.expr, number: int, names: Names, then: Where | None = None) -> ast.Call:
     """Build `hook(number, value)`, which gives `value` back to what stands at `then`."""
     start = start_of(value)
     return ast.Call(
         func=ast.Name(names.hook, ast.Load(), **start),
         args=[ast.Constant(number, **start), value],
         keywords=[],
-        **end_of(value, then),
+        **end_of(value, then or start),
     )
 
 
@@ -168,8 +158,8 @@ def truth(test: ast.expr) -> ast.expr:
     """Build the truth value of a condition, asking each operand once, as a jump does."""
     if isinstance(test, ast.Compare) and len(test.ops) == 1:
         return test
-    at = end_of(test)
-    return ast.IfExp(test, ast.Constant(True, **at), ast.Constant(False, **at), **where(test))
+    at = where(test)
+    return ast.IfExp(test, ast.Constant(True, **at), ast.Constant(False, **at), **at)
 
 
 def reached(call: ast.Call, number: int, names: Names) -> ast.Call:

@@ -10,9 +10,6 @@ from pytest_tarl.blocks import enter, entry_of, first_evaluated_in, message_para
 from pytest_tarl.forms import (
     Names,
     Where,
-    collapsed,
-    end_of,
-    jumped_on,
     note,
     note_constant,
     reached,
@@ -204,14 +201,13 @@ class _Recording(ast.NodeTransformer):
 
     def _record_assert(self, node: ast.Assert, number: int) -> list[ast.stmt]:
         # A failing one leaves no event: the exception tells, and its caret depends on how the test is compiled.
-        return [node, *note_constant(1.0, number, self._names, collapsed(end_of(node.test)))]
+        return [node, *note_constant(1.0, number, self._names, start_of(node.test))]
 
     def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:
         if isinstance(node.test, ast.Constant):
             return [node]  # nothing is evaluated, `while True` has no line of its own
         true = start_of(first_evaluated_in(node.body))
-        after_test = collapsed(end_of(jumped_on(node.test)))
-        false = start_of(first_evaluated_in(node.orelse)) if node.orelse else after_test
+        false = start_of(first_evaluated_in(node.orelse) if node.orelse else node.test)
         node.body[:0] = note_constant(1.0, number, self._names, true)
         node.orelse[:0] = note_constant(0.0, number, self._names, false)
         return [node]

@@ -3,6 +3,7 @@ from __future__ import annotations
 import ast
 import inspect
 import linecache
+import re
 import sys
 import textwrap
 import traceback
@@ -94,10 +95,15 @@ def recorded(source: str, *, inline: bool) -> list[tuple[int, Any]]:
 
 def assert_same(source: str, *, trace: bool) -> None:
     plain = run(source, trace=trace)
+    seen: list[Any] = []
     for inline in MODES:
         watched = run(source, everywhere(ast.parse(source)), inline=inline, trace=trace)
         assert (watched.values, watched.error) == (plain.values, plain.error)
         assert watched.lines == plain.lines
+        seen.append(
+            [(number, re.sub(" at 0x[0-9a-f]+", "", repr(value))) for number, value in watched.events]
+        )
+    assert seen[0] == seen[1]
 
 
 # What is recorded, statement by statement: (source, events as (line, value))
@@ -393,6 +399,8 @@ def f(a, b):
         return (b
                 if a
                 else 2)
+    else:
+        b = 1
     while not (
         a
         or b
@@ -400,6 +408,8 @@ def f(a, b):
         a = (1
              +
              2)
+    else:
+        b += 1
     return [
         x
         for x in range(a)
