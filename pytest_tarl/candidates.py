@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
@@ -14,34 +15,62 @@ from pytest_tarl.statistics import Sample
 ALWAYS = Guard()
 WIDER = 2  # bins by which an interval is widened on either side, as a last proposal
 
-
-def candidate_guards(
-    region: Region, sensors: Sequence[Sensor], worlds: Sequence[Sample]
-) -> tuple[Guard, ...]:
-    """Return the guards worth simulating, fewest conditions first, then the narrowest in the given worlds.
-
-    `worlds` are the samples that tell which bins occur at all: a condition that always holds there is none.
-    """
-    cells = (*region.cells, *region.novel)
-    proposals = [ALWAYS, *_hulls(cells, sensors, worlds), *_hulls(region.novel, sensors, worlds)]
-    proposals += [_widened(guard, sensors) for guard in proposals if guard.conjuncts]
-    distinct = list(dict.fromkeys(proposals))
-    return tuple(sorted(distinct, key=lambda guard: (len(guard.conjuncts), share(guard, worlds[0], sensors))))
+Bins = tuple[int, int]  # first and last
 
 
-def telling(
-    guards: Iterable[Guard], losses: Mapping[Cell, float], world: Sample, sensors: Sequence[Sensor], most: int
-) -> tuple[Guard, ...]:
+@dataclass(frozen=True)
+class Evidence:
+    """What a guard can be read from: both worlds, the region, and what an on-line episode loses in a cell."""
+
+    sensors: Sequence[Sensor]
+    offline: Sample
+    online: Sample
+    region: Region
+    losses: Mapping[Cell, float]
+
+    def shares(self) -> dict[Cell, float]:
+        """Return, per cell, the share of the whole loss less the share of the on-line steps that fall there."""
+        counts = np.bincount(
+            self.online.chain.cell, self.online.chain.count, minlength=len(self.online.cells)
+        )
+        steps = max(float(counts.sum()), 1.0)
+        lost = {cell: loss for cell, loss in self.losses.items() if loss > 0}
+        whole = sum(lost.values()) or 1.0
+        merit = {cell: loss / whole for cell, loss in lost.items()}
+        for cell, count in zip(self.online.cells, counts.tolist(), strict=True):
+            merit[cell] = merit.get(cell, 0.0) - count / steps
+        return merit
+
+
+def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
+    """Return the guards worth simulating: fewest conditions first, then those that hold least often off-line."""
+    region = evidence.region
+    proposals = [
+        ALWAYS,
+        *_combined(
+            [_hull((*region.cells, *region.novel), i) for i in range(len(evidence.sensors))], evidence
+        ),
+        *_combined([_hull(region.novel, i) for i in range(len(evidence.sensors))], evidence),
+        *_combined([_steepest(evidence, i) for i in range(len(evidence.sensors))], evidence),
+    ]
+    proposals += [_widened(guard) for guard in proposals]
+    offline, sensors = evidence.offline, evidence.sensors
+    return tuple(
+        sorted(
+            dict.fromkeys(proposals), key=lambda guard: (len(guard.conjuncts), share(guard, offline, sensors))
+        )
+    )
+
+
+def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Guard, ...]:
     """Return the guards to search under: those that hold where much is lost and seldom elsewhere, and none at all.
 
     Ordered by the share of the loss that falls under the guard less the share of steps that do (Youden's J).
     """
-    lost = {cell: loss for cell, loss in losses.items() if loss > 0}
-    whole = sum(lost.values()) or 1.0
+    shares = evidence.shares()
 
     def merit(guard: Guard) -> float:
-        covered = sum(loss for cell, loss in lost.items() if holds(guard, cell, sensors))
-        return covered / whole - share(guard, world, sensors)
+        return sum(share for cell, share in shares.items() if holds(guard, cell, evidence.sensors))
 
     ranked = sorted((guard for guard in guards if guard.conjuncts), key=lambda guard: -merit(guard))
     best = [guard for guard in ranked if merit(guard) > 0][: most - 1]
@@ -51,14 +80,12 @@ def telling(
 def share(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> float:
     """Return the share of steps with a known cell in which the guard holds."""
     steps = np.bincount(world.chain.cell, weights=world.chain.count, minlength=len(world.cells))
-    holding = np.array([holds(guard, cell, sensors) for cell in world.cells], dtype=bool)
-    return float(steps[holding].sum() / max(steps.sum(), 1.0))
+    return float(steps[_holding(guard, world, sensors)].sum() / max(steps.sum(), 1.0))
 
 
 def firing_episodes(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> tuple[int, ...]:
     """Return the seeds of the episodes in which the guard holds at least once."""
-    holding = np.array([holds(guard, cell, sensors) for cell in world.cells], dtype=bool)
-    firing = np.unique(world.chain.episode[holding[world.chain.cell]])
+    firing = np.unique(world.chain.episode[_holding(guard, world, sensors)[world.chain.cell]])
     return tuple(world.seeds[i] for i in firing)
 
 
@@ -68,45 +95,68 @@ def holds(guard: Guard, cell: Cell, sensors: Sequence[Sensor]) -> bool:
     return all(_within(conjunct, bins[conjunct.sensor.name]) for conjunct in guard.conjuncts)
 
 
+def _holding(
+    guard: Guard, world: Sample, sensors: Sequence[Sensor]
+) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    return np.array([holds(guard, cell, sensors) for cell in world.cells], dtype=bool)
+
+
 def _within(conjunct: Conjunct, index: int) -> bool:
     low, high = conjunct.sensor.interval(index, index)
     slack = 1e-9 * max(1.0, abs(low), abs(high)) if np.isfinite(high - low) else 0.0
     return conjunct.low <= low + slack and high - slack <= conjunct.high
 
 
-def _hulls(cells: Sequence[Cell], sensors: Sequence[Sensor], worlds: Sequence[Sample]) -> list[Guard]:
-    """Return the projections of the cells on single sensors and on pairs of them."""
-    if not cells:
-        return []
+def _hull(cells: Sequence[Cell], i: int) -> Bins | None:
+    """Return the bins of a sensor that the cells span."""
+    chosen = [cell[i] for cell in cells]
+    return (min(chosen), max(chosen)) if chosen else None
+
+
+def _steepest(evidence: Evidence, i: int) -> Bins | None:
+    """Return the interval of a sensor's bins that holds most of the loss in fewest steps (Kadane's maximum sum)."""
+    by_bin: dict[int, float] = {}
+    for cell, value in evidence.shares().items():
+        by_bin[cell[i]] = by_bin.get(cell[i], 0.0) + value
+    best, best_sum, start, running = None, 0.0, None, 0.0
+    for index in sorted(by_bin):
+        if running <= 0.0:
+            start, running = index, 0.0
+        running += by_bin[index]
+        if running > best_sum and start is not None:
+            best, best_sum = (start, index), running
+    return best
+
+
+def _combined(intervals: Sequence[Bins | None], evidence: Evidence) -> Iterator[Guard]:
+    """Yield the conditions on single sensors and on pairs of them that can be false and that a node can ask."""
     conjuncts = []
-    for i, sensor in enumerate(sensors):
-        seen = {cell[i] for world in worlds for cell in world.cells}
-        chosen = {cell[i] for cell in cells}
-        first, last = min(chosen), max(chosen)
-        everywhere = first <= min(seen) and last >= max(seen)
-        contiguous = sensor.numeric or chosen == {b for b in seen if first <= b <= last}
-        if sensor.guardable and not everywhere and contiguous:
-            conjuncts.append(_conjunct(sensor, first, last, seen))
-    return [Guard(pick) for size in (1, 2) for pick in combinations(conjuncts, size)]
+    for i, (sensor, bins) in enumerate(zip(evidence.sensors, intervals, strict=True)):
+        seen = {cell[i] for world in (evidence.offline, evidence.online) for cell in world.cells}
+        everywhere = bins is None or (bins[0] <= min(seen) and bins[1] >= max(seen))
+        if bins is not None and sensor.guardable and not everywhere:
+            conjuncts.append(_conjunct(sensor, bins, seen))
+    for size in (1, 2):
+        yield from map(Guard, combinations(conjuncts, size))
 
 
-def _conjunct(sensor: Sensor, first: int, last: int, seen: set[int]) -> Conjunct:
+def _conjunct(sensor: Sensor, bins: Bins, seen: set[int]) -> Conjunct:
     """Return the interval of the bins, left open at an end beyond which nothing was ever seen."""
-    low, high = sensor.interval(first, last)
+    low, high = sensor.interval(*bins)
     if sensor.numeric:
-        low = -np.inf if first <= min(seen) else low
-        high = np.inf if last >= max(seen) else high
+        low = -np.inf if bins[0] <= min(seen) else low
+        high = np.inf if bins[1] >= max(seen) else high
     return Conjunct(sensor, float(low), float(high))
 
 
-def _widened(guard: Guard, sensors: Sequence[Sensor]) -> Guard:
+def _widened(guard: Guard) -> Guard:
     """Widen every numeric interval by a few bins."""
-    by_name = {sensor.name: sensor for sensor in sensors}
-    wider = []
-    for conjunct in guard.conjuncts:
-        sensor = by_name[conjunct.sensor.name]
-        step = 0.0
-        if sensor.bins is not None and sensor.low is not None and sensor.high is not None:
-            step = WIDER * (sensor.high - sensor.low) / sensor.bins
-        wider.append(Conjunct(sensor, conjunct.low - step, conjunct.high + step))
-    return Guard(tuple(wider))
+    return Guard(tuple(_wider(conjunct) for conjunct in guard.conjuncts))
+
+
+def _wider(conjunct: Conjunct) -> Conjunct:
+    sensor = conjunct.sensor
+    if sensor.bins is None or sensor.low is None or sensor.high is None:
+        return conjunct
+    step = WIDER * (sensor.high - sensor.low) / sensor.bins
+    return Conjunct(sensor, conjunct.low - step, conjunct.high + step)

@@ -17,7 +17,7 @@ from pytest_tarl.search import (
     Mutate,
     Trials,
     confirmed,
-    known_value,
+    operand_effect,
 )
 from tarl_lint.model import Operand
 
@@ -77,13 +77,7 @@ class EpsilonGreedy:
         for action, totals in self.seen.items():
             mutation = self.actions[action].mutations[0]
             operand = mutation.operand
-            effect = OperandEffect(
-                operand.code,
-                known_value(operand),
-                float(mutation.value),
-                fmean(totals) - base,
-                not operand.literal,
-            )
+            effect = operand_effect(mutation, fmean(totals) - base)
             key = (str(operand.site), operand.code)
             if key not in best or effect.effect > best[key].effect:
                 best[key] = effect

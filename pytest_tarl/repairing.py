@@ -17,9 +17,8 @@ from pytest_tarl.fixture import Fixture
 from pytest_tarl.model import Comparison, Edit, Guard, OperandEffect, Reason, Repair, SearchTrace, SitePlace
 from pytest_tarl.mutate import Mutation, guard_text, is_integral, mutations, rewrite
 from pytest_tarl.recording import Progress, sound
-from pytest_tarl.report.words import world_name
 from pytest_tarl.rollout import EpisodePlan, Rollout
-from pytest_tarl.search import BudgetSpentError, Candidate, Goal, Pair, Strategy, Trials
+from pytest_tarl.search import BudgetSpentError, Candidate, Goal, Pair, Strategy, Trials, effective_value
 from pytest_tarl.settings import Options
 from pytest_tarl.sweep import Sweep
 from tarl_lint.api import Analysis
@@ -111,9 +110,15 @@ class RepairShop:
 def repair(shop: RepairShop) -> Repaired:
     """Search, guard, accept."""
     comparison = shop.comparison
-    worlds = (shop.fixture.sample, shop.online.recorded.sample)
-    guards = candidates.candidate_guards(comparison.region, comparison.sensors, worlds)
-    telling = candidates.telling(guards, comparison.losses, worlds[1], comparison.sensors, MOST_GUARDS)
+    evidence = candidates.Evidence(
+        comparison.sensors,
+        shop.fixture.sample,
+        shop.online.recorded.sample,
+        comparison.region,
+        comparison.losses,
+    )
+    guards = candidates.candidate_guards(evidence)
+    telling = candidates.telling(guards, evidence, MOST_GUARDS)
     accepted: Accepted | None = None
     searches: list[SearchTrace] = []
     effects: dict[str, list[OperandEffect]] = {}
@@ -270,9 +275,8 @@ def _repair(shop: RepairShop, accepted: Accepted | None) -> Repair:
 
 def _edit(mutation: Mutation) -> Edit:
     operand = mutation.operand
-    return Edit(
-        operand.span.path, operand.span.line, operand.code, float(mutation.value), not operand.literal
-    )
+    value = effective_value(mutation)
+    return Edit(operand.span.path, operand.span.line, operand.code, value, operand.value is None)
 
 
 def _evidence(shop: RepairShop, accepted: Accepted, guard: str) -> list[str]:
@@ -282,7 +286,7 @@ def _evidence(shop: RepairShop, accepted: Accepted, guard: str) -> list[str]:
     repaired = [outcome.total for outcome in acceptance.drifted]
     nominal = [outcome.total for outcome in acceptance.nominal]
     lines = [
-        f"Repair of {shop.fixture.test} under {world_name(shop.comparison)}, seed {shop.options.seed}",
+        f"Repair of {shop.fixture.test} under the drift {shop.comparison.drift or 'on-line'}, seed {shop.options.seed}",
         f"when: {guard or 'always'}",
         (
             f"reward per episode: off-line {fmean(totals['offline']):.4g}, on-line {fmean(totals['online']):.4g}, "

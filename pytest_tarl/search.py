@@ -108,6 +108,16 @@ class Strategy(Protocol):
         """Return, per site id, what each of its operands was found to gain."""
 
 
-def known_value(operand: Operand) -> float | None:
-    """Return the operand's constant as a number, where it is known."""
-    return None if operand.value is None else float(operand.value)
+def operand_effect(mutation: Mutation, gain: float) -> OperandEffect:
+    """Say what a mutation's value gained; a constant known only at run time has a factor for a value."""
+    constant = mutation.operand.value
+    known = None if constant is None else float(constant)
+    return OperandEffect(mutation.operand.code, known, effective_value(mutation), gain, factor=known is None)
+
+
+def effective_value(mutation: Mutation) -> float:
+    """Return the value that the use has under the mutation; of a constant known only at run time, the factor."""
+    constant, value = mutation.operand.value, float(mutation.value)
+    if mutation.operand.literal or constant is None or isinstance(constant, bool):
+        return value
+    return constant * value if constant else value

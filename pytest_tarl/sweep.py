@@ -11,7 +11,7 @@ from math import sqrt
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
-from pytest_tarl.search import FACTORS, Candidate, Goal, Mutate, Trials, confirmed, known_value
+from pytest_tarl.search import FACTORS, Candidate, Goal, Mutate, Trials, confirmed, operand_effect
 from tarl_lint.model import Operand
 
 
@@ -27,7 +27,7 @@ class Sweep:
         self.trials = trials
         self.goal = goal
         self._gains: dict[tuple[Operand, Guard], dict[float, float]] = {}  # factor → gain in reward
-        self._best: dict[Operand, tuple[float, float]] = {}  # gain and value
+        self._best: dict[Operand, OperandEffect] = {}
         self._tried: set[Candidate] = set()
 
     def candidates(self) -> Iterator[Candidate]:
@@ -42,8 +42,7 @@ class Sweep:
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, per site, what each operand's best value gained over the unmutated run of the same seed."""
         found: dict[str, list[OperandEffect]] = {}
-        for operand, (gain, value) in self._best.items():
-            effect = OperandEffect(operand.code, known_value(operand), value, gain, not operand.literal)
+        for operand, effect in self._best.items():
             found.setdefault(str(operand.site), []).append(effect)
         return found
 
@@ -62,8 +61,8 @@ class Sweep:
             return
         gain = total - base.total
         self._gains.setdefault((operand, guard), {1.0: 0.0})[factor] = gain
-        if operand not in self._best or gain > self._best[operand][0]:
-            self._best[operand] = (gain, float(mutation.value))
+        if operand not in self._best or gain > self._best[operand].effect:
+            self._best[operand] = operand_effect(mutation, gain)
         if total >= self.goal.near and confirmed(candidate, self.trials, self.goal, pair):
             yield candidate
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pytest_tarl import Sensor
-from pytest_tarl.candidates import ALWAYS, candidate_guards, firing_episodes, holds, share, telling
+from pytest_tarl.candidates import ALWAYS, Evidence, candidate_guards, firing_episodes, holds, share, telling
 from pytest_tarl.model import Conjunct, Guard, Region
 from pytest_tarl.sensors import Cell
 from pytest_tarl.statistics import Sample, merge, sample
@@ -44,8 +44,20 @@ ONLINE = drive(3, range(4, 7))
 REGION = Region(tuple((x, 1) for x in (4, 5, 6)))
 
 
+LOSSES = {(4, 1): 2.0, (5, 1): 2.0, (6, 1): 2.0, (8, 0): 0.1, (1, 0): -5.0}
+
+
+def evidence(
+    region: Region,
+    sensors: tuple[Sensor, ...] = (X, WET),
+    worlds: tuple[Sample, Sample] = (OFFLINE, ONLINE),
+    losses: dict[Cell, float] | None = None,
+) -> Evidence:
+    return Evidence(sensors, *worlds, region, losses or {})
+
+
 def test_single_sensors_come_before_pairs_and_narrow_before_wide() -> None:
-    guards = candidate_guards(REGION, (X, WET), (OFFLINE, ONLINE))
+    guards = candidate_guards(evidence(REGION))
     assert guards[0] == ALWAYS
     assert guards[1] == Guard((Conjunct(WET, 1.0, 1.0),))
     assert guards[2] == Guard((Conjunct(X, 4.0, 7.0),))
@@ -55,39 +67,46 @@ def test_single_sensors_come_before_pairs_and_narrow_before_wide() -> None:
 
 
 def test_guards_to_search_under_hold_where_much_is_lost_and_seldom_elsewhere() -> None:
-    guards = candidate_guards(REGION, (X, WET), (OFFLINE, ONLINE))
-    losses = {(4, 1): 2.0, (5, 1): 2.0, (6, 1): 2.0, (8, 0): 0.1, (1, 0): -5.0}
     mixed = merge([drive(3, range(4, 7)), drive(4, range(0))])
-    chosen = telling(guards, losses, mixed, (X, WET), most=2)
-    assert chosen == (Guard((Conjunct(WET, 1.0, 1.0),)), ALWAYS)
+    seen = evidence(REGION, worlds=(OFFLINE, mixed), losses=LOSSES)
+    assert telling(candidate_guards(seen), seen, most=2) == (Guard((Conjunct(WET, 1.0, 1.0),)), ALWAYS)
+
+
+def test_losses_propose_a_guard_where_the_region_spans_everything() -> None:
+    spread = Region((*REGION.cells, (0, 0), (9, 0)))
+    seen = evidence(spread, losses=LOSSES)
+    assert Guard((Conjunct(WET, 1.0, 1.0),)) in candidate_guards(seen)
+    assert Guard((Conjunct(X, 4.0, 7.0),)) in candidate_guards(seen)
+    assert candidate_guards(evidence(spread)) == (ALWAYS,)
 
 
 def test_without_a_telling_guard_the_search_runs_without_one() -> None:
-    guards = candidate_guards(REGION, (X, WET), (OFFLINE, ONLINE))
-    assert telling(guards, {(1, 0): 3.0}, ONLINE, (X, WET), most=3) == (ALWAYS,)
-    assert telling((), {}, ONLINE, (X, WET), most=3) == (ALWAYS,)
+    seen = evidence(REGION, losses={(1, 0): -3.0})
+    assert telling(candidate_guards(seen), seen, most=3) == (ALWAYS,)
+    assert telling((), seen, most=3) == (ALWAYS,)
 
 
 def test_a_sensor_that_no_node_can_read_is_in_no_guard() -> None:
     online = drive(3, range(4, 7), 3)
-    guards = candidate_guards(Region(((4, 1, 0),)), (X, WET, SEEN), (online, online))
+    guards = candidate_guards(evidence(Region(((4, 1, 0),)), (X, WET, SEEN), (online, online)))
     assert all(conjunct.sensor != SEEN for guard in guards for conjunct in guard.conjuncts)
 
 
 def test_a_region_that_is_everywhere_proposes_no_condition() -> None:
     everywhere = Region(tuple(ONLINE.cells))
     dry = drive(1, range(0))
-    guards = candidate_guards(everywhere, (X, WET), (dry, drive(4, range(10))))
+    guards = candidate_guards(evidence(everywhere, worlds=(dry, drive(4, range(10)))))
     assert all(conjunct.sensor == WET for guard in guards for conjunct in guard.conjuncts)
 
 
 def test_an_interval_is_open_where_nothing_lies_beyond() -> None:
-    guards = candidate_guards(Region(((8, 0), (9, 0))), (X, WET), (OFFLINE, ONLINE))
+    guards = candidate_guards(evidence(Region(((8, 0), (9, 0)))))
     assert Guard((Conjunct(X, 8.0, math.inf),)) in guards
 
 
 def test_novel_cells_propose_their_own_value() -> None:
-    guards = candidate_guards(Region(((2, 0), (3, 0)), ((5, 1),)), (X, WET), (drive(1, range(0)), ONLINE))
+    seen = evidence(Region(((2, 0), (3, 0)), ((5, 1),)), worlds=(drive(1, range(0)), ONLINE))
+    guards = candidate_guards(seen)
     assert Guard((Conjunct(WET, 1.0, 1.0),)) in guards
 
 
