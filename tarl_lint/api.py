@@ -40,7 +40,7 @@ class Analysis:
     @cached_property
     def prober(self) -> Prober:
         """Return who runs the analysis once more, looking at single statements."""
-        return Prober(self.machine)
+        return Prober(self.machine, self.flows)
 
     def operands(self, site: SiteId) -> tuple[Operand, ...]:
         """Return the constants that a site uses, in the order of the text."""

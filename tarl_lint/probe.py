@@ -2,56 +2,94 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from tarl_lint.model import Operand, SiteId, Span
-from tarl_lint.taint import closure
+from tarl_lint.holding import Holding, Origins
+from tarl_lint.model import Flow, Operand, SiteId
+from tarl_lint.operands import uses
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.link import Linker
 from tarl_lint.valueflow.machine import Machine
-from tarl_lint.valueflow.sites import Text, Written
-from tarl_lint.valueflow.values import Frame, Obj, Value, join
-
-Place = tuple[str, ir.Pos]  # path and position of an expression
-MAX_PATHS = 400  # expressions that are looked at for one state
-
-
-@dataclass(slots=True)
-class Use:
-    """An expression of a statement: what it was in any execution."""
-
-    expr: ir.Expr
-    value: Value
+from tarl_lint.valueflow.sites import Text
+from tarl_lint.valueflow.values import Frame, Value, join
 
 
 @dataclass(slots=True)
 class Seen:
-    """What was seen at one statement: its expressions, and what its variables may hold before it runs."""
+    """What was seen at one statement: what its expressions were, and what its variables hold before it runs."""
 
-    uses: dict[ir.Pos, Use] = field(default_factory=dict)
-    holding: dict[str, Value] = field(default_factory=dict)
-    visits: int = 0
+    statement: ir.Stmt
+    path: str
+    values: dict[ir.Pos, Value] = field(default_factory=dict)
+    holding: Holding = field(default_factory=Holding)
 
 
 class Prober:
-    """Remembers what was seen at each statement of the analysed modules."""
+    """Looks at every site of the flows in one more run."""
 
-    def __init__(self, machine: Linker) -> None:
+    def __init__(self, machine: Linker, flows: Sequence[Flow]) -> None:
         self.machine = machine
         self.texts = {path: Text(module) for path, module in machine.modules.items()}
+        self.origins = Origins(machine)
+        self.starts = {
+            (step.span.path, step.span.line, step.span.column): step.site for f in flows for step in f.steps
+        }
         self.seen: dict[SiteId, Seen] = {}
-        self.places: dict[tuple[str, tuple[int, int]], SiteId] = {}
-        forward: list[list[int]] = [[] for _ in machine.graph.places]
-        self.wanted: set[SiteId] = set()
-        self.forward = forward
+        self._columns: dict[tuple[str, ir.Pos], SiteId | None] = {}
+        machine.probe, machine.watch = self._look, self._arrive
+        machine.replay()
+        machine.probe = machine.watch = None
 
     def operands(self, site: SiteId) -> tuple[Operand, ...]:
-        """Return the constants that a site uses."""
-        return ()
+        """Return the constants that a site uses, in the order of the text."""
+        seen = self.seen.get(site)
+        if seen is None:
+            return ()
+        text = self.texts[seen.path]
+        found: dict[ir.Pos, Operand] = {}
+        for expr in uses(seen.statement, seen.values, self.origins):
+            origins = self.origins.of(expr, seen.values.get(expr.pos))
+            if not origins or expr.pos in found:
+                continue
+            values = {(type(o.value), o.value) for o in origins}
+            single = next(iter(origins)) if len(origins) == 1 else None
+            value = next(iter(origins)).value if len(values) == 1 else None
+            span = text.stretch(expr.pos)
+            definition = None
+            if single is not None:
+                definition = self.texts[single.path].stretch(single.pos) if single.path else span
+            found[expr.pos] = Operand(site, span, text.code(span), value, definition)
+        return tuple(sorted(found.values(), key=lambda o: o.span))
 
     def holders(self, topic: str, field: str, site: SiteId) -> tuple[str, ...]:
-        """Return expressions that hold a topic's field unchanged at a site."""
-        return ()
+        """Return expressions that hold a topic's field unchanged at a site, shortest first."""
+        seen = self.seen.get(site)
+        return seen.holding.expressions(topic.lstrip("/"), field, self.origins) if seen is not None else ()
 
+    def _site(self, frame: Frame, statement: ir.Stmt) -> SiteId | None:
+        key = (frame.program.path, statement.pos)
+        if key not in self._columns:
+            span = self.texts[key[0]].stretch(statement.pos)
+            self._columns[key] = self.starts.get((span.path, span.line, span.column))
+        return self._columns[key]
 
-__all__ = ["Frame", "Machine", "Obj", "Span", "Written", "closure", "join"]
+    def _arrive(self, frame: Frame, statement: ir.Stmt) -> None:
+        """Look at the variables before a statement runs."""
+        site = self._site(frame, statement)
+        if site is None:
+            return
+        seen = self.seen.get(site)
+        if seen is None:
+            seen = self.seen[site] = Seen(statement, frame.program.path)
+        seen.holding.look(self.machine, frame)
+
+    def _look(self, machine: Machine, frame: Frame, statement: ir.Stmt, expr: ir.Expr, value: Value) -> None:  # noqa: ARG002
+        """Look at what an expression is."""
+        site = self._site(frame, statement)
+        if site is None:
+            return
+        seen = self.seen.get(site)
+        if seen is not None:
+            before = seen.values.get(expr.pos)
+            seen.values[expr.pos] = value if before is None else join(before, value)

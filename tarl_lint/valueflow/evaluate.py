@@ -220,6 +220,7 @@ class Evaluation(Heap):
         where = pointer(obj)
         exact = True
         for number, (item, value) in enumerate(items):
+            value = self.entry(item, value, frame, (expr.slot, number))
             if isinstance(item, ir.Starred):
                 exact = False
                 self.add_element(where, self.elements(value))
@@ -233,12 +234,20 @@ class Evaluation(Heap):
         obj = self.allocate("mapping", frame, ("display", expr.slot))
         where = pointer(obj)
         for key, item in expr.items:
-            value = self.evaluate(item, frame)
+            value = self.entry(item, self.evaluate(item, frame), frame, (expr.slot, item.pos))
             if key is None:
                 self.absorb(obj, value)
             else:
                 self.write_item(where, self.evaluate(key, frame), value)
         return where
+
+    def entry(self, expr: ir.Expr, value: Value, frame: Frame, slot: object) -> Value:
+        """Return an element of a display; numbers get a node of their own, so that they are found again."""
+        if not isinstance(expr, ir.Const) or not isinstance(expr.value, (int, float)):
+            return value
+        node = self.node(frame, ("entry", slot), "assign")
+        self.mark(node, expr, value, frame)
+        return self.carry(value, node)
 
     def absorb(self, obj: Obj, value: Value) -> None:
         """Copy the elements of what a value may be into an object."""
@@ -332,9 +341,9 @@ class Evaluation(Heap):
     def mark(self, node: int, expr: ir.Expr, value: Value, frame: Frame) -> None:
         """Note that a node is a constant, or passes on another unchanged."""
         known, constant = value.constant()
-        if isinstance(expr, (ir.Name, ir.Attribute, ir.Item)):
+        if isinstance(expr, (ir.Name, ir.Attribute, ir.Item)) or _conversion(expr):
             self.graph.copies.add(node)
-        elif known and not value.deps and isinstance(constant, (bool, int, float)):
+        elif known and isinstance(constant, (bool, int, float)):
             self.graph.literals[node] = (constant, expr.pos, frame.program.path)
 
     def class_of(self, obj: Obj) -> ClassInfo | None:
@@ -342,6 +351,11 @@ class Evaluation(Heap):
         cls = obj.info if obj.kind == "instance" else obj
         info = cls.info if isinstance(cls, Obj) else None
         return info if isinstance(info, ClassInfo) else None
+
+
+def _conversion(expr: ir.Expr) -> bool:
+    """Tell whether an expression is `float(x)`, which leaves the number what it is."""
+    return isinstance(expr, ir.Call) and isinstance(expr.function, ir.Name) and expr.function.name == "float"
 
 
 EVALUATE: Mapping[type, Callable[[Any, Any, Frame], Value]] = {

@@ -228,6 +228,8 @@ class Execution(Ros):
     def _loop_head(self, s: ir.Loop, source: Value, frame: Frame) -> tuple[bool, bool]:
         """Evaluate the condition or bind the next element; tell whether the body and the end are reached."""
         frame.statement = s
+        if self.watch is not None:
+            self.watch(frame, s)
         if frame.root_waits and s.target is None:
             self.wait(frame)
         if s.target is None:

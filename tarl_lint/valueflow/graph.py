@@ -35,6 +35,7 @@ class Graph:
     numbers: dict[Hashable, int] = field(default_factory=dict)
     literals: dict[int, tuple[object, ir.Pos, str]] = field(default_factory=dict)  # node → constant it is
     copies: set[int] = field(default_factory=set)  # nodes that pass on their only input unchanged
+    carries: set[int] = field(default_factory=set)  # nodes that pass on one thing inside an object
     walking: set[int] = field(default_factory=set)  # carriers being followed upwards
 
     def node(self, key: Hashable, place: Place, branches: Branches) -> int:
@@ -88,6 +89,7 @@ class Graph:
         if carrier == item:
             return item
         node = self.node(("carry", carrier, item), self.places[carrier], self.branches[carrier])
+        self.carries.add(node)
         if node not in self.walking:
             self.walking.add(node)
             self.flow(self.through(frozenset([item]), frozenset(self.data[carrier])), node)

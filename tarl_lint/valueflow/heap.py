@@ -107,12 +107,13 @@ class Heap(Machine):
         """Return what a field of one object may be."""
         stored = self.store.get((obj, name))
         if stored is not None:
-            if obj.root().kind == "message" and not self._written_here(obj, name):
+            if obj.root().kind == "message" and not self.written_here(obj, name):
                 return join(stored, pointer(obj.sub(name)))  # each message brings its own
             return stored
         return self.default(obj, name)
 
-    def _written_here(self, obj: Obj, name: str) -> bool:
+    def written_here(self, obj: Obj, name: str) -> bool:
+        """Tell whether this run has stored to a field."""
         return any((obj, name) in layer for layer in self.store.layers)
 
     def default(self, obj: Obj, name: str) -> Value:

@@ -42,7 +42,8 @@ class Library(Calls):
         if written is not None and written < len(arguments[0]):
             self.change(arguments[0][written], Value(deps), call.arguments[written:], frame)
         if catalog.scalar(qualified):
-            return Value(deps)
+            same = qualified == "builtins.float" and len(arguments[0]) == 1
+            return Value(deps, arguments[0][0].pts if same else frozenset())
         return self.new_object(arguments, deps, frame, call, fields=name[:1].isupper())
 
     def new_object(

@@ -280,7 +280,9 @@ class Ros(Library):
         """Return a parameter's value: its default, as far as is known here."""
         default = argument(arguments, fact.extra)
         if default is BOTTOM:
-            return UNKNOWN
+            node = self.node(frame, ("parameter", call.slot), "assign")
+            self.graph.literals[node] = (None, call.pos, frame.program.path)
+            return Value(frozenset([node]))
         expr = call.arguments[1] if len(call.arguments) > 1 else dict(call.keywords).get(fact.extra[1])
         return self._default_of(default, expr, frame, ("parameter", call.slot))
 
