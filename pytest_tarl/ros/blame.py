@@ -40,6 +40,11 @@ def describe(place: Place | None) -> str:
     return f"{path}, line {line}" + ("" if function == "<module>" else f", in {function}")
 
 
+def is_library(file: str) -> bool:
+    """Tell a file of Python or of an installed package from one of the user's."""
+    return file.startswith((*_LIBRARIES, "<"))
+
+
 def _outwards(frame: FrameType | None) -> Iterator[Place]:
     while frame is not None:
         yield frame.f_code.co_filename, frame.f_lineno, frame.f_code.co_name
@@ -51,7 +56,7 @@ def _innermost(places: Iterator[Place]) -> Place | None:
     for place in places:
         if place[0].startswith(_HERE):
             continue
-        if not place[0].startswith((*_LIBRARIES, "<")):
+        if not is_library(place[0]):
             return place
         fallback = fallback or place
     return fallback

@@ -94,14 +94,20 @@ class Ros:
         return standins_installed(self)
 
     def close(self) -> None:
-        """End every node as ROS would, then forget everything."""
+        """End every node as ROS would, then forget everything. Raises NodeError for one that does not let itself."""
         if self.closed:
             return
         self.closed = True
         self.scheduler.failure = None
+        failures = []
         for process in self.processes:
-            self._run(process.end)
+            try:
+                self._run(process.end)
+            except Exception as error:  # noqa: PERF203 (the others are to be ended all the same)
+                failures.append(error)
         self.scheduler.close()
+        if failures:
+            raise failures[0]
 
     def _run(self, job: Callable[..., object], *args: object) -> None:
         """Do something that lets nodes run: watch them, and raise what they failed with."""

@@ -71,7 +71,7 @@ class Process:
         if self.ending and getattr(error, "tarl_shutdown", False):
             return
         if isinstance(error, Spinning):
-            self._fail(self.spins(blame.of_traceback(error.__traceback__)))
+            self.scheduler.failure = self.spins(blame.of_traceback(error.__traceback__))
         elif isinstance(error, SystemExit):
             if task is self.main and error.code not in (None, 0) and not self.ending:
                 self._fail(self._ended_in(error))

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import queue
+import sys
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from types import FrameType
 from typing import Any
 
+from pytest_tarl.ros import blame
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.scheduler import Scheduler, Task, running_task
+
+_PASSED_THROUGH = (threading.__file__, queue.__file__, __file__)  # what they make, they make for their caller
 
 
 @contextmanager
@@ -121,15 +127,23 @@ class ReentrantLock(Lock):
 def _instead(real: Callable[[], Any], own: Callable[[Scheduler], Lock]) -> Callable[[], Any]:
     def make() -> Any:
         task = running_task()
-        return real() if task is None else own(task.process.scheduler)
+        return own(task.process.scheduler) if task is not None and _asked_by_node() else real()
 
     return make
+
+
+def _asked_by_node() -> bool:
+    """Tell a node's own code from a library that is imported meanwhile: its locks outlive the episode."""
+    frame: FrameType | None = sys._getframe(2)
+    while frame is not None and frame.f_code.co_filename in _PASSED_THROUGH:
+        frame = frame.f_back
+    return frame is not None and not blame.is_library(frame.f_code.co_filename)
 
 
 def _start(real: Callable[[threading.Thread], None]) -> Callable[[threading.Thread], None]:
     def start(thread: threading.Thread) -> None:
         task = running_task()
-        if task is None:
+        if task is None or not _asked_by_node():
             real(thread)
             return
         if "_tarl_task" in vars(thread):

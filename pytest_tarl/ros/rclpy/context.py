@@ -43,7 +43,11 @@ class Context:
     def shutdown(self) -> None:
         """Bring ROS down. Raises RCLError if it is."""
         if not self.ok():
-            raise RCLError("failed to shutdown: rcl_shutdown already called on the given context")
+            error = RCLError("failed to shutdown: rcl_shutdown already called on the given context")
+            error.tarl_shutdown = (
+                self.process.ending
+            )  # the usual last line of a program that was ended from outside
+            raise error
         self._stop()
 
     def try_shutdown(self) -> None:

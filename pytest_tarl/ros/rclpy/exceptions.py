@@ -17,6 +17,8 @@ class NotInitializedException(Exception):  # noqa: N818 (these names are rclpy's
 class RCLError(RuntimeError):
     """What the layer below Python would refuse."""
 
+    tarl_shutdown = False
+
 
 class InvalidNodeNameException(Exception):  # noqa: N818
     """A node name has characters that it may not have."""

@@ -81,6 +81,8 @@ class Client:
         ):
             clock.wait(until)
         self._directory.waiting.remove(task)
+        if self.node.process.ending:
+            self.node.process.refuse_to_wait()
         return self.service_is_ready()
 
     def call_async(self, request: Any) -> Future:

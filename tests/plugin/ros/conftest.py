@@ -32,7 +32,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
         return ros
 
     yield start_node
-    for ros, installed in open_episodes:
+    for ros, installed in reversed(open_episodes):
         ros.close()
         installed.__exit__(None, None, None)
 

@@ -384,6 +384,24 @@ def test_node_that_refuses_to_end_is_ended(start: Start) -> None:
     assert not ros.alive
 
 
+def test_node_that_spins_at_its_end_is_told_and_the_others_are_ended(start: Start) -> None:
+    ros = start(
+        """
+        import rospy
+        rospy.init_node("hanging")
+        rospy.spin()
+        while True:
+            pass
+    """,
+        watchdog_limit=0.2,
+    )
+    start("import rospy; rospy.init_node('other'); rospy.spin(); ended = True", ros=ros)
+    with pytest.raises(NodeError, match=r"'/hanging' never waits.*node\.py, line [56]"):
+        ros.close()
+    assert ros.namespace["ended"]
+    assert not ros.alive
+
+
 def test_main_program_that_returns_ends_its_node_and_its_callbacks(start: Start) -> None:
     ros = start("""
         import rospy
@@ -594,6 +612,21 @@ def test_threads_and_locks_of_a_node_run_on_the_virtual_clock(start: Start) -> N
     """)
     ros.step(10.0)
     assert ros.namespace["log"] == [1.0, "item", 3.0, False]
+
+
+def test_libraries_imported_by_a_node_keep_real_locks(start: Start) -> None:
+    import _thread
+
+    ros = start(
+        """
+        import sys, threading
+        sys.modules.pop("concurrent.futures.thread", None)
+        import concurrent.futures.thread as library
+        own, theirs = type(threading.Lock()), type(library._global_shutdown_lock)
+    """
+    )
+    assert ros.namespace["theirs"] is _thread.LockType
+    assert ros.namespace["own"] is not _thread.LockType
 
 
 def test_stamps_are_the_virtual_time_unless_the_world_set_them(start: Start) -> None:
