@@ -36,11 +36,14 @@ def check_codes(codes: Sequence[str], where: str) -> None:
 
 def explanation(code: str) -> Iterator[Line]:
     """Yield what a rule is about, for the terminal. Raises UsageError for an unknown code."""
+    inside = False
     for line in page(code.upper()).splitlines():
-        if line.startswith("#"):
-            yield ((line.lstrip("# "), "strong"),)
-        elif not line.startswith("```"):
-            yield ((line, ""),)
+        if line.startswith("```"):
+            inside = not inside
+        elif inside:
+            yield ((f"    {line}".rstrip(), ""),)
+        else:
+            yield ((line.lstrip("# "), "strong" if line.startswith("#") else ""),)
 
 
 def page(code: str) -> str:
@@ -57,12 +60,15 @@ def page(code: str) -> str:
 
 def _examples(rule: ModuleType) -> str:
     """Return the snippets that are the rule's tests, as code blocks below headings."""
-    parts = (
-        f"\n## {heading}\n\n```python\n{inspect.cleandoc(snippet)}\n```\n"
+    return "".join(
+        f"\n## {heading}\n" + "".join(map(_block, snippets))
         for name, heading in _HEADINGS
-        for snippet in getattr(rule, name, ())
+        if (snippets := getattr(rule, name, ()))
     )
-    return "".join(parts)
+
+
+def _block(snippet: str) -> str:
+    return f"\n```python\n{inspect.cleandoc(snippet)}\n```\n"
 
 
 def write_pages(directory: Path) -> None:

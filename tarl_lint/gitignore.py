@@ -55,19 +55,23 @@ def _pattern(line: str) -> Pattern | None:
     negated = text.startswith("!")
     text = text[negated:]
     directories_only = text.endswith("/")
-    text = text.rstrip("/")
+    text = text.removesuffix("/")
     if not text:
         return None
     anywhere = "/" not in text
     try:
-        regex = re.compile(("(?:.*/)?" if anywhere else "") + _translate(text.lstrip("/")), re.DOTALL)
+        regex = re.compile(("(?:.*/)?" if anywhere else "") + _translate(text.removeprefix("/")), re.DOTALL)
     except re.error:
         return None
     return Pattern(regex, negated, directories_only)
 
 
-_PIECES: Final = (r"(?P<dirs>(?:^|(?<=/))\*\*/)|(?P<rest>/\*\*$)|(?P<star>\*+)|(?P<one>\?)"
-                    r"|(?P<set>\[[!^]?\]?[^]]*\])|\\(?P<escaped>.)|(?P<plain>.)")  # fmt: skip
+_MEMBER: Final = r"(?:\\.|[^]\\])"
+_PIECES: Final = (
+    r"(?P<dirs>(?:^|(?<=/))\*\*+/)|(?P<rest>/\*\*+$)|(?P<star>\*+)|(?P<one>\?)|\\(?P<escaped>.)"
+    rf"|\[(?P<negated>[!^]?)(?P<set>(?:\]|(?<=[!^]){_MEMBER}|(?![!^]){_MEMBER}){_MEMBER}*)\]|(?P<plain>.)"
+)
+_FIXED: Final = {"dirs": "(?:.*/)?", "rest": "/.*", "star": "[^/]*", "one": "[^/]"}
 
 
 def _translate(text: str) -> str:
@@ -76,11 +80,15 @@ def _translate(text: str) -> str:
 
 
 def _piece(match: re.Match[str]) -> str:
-    kind, text = match.lastgroup, match[0]
-    fixed = {"dirs": "(?:.*/)?", "rest": "/.*", "star": "[^/]*", "one": "[^/]"}
+    kind, text = match.lastgroup or "", match[0]
     if kind == "set":
-        body = text[1:-1].replace("\\", "\\\\")
-        return f"(?!/)[{'^' + body[1:] if body[0] in '!^' else body}]"
-    if text == "[":
-        return "(?!)"  # never closed: git matches nothing with it
-    return fixed.get(kind or "") or re.escape(match["escaped"] or text)
+        return f"(?!/)[{'^' if match['negated'] else ''}{_members(match['set'])}]"
+    if text in ("[", "\\"):
+        return "(?!)"  # never closed, or nothing escaped: git matches nothing with it
+    return _FIXED.get(kind) or re.escape(match["escaped"] or text)
+
+
+def _members(text: str) -> str:
+    """Write what stands between brackets as a regular expression has it there; `-` makes ranges in both."""
+    pieces = re.findall(r"\\.|.", text, re.DOTALL)
+    return "".join("-" if piece == "-" else re.escape(piece[-1]) for piece in pieces).replace("--", r"\-\-")

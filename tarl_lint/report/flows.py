@@ -10,6 +10,7 @@ from tarl_lint.model import Dependence, Finding, Flow, Sink, Source, Span, Step
 from tarl_lint.report.frame import frame
 from tarl_lint.report.line import Glyphs, Line, Style, View, columns, crop, tabs
 
+_WIDE: Final = 140  # columns of a statement where no terminal sets a limit
 _STYLES: Final[Mapping[Dependence, Style]] = {"data": "data", "control": "control", "context": "quiet"}
 
 
@@ -88,9 +89,9 @@ def _taint_list(flow: Flow, view: View) -> Iterator[Line]:
     for place, step in zip(places, flow.steps, strict=True):
         start = f"      {' ' * (margin - columns(place))}{place}  {step.role:<{roles}}  "
         style = _STYLES[step.dependence]
-        room = view.width - columns(start) - 2 if view.width else 0
+        room = (view.width or _WIDE) - columns(start) - 2
         text: Style = "quiet" if step.dependence == "context" else ""
-        code = crop(_one_line(step.code, view.glyphs.dots), room, view.glyphs.dots)
+        code = crop(_one_line(step.code), room, view.glyphs.dots)
         yield ((start, "quiet"), (_mark(step.dependence, view.glyphs), style), (" ", ""), (code, text))
 
 
@@ -98,9 +99,13 @@ def _where(step: Step, beside: str) -> str:
     return str(step.span.line) if step.span.path == beside else f"{step.span.path}:{step.span.line}"
 
 
-def _one_line(code: str, dots: str) -> str:
-    first, *more = tabs(code).strip().splitlines() or [""]
-    return f"{first} {dots}" if more else first
+def _one_line(code: str) -> str:
+    """Join the lines of a statement, with brackets closed up where a line ended or began at one."""
+    joined = ""
+    for line in (line.strip() for line in tabs(code).splitlines()):
+        tight = joined.endswith(("(", "[", "{")) or line.startswith((")", "]", "}"))
+        joined = joined.removesuffix(",") + line if line[:1] in ")]}" else joined + " " * (not tight) + line
+    return joined.strip()
 
 
 def _mark(dependence: Dependence, glyphs: Glyphs) -> str:

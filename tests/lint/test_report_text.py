@@ -144,6 +144,15 @@ def test_steps_in_other_files_name_them(example, result_of):
     assert "                    9  receive   ● def" in text
 
 
+def test_a_step_over_several_lines_is_joined(example, result_of):
+    code = "self.sub = self.create_subscription(\n    Odometry,\n    'odom',\n    self.on_odom,\n)"
+    flow = example.flow()
+    finding = replace(example.finding(), flow=replace(flow, steps=(replace(flow.steps[0], code=code),)))
+    assert "· self.sub = self.create_subscription(Odometry, 'odom', self.on_odom)\n" in shown(
+        result_of(finding)
+    )
+
+
 def test_long_lines_are_cut_to_the_terminal_and_whole_in_a_file(example, result_of):
     result = result_of(example.finding())
     narrow = shown(result, View(width=40)).splitlines()
