@@ -76,7 +76,7 @@ class World:
 
     def publish(self, bus: Bus) -> None:
         """Tell the node what the sensors see."""
-        bus.publish("/leg", UInt8(data=self.leg))
+        bus.publish("/leg", UInt8(data=self.leg + 1))
         bus.publish("/terrain", Bool(data=self.on_patch))
         odometry = Odometry()
         odometry.pose.pose.position.x = self.body.position.x + self.rng.normal(0.0, ODOMETRY_NOISE)
