@@ -100,7 +100,9 @@ def initial(source: Document, place: ast.AST, code: str) -> tuple[set[Constant],
 
 
 def is_checked(source: Document, place: ast.AST, code: str) -> bool:
-    """Tell whether the code around a place has made sure that `code` is not None."""
+    """Tell whether the code around a place, or at it, does not work anyway while `code` is None."""
+    if isinstance(place, ast.stmt) and _relies_on(place, code):
+        return True
     inner = place
     for outer in source.ancestors(place):
         if isinstance(outer, Scope):

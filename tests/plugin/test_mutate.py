@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import math
+from difflib import ndiff
+from pathlib import Path
 from textwrap import dedent, indent
 from typing import Any
 
@@ -15,6 +17,7 @@ from pytest_tarl import Sensor
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.mutate import Mutation, guard_text, is_integral, mutations, rewrite
+from tarl_lint.api import analyse
 from tarl_lint.model import Operand, SiteId, Span
 from tests.plugin.repairs import MUD, MUDDY_STRETCH, TOPICS, HandMade, TinyRos
 
@@ -435,3 +438,45 @@ def test_a_rewritten_node_runs_like_the_original_until_mud_comes() -> None:
     ros.deliver("/terrain", type("Bool", (), {"data": True}))
     step(1.0)
     assert ros.published == [5.0, 12.0]
+
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.mark.parametrize(
+    "node", ["shuttle/traveller.py", "shuttle/traveller_swapped.py", "line_follower/line_follower.py"]
+)
+def test_every_operand_of_the_examples_can_be_written_under_a_guard(node: str) -> None:
+    analysis = analyse([EXAMPLES / node], root=EXAMPLES)
+    operands = [operand for step in analysis.sites for operand in analysis.operands(step.site)]
+    assert len(operands) > 2
+    for operand in operands:
+        change = mutations(operand, 2.35, is_integral(analysis, operand))
+        assert change is not None
+        (text,) = rewrite(analysis, [change], MUDDY_STRETCH, TOPICS).values()
+        assert f"if {guard_text(MUDDY_STRETCH, analysis, [change], TOPICS)}" in text
+
+
+def test_the_repair_of_the_delivery_robot_reads_as_its_maintainer_would_write_it() -> None:
+    analysis = analyse([EXAMPLES / "shuttle" / "traveller.py"], root=EXAMPLES)
+    (gain,) = (
+        operand for step in analysis.sites for operand in analysis.operands(step.site) if operand.value == 5
+    )
+    (text,) = rewrite(analysis, [Mutation(gain, 12.0)], MUDDY_STRETCH, TOPICS).values()
+    (before,) = analysis.sources.values()
+    added = [line[2:] for line in ndiff(before.splitlines(), text.splitlines()) if line.startswith("+ ")]
+    assert "\n".join(added) == dedent(
+        """\
+        from std_msgs.msg import Bool, Float64
+        terrain = None
+
+
+        def on_terrain(message):
+            global terrain
+            terrain = message.data
+                if terrain and 4.0 <= pos < 7.0:
+                    vel = 12.0 * delta
+                else:
+                    vel = 5 * delta
+            rospy.Subscriber("/terrain", Bool, on_terrain)"""
+    )

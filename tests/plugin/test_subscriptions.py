@@ -483,7 +483,7 @@ def test_a_sensor_the_site_already_holds_needs_no_subscription() -> None:
     sources = {"node.py": SCRIPT}
     held = {("/odom", "pose.pose.position.x"): ("pos",)}
     changed = repaired(sources, guard=Guard((Conjunct(POSITION, 4.0, 7.0),)), held=held)["node.py"]
-    assert "    if pos is not None and 4.0 <= pos < 7.0:\n" in changed
+    assert "    if 4.0 <= pos < 7.0:\n" in changed
     assert changed.count("rospy.Subscriber") == 1
 
 
