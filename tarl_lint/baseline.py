@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +16,7 @@ FORMAT_VERSION: Final = 1  # 1: first format
 UNKNOWN: Final = "?"
 
 
-@dataclass(frozen=True, order=True)
+@dataclass(frozen=True)
 class Fingerprint:
     """What a flow is, apart from its place and its steps. Topics are texts, `?` when unknown."""
 
@@ -29,12 +28,15 @@ class Fingerprint:
     place: str  # qualified name of what publishes
     kind: Kind
 
+    def texts(self) -> tuple[str, ...]:
+        """Return everything that tells flows apart, in the order that a baseline is sorted by."""
+        return (self.package, self.owner, self.source, self.callback, self.sink, self.place, self.kind)
+
     def digest(self) -> str:
         """Return the fingerprint as 16 hexadecimal digits."""
         import hashlib  # OpenSSL, only where there are flows
 
-        fields = (self.package, self.owner, self.source, self.callback, self.sink, self.place, self.kind)
-        return hashlib.sha256("\0".join(fields).encode("utf-8", "surrogatepass")).hexdigest()[:16]
+        return hashlib.sha256("\0".join(self.texts()).encode("utf-8", "surrogatepass")).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
@@ -110,11 +112,14 @@ def merged(found: Iterable[Accepted], kept: Iterable[Accepted]) -> Baseline:
     for entry in (*found, *kept):
         counts[entry.fingerprint] += entry.count
         files.setdefault(entry.fingerprint, set()).update(entry.files)
-    return Baseline(tuple(Accepted(f, counts[f], tuple(sorted(files[f]))) for f in sorted(counts)))
+    ordered = sorted(counts, key=Fingerprint.texts)
+    return Baseline(tuple(Accepted(f, counts[f], tuple(sorted(files[f]))) for f in ordered))
 
 
 def load(path: Path) -> Baseline:
     """Read a baseline. Raises BaselineError for a file that is damaged, foreign, or of a later format."""
+    import json  # only where there is a baseline
+
     try:
         document = json.loads(path.read_bytes())
     except OSError as error:
@@ -166,6 +171,8 @@ def _reason(error: Exception) -> str:
 
 def dumps(baseline: Baseline) -> str:
     """Return the file's text: one flow a line, in words, so that a review shows what came and what went."""
+    import json
+
     lines = ",\n".join(f"  {json.dumps(_words(entry), ensure_ascii=False)}" for entry in baseline.entries)
     flows = f"[\n{lines}\n ]" if lines else "[]"
     return f'{{"format": {FORMAT_VERSION}, "tool": "tarl-lint",\n "flows": {flows}}}\n'

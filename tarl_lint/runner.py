@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import traceback
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -137,6 +136,8 @@ def _analyse(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
     except Exception as error:
         if _debugging():
             raise
+        import traceback
+
         last = traceback.extract_tb(error.__traceback__)[-1]
         what = f"{type(error).__name__}: {error}".rstrip(": ")
         raise AnalysisBug(
