@@ -11,7 +11,6 @@ from __future__ import annotations
 import operator
 from array import array
 from collections.abc import Callable, Sequence
-from copy import copy
 from functools import cache
 from typing import Any, ClassVar
 
@@ -297,13 +296,13 @@ def _copy_line(field: Field, position: int) -> str:
 
 
 def _copier(field: Field) -> Callable[[Any], Any]:
-    if field.shape == "one":
-        if not field.primitive:
-            return _nested(field.base)._tarl_copy
-        return (lambda value: values.as_float32(value, field.name)) if field.base == "float32" else copy
+    if not field.primitive:
+        element = _nested(field.base)._tarl_copy
+        return element if field.shape == "one" else lambda value: [element(item) for item in value]
+    if field.shape == "one":  # only float32 changes on the wire
+        return lambda value: values.as_float32(value, field.name)
     if field.base in CODES and field.base != "byte":
-        return copy
-    if field.primitive:
-        return list
-    element = _nested(field.base)._tarl_copy
-    return lambda value: [element(item) for item in value]
+        return (
+            operator.itemgetter(slice(None)) if field.shape == "sequence" else operator.methodcaller("copy")
+        )
+    return list

@@ -6,8 +6,7 @@ from __future__ import annotations
 
 import inspect
 from collections import deque
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.process import current_process
@@ -19,7 +18,17 @@ from pytest_tarl.ros.scheduler import current_task
 if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.node import Node
 
-Work = tuple[Any, Callable[[], Any]]  # an entity (for its callback group) and what to run
+
+class Entity(Protocol):
+    """Something of a node that an executor can run when it is ready."""
+
+    callback_group: Any
+
+    def is_ready(self) -> bool:
+        """Tell whether there is something to do."""
+
+    def run(self) -> Any:
+        """Do it; a coroutine is returned for the executor to go on with."""
 
 
 class ExternalShutdownException(Exception):  # noqa: N818 (these names are rclpy's)
@@ -49,7 +58,7 @@ class Executor:
         self._clock = self.process.scheduler
         self._nodes: list[Node] = []
         self._tasks: list[Task] = []
-        self._batch: deque[Work] = deque()
+        self._batch: deque[Entity] = deque()
         self._waiting: list[RunningTask] = []
         self._is_shutdown = False
         self.context.on_wake(self.wake)
@@ -125,7 +134,7 @@ class Executor:
         if work is not None:
             self._run(work)
 
-    def _next_work(self, timeout_sec: float | None, future: Future | None) -> Work | None:
+    def _next_work(self, timeout_sec: float | None, future: Future | None) -> Entity | None:
         until = _until(self._clock.time, timeout_sec)
         while True:
             if self.process.ending:
@@ -139,48 +148,30 @@ class Executor:
                 return None
             self._wait(until)
 
-    def _pop(self) -> Work | None:
-        """Take the next piece of what was ready at the last look; look again when that is used up."""
-        for fresh in (False, True):
-            if fresh:
-                self._batch.extend(self._ready())
-            for _ in range(len(self._batch)):
-                entity, take = self._batch.popleft()
-                if _still_ready(entity):
-                    group = getattr(entity, "callback_group", None)
-                    if group is None or group.can_execute(entity):
-                        return entity, take
+    def _pop(self) -> Entity | None:
+        """Take the next of what was ready at the last look; look again when that is used up."""
+        entity = self._next_in_batch()
+        if entity is None:
+            self._batch.extend(self._ready())
+            entity = self._next_in_batch()
+        return entity
+
+    def _next_in_batch(self) -> Entity | None:
+        while self._batch:
+            entity = self._batch.popleft()
+            group = entity.callback_group
+            if entity.is_ready() and (group is None or group.can_execute(entity)):
+                return entity
         return None
 
-    def _ready(self) -> Iterator[Work]:
+    def _ready(self) -> list[Entity]:
         """List what is ready, in rclpy's order: tasks, then per node timers, subscriptions, clients, services."""
-        self._tasks = [task for task in self._tasks if not task.done() and not task.cancelled()]
-        for task in self._tasks:
-            if not task.blocked:
-                yield task, task
+        if self._tasks:
+            self._tasks = [task for task in self._tasks if not task.done() and not task.cancelled()]
+        found: list[Entity] = [task for task in self._tasks if task.is_ready()]
         for node in self._nodes:
-            for timer in node.timers_:
-                if timer.is_ready():
-                    yield timer, self._taking_timer(timer)
-            for subscription in node.subscriptions_:
-                if subscription.queue:
-                    yield subscription, self._taking_message(subscription)
-            for client in node.clients_:
-                if client.queue:
-                    yield client, client.handle
-            for service in node.services_:
-                if service.queue:
-                    yield service, service.handle
-
-    def _taking_timer(self, timer: Any) -> Callable[[], Any]:
-        def take() -> Any:
-            timer.take()
-            return timer.callback() if timer.callback is not None else None
-
-        return take
-
-    def _taking_message(self, subscription: Any) -> Callable[[], Any]:
-        return lambda: subscription.callback(subscription.queue.popleft())
+            found += [entity for entity in node.entities() if entity.is_ready()]
+        return found
 
     def _wait(self, until: int | None) -> None:
         due = [timer.due for node in self._nodes for timer in node.timers_ if not timer.is_canceled()]
@@ -194,13 +185,12 @@ class Executor:
         finally:
             self._waiting.remove(task)
 
-    def _run(self, work: Work) -> None:
-        entity, take = work
-        group = getattr(entity, "callback_group", None)
+    def _run(self, work: Entity) -> None:
+        group = work.callback_group
         if group is not None:
             group.running += 1
         try:
-            outcome = take()
+            outcome = work.run()
         finally:
             if group is not None:
                 group.running -= 1
@@ -230,21 +220,21 @@ class MultiThreadedExecutor(Executor):
         self._limit = num_threads or 64
         self._active = 0
 
-    def _pop(self) -> Work | None:
+    def _pop(self) -> Entity | None:
         return super()._pop() if self._active < self._limit else None
 
-    def _run(self, work: Work) -> None:
+    def _run(self, work: Entity) -> None:
         """Start a callback in a task of its own and let it run until it waits."""
-        group = getattr(work[0], "callback_group", None)
+        group = work.callback_group
         if group is not None:
             group.running += 1
         self._active += 1
         self._clock.spawn(self.process, self._run_beside, work, group)
         self._clock.yield_now()
 
-    def _run_beside(self, work: Work, group: Any) -> None:
+    def _run_beside(self, work: Entity, group: Any) -> None:
         try:
-            outcome = work[1]()
+            outcome = work.run()
         finally:
             self._active -= 1
             if group is not None:
@@ -256,9 +246,3 @@ class MultiThreadedExecutor(Executor):
 
 def _until(now: int, timeout_sec: float | None) -> int | None:
     return None if timeout_sec is None or timeout_sec < 0 else now + nanoseconds(timeout_sec)
-
-
-def _still_ready(entity: Any) -> bool:
-    if isinstance(entity, Task):
-        return not (entity.done() or entity.cancelled() or entity.blocked)
-    return bool(entity.is_ready()) if hasattr(entity, "is_ready") else bool(entity.queue)

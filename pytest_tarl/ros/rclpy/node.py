@@ -13,6 +13,7 @@ from pytest_tarl.ros.clock import NANOSECONDS
 from pytest_tarl.ros.missing import unsupported
 from pytest_tarl.ros.rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from pytest_tarl.ros.rclpy.context import this_context
+from pytest_tarl.ros.rclpy.entities import NodeEntities
 from pytest_tarl.ros.rclpy.exceptions import InvalidNodeNameException, InvalidTopicNameException
 from pytest_tarl.ros.rclpy.logging import RcutilsLogger
 from pytest_tarl.ros.rclpy.parameters import NodeParameters
@@ -44,8 +45,8 @@ _NOT_YET = frozenset(
 )
 
 
-class Node(NodeParameters):
-    """A node: its name, its parameters (base class) and everything that it creates."""
+class Node(NodeEntities, NodeParameters):
+    """A node: its name, what it creates and holds, and its parameters (the base classes)."""
 
     def __init__(
         self,
@@ -76,11 +77,7 @@ class Node(NodeParameters):
         if not self.context.nodes:
             self.process.label = self._full_name
         self.default_callback_group = MutuallyExclusiveCallbackGroup()
-        self.publishers_: list[Publisher] = []
-        self.subscriptions_: list[Subscription] = []
-        self.timers_: list[Timer] = []
-        self.clients_: list[Client] = []
-        self.services_: list[Service] = []
+        NodeEntities.__init__(self)
         self._clock = ROSClock()
         self._logger = RcutilsLogger(self._full_name.strip("/").replace("/", "."))
         self.context.nodes.append(self)
@@ -89,7 +86,7 @@ class Node(NodeParameters):
             **self._overrides(self.process.ros.parameters),
             **self._overrides(self._command_line.parameters),
         }
-        super().__init__({**overrides, **given}, allow_undeclared_parameters)
+        NodeParameters.__init__(self, {**overrides, **given}, allow_undeclared_parameters)
         if automatically_declare_parameters_from_overrides:
             self.declare_all_overrides()
 
@@ -112,8 +109,6 @@ class Node(NodeParameters):
             elif not key.startswith("/"):
                 chosen[key.removeprefix("~")] = value
         return chosen
-
-    # --- who it is
 
     def get_name(self) -> str:
         """Return the name without namespace."""
@@ -144,8 +139,6 @@ class Node(NodeParameters):
         return names.resolve(topic, self._full_name, self._remappings)
 
     resolve_service_name = resolve_topic_name
-
-    # --- what it creates
 
     def create_publisher(
         self, msg_type: Any, topic: str, qos_profile: Any, *, callback_group: Any = None, **_: Any
@@ -221,33 +214,6 @@ class Node(NodeParameters):
         self.clients_.append(Client(self, srv_type, name, callback_group or self.default_callback_group))
         return self.clients_[-1]
 
-    # --- what is there
-
-    @property
-    def publishers(self) -> Any:
-        """The node's publishers."""
-        return iter(self.publishers_)
-
-    @property
-    def subscriptions(self) -> Any:
-        """The node's subscriptions."""
-        return iter(self.subscriptions_)
-
-    @property
-    def timers(self) -> Any:
-        """The node's timers."""
-        return iter(self.timers_)
-
-    @property
-    def clients(self) -> Any:
-        """The node's clients."""
-        return iter(self.clients_)
-
-    @property
-    def services(self) -> Any:
-        """The node's services."""
-        return iter(self.services_)
-
     def count_publishers(self, topic_name: str) -> int:
         """Return how many publish on a topic. The simulated world counts as one."""
         return 1 + len(self.process.bus.topic(self.resolve_topic_name(topic_name)).publications)
@@ -268,41 +234,9 @@ class Node(NodeParameters):
         """List the nodes of this program."""
         return [node.get_name() for node in self.context.nodes]
 
-    # --- its end
-
-    def destroy_publisher(self, publisher: Publisher) -> bool:
-        """Destroy a publisher."""
-        return _destroy(publisher, self.publishers_)
-
-    def destroy_subscription(self, subscription: Subscription) -> bool:
-        """Destroy a subscription."""
-        return _destroy(subscription, self.subscriptions_)
-
-    def destroy_timer(self, timer: Timer) -> bool:
-        """Destroy a timer."""
-        return _destroy(timer, self.timers_)
-
-    def destroy_client(self, client: Client) -> bool:
-        """Destroy a client."""
-        return _destroy(client, self.clients_)
-
-    def destroy_service(self, service: Service) -> bool:
-        """Destroy a service."""
-        return _destroy(service, self.services_)
-
-    def destroy_rate(self, rate: Rate) -> bool:
-        """Destroy a rate."""
-        rate.destroy()
-        return True
-
     def destroy_node(self) -> None:
         """Destroy the node and all that it created."""
-        lists: tuple[list[Any], ...] = (
-            self.publishers_, self.subscriptions_, self.timers_, self.clients_, self.services_,
-        )  # fmt: skip
-        for entities in lists:
-            for entity in tuple(entities):
-                _destroy(entity, entities)
+        self.destroy_all()
         if self.executor is not None:
             self.executor.remove_node(self)
         if self in self.context.nodes:
@@ -318,14 +252,6 @@ class Node(NodeParameters):
         if name in _NOT_YET:
             raise unsupported(f"Node.{name}")
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-
-
-def _destroy(entity: Any, entities: list[Any]) -> bool:
-    if entity not in entities:
-        return False
-    entities.remove(entity)
-    entity.destroy()
-    return True
 
 
 def _flat(tree: dict[str, Any], prefix: str = "") -> dict[str, Any]:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -43,11 +44,21 @@ class Service:
         for task in self._directory.waiting:
             node.process.scheduler.wake(task)
 
-    def handle(self) -> None:
-        """Answer the oldest request."""
+    def is_ready(self) -> bool:
+        """Tell whether a request waits."""
+        return bool(self.queue)
+
+    def run(self) -> Any:
+        """Answer the oldest request; a coroutine answers when it has finished."""
         request, client, future = self.queue.popleft()
         response = self.callback(request, self.srv_type.Response())
+        if inspect.iscoroutine(response):
+            return self._answer_later(response, client, future)
         client.answer(future, snapshot(response))
+        return None
+
+    async def _answer_later(self, response: Any, client: Client, future: Future) -> None:
+        client.answer(future, snapshot(await response))
 
     def destroy(self) -> None:
         """Stop serving."""
@@ -117,7 +128,11 @@ class Client:
         self.queue.append((future, response))
         self.node.notify()
 
-    def handle(self) -> None:
+    def is_ready(self) -> bool:
+        """Tell whether a response waits."""
+        return bool(self.queue)
+
+    def run(self) -> None:
         """Complete the oldest future whose response has arrived."""
         future, response = self.queue.popleft()
         if not future.cancelled():

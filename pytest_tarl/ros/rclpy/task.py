@@ -82,9 +82,14 @@ class Task(Future):
         self._handler = handler
         self._args, self._kwargs = args, kwargs or {}
         self._coroutine: Any = handler if inspect.iscoroutine(handler) else None
-        self.blocked = False
+        self._blocked = False
+        self.callback_group: Any = None
 
-    def __call__(self) -> None:
+    def is_ready(self) -> bool:
+        """Tell whether it can go on."""
+        return not (self._done or self._cancelled or self._blocked)
+
+    def run(self) -> None:
         """Run on to the end or to the next future that is not done."""
         if self._done or self._cancelled:
             return
@@ -99,13 +104,13 @@ class Task(Future):
         except StopIteration as end:
             self.set_result(end.value)
             return
-        self.blocked = True
+        self._blocked = True
         if isinstance(awaited, Future):
             awaited.add_done_callback(self._unblock)
         else:
             self._unblock(self)
 
     def _unblock(self, _: Future) -> None:
-        self.blocked = False
+        self._blocked = False
         if self._executor is not None:
             self._executor.wake()

@@ -54,8 +54,12 @@ class Timer:
         """Forget it."""
         self.cancel()
 
-    def take(self) -> None:
-        """Begin the next period that is not over yet."""
+    def run(self) -> Any:
+        """Begin the next period that is not over yet and call the callback."""
+        self._begin_period()
+        return self.callback() if self.callback is not None else None
+
+    def _begin_period(self) -> None:
         self.due += self.timer_period_ns
         behind = self._clock.time - self.due
         if behind >= 0 and self.timer_period_ns > 0:

@@ -97,6 +97,14 @@ class Subscription:
         self.queue.append(message)
         self.node.notify()
 
+    def is_ready(self) -> bool:
+        """Tell whether a message waits."""
+        return bool(self.queue)
+
+    def run(self) -> Any:
+        """Call the callback with the oldest message."""
+        return self.callback(self.queue.popleft())
+
     def get_publisher_count(self) -> int:
         """Return how many publish. The simulated world counts as one."""
         return 1 + len(self._place.publications)
