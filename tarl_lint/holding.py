@@ -55,7 +55,7 @@ class Origins:
                 value, pos, path = literal
                 found.add(Origin(value if isinstance(value, (bool, int, float)) else None, path, pos))
                 continue
-            if node in self.graph.copies or node in self.graph.carries:
+            if node in self.graph.copies or node in self.graph.carried:
                 inner = self._trace(self.graph.data[node], seen)
                 if inner is None:
                     return None
@@ -83,7 +83,7 @@ class Origins:
                 continue
             seen.add(node)
             initial = not self.graph.data[node]
-            copied = node in self.graph.copies or node in self.graph.carries
+            copied = node in self.graph.copies or node in self.graph.carried
             if not initial and not (copied and self._copied(self.graph.data[node], seen)):
                 return False
         return True

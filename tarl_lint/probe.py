@@ -11,7 +11,7 @@ from tarl_lint.operands import uses
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.link import Linker
 from tarl_lint.valueflow.machine import Machine
-from tarl_lint.valueflow.sites import Text
+from tarl_lint.valueflow.sites import Texts
 from tarl_lint.valueflow.values import Frame, Value, join
 
 
@@ -30,7 +30,7 @@ class Prober:
 
     def __init__(self, machine: Linker, flows: Sequence[Flow]) -> None:
         self.machine = machine
-        self.texts = {path: Text(module) for path, module in machine.modules.items()}
+        self.texts = Texts(machine.modules)
         self.origins = Origins(machine)
         self.starts = {
             (step.span.path, step.span.line, step.span.column): step.site for f in flows for step in f.steps

@@ -11,7 +11,7 @@ from tarl_lint.valueflow.context import Surroundings
 from tarl_lint.valueflow.graph import Place
 from tarl_lint.valueflow.link import Linker
 from tarl_lint.valueflow.machine import SinkRecord, SourceRecord
-from tarl_lint.valueflow.sites import Text, Written
+from tarl_lint.valueflow.sites import Text, Texts, Written
 
 ROLES: Mapping[str, Role] = {
     "Return": "return",
@@ -39,7 +39,7 @@ class Tracer:
     def __init__(self, machine: Linker) -> None:
         self.machine = machine
         self.graph = machine.graph
-        self.texts = {path: Text(module) for path, module in machine.modules.items() if _involved(machine, path)}
+        self.texts = Texts(machine.modules)
         self.surroundings = Surroundings(self.texts)
         self.forward_data = _reversed(self.graph.data)
         self.forward_control = _reversed(self.graph.control)
@@ -104,7 +104,7 @@ class Tracer:
                 dependence[id(item)] = "context"
         registration = self.surroundings.registration(origin)
         edges += outer + [(id(registration), a) for a in self.arrivals(origin)]
-        spans = {key: self.text_of(w).span(w) for key, w in written.items()}
+        spans = {key: w.text.span(w) for key, w in written.items()}
         order = in_order(spans, edges)
         sinks = {id(w) for n in record.nodes if (w := self.statement(self.graph.places[n])) is not None}
         return tuple(
@@ -114,9 +114,7 @@ class Tracer:
 
     def statement(self, place: Place) -> Written | None:
         """Return the statement that a node belongs to; of a message arriving, the callback's header."""
-        text = self.texts.get(place.frame.program.path)
-        if text is None:
-            return None
+        text = self.texts[place.frame.program.path]
         if place.statement is not None:
             return text.statement(place.statement.pos)
         return text.function(place.pos) if place.role == "receive" else None
@@ -153,7 +151,7 @@ class Tracer:
         self, written: Written, span: Span, dependence: Dependence, sink: bool, registers: bool, origin: SourceRecord
     ) -> Step:
         """Return a statement as a step."""
-        text = self.text_of(written)
+        text = written.text
         role = ROLES.get(type(written.node).__name__, "assign")
         if id(written) in self.arrivals(origin):
             role = "receive"
@@ -166,10 +164,6 @@ class Tracer:
         elif type(written.node).__name__ in ("For", "AsyncFor") and dependence != "data":
             role = "condition"
         return Step(text.site(written), span, text.code(span), role, dependence)
-
-    def text_of(self, written: Written) -> Text:
-        """Return the text that a statement belongs to."""
-        return self.surroundings.text_of(written)
 
     # --- ends ---------------------------------------------------------------------------------------------
 
@@ -237,11 +231,6 @@ def _before_loops(
 
 def _kin(record: SinkRecord) -> tuple[str, str, set[str]]:
     return record.module, record.qualname, record.topics
-
-
-def _involved(machine: Linker, path: str) -> bool:
-    """Texts are needed of files that some node belongs to."""
-    return bool(machine.sources) and bool(machine.sinks) and path in machine.modules
 
 
 def _reversed(edges: Sequence[set[int]]) -> list[list[int]]:

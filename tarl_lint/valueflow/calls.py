@@ -6,7 +6,7 @@ from collections.abc import Hashable, Sequence
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.evaluate import Evaluation
-from tarl_lint.valueflow.heap import item_field
+from tarl_lint.valueflow.heap import BORN, item_field
 from tarl_lint.valueflow.machine import MAX_CALLS, MAX_FRAMES, Arguments
 from tarl_lint.valueflow.store import Delta
 from tarl_lint.valueflow.values import (
@@ -284,6 +284,7 @@ class Calls(Evaluation):
         statement = frame.statement.id if frame.statement is not None else -1
         obj = self.intern("instance", (frame.id, statement, call.slot, cls.key), cls.name)
         obj.info = cls
+        self.store.put((obj, BORN), BOTTOM)
         self.made.add(cls.key)
         for owner in lineage(cls):
             init = self.store.get((owner, "__init__"))
@@ -343,6 +344,8 @@ class Calls(Evaluation):
         owner, name = key
         if owner.kind in ("frame", "module", "class", "closure"):
             return None
+        if owner.kind != "message" and self.store.get((owner.root(), BORN)) is None:
+            return None  # the object does not exist there
         return self.content(owner) if name == "*" else self.default(owner, name)
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from tarl_lint.valueflow.machine import SourceRecord
-from tarl_lint.valueflow.sites import Text, Written
+from tarl_lint.valueflow.sites import Texts, Written
 from tarl_lint.valueflow.values import Frame
 
 LOOPS = (ast.For, ast.AsyncFor, ast.While)
@@ -15,21 +15,12 @@ LOOPS = (ast.For, ast.AsyncFor, ast.While)
 class Surroundings:
     """Finds context steps."""
 
-    def __init__(self, texts: Mapping[str, Text]) -> None:
+    def __init__(self, texts: Texts) -> None:
         self.texts = texts
-        self.owners: dict[int, Text] = {}
-        for text in texts.values():
-            for written in (*text.by_start.values(), *text.functions.values()):
-                self.owners[id(written)] = text
-
-    def text_of(self, written: Written) -> Text:
-        """Return the text that a statement belongs to."""
-        return self.owners[id(written)]
 
     def registration(self, origin: SourceRecord) -> Written | None:
         """Return the statement that subscribes."""
-        text = self.texts.get(origin.path)
-        return text.statement(origin.statement.pos) if text is not None else None
+        return self.texts[origin.path].statement(origin.statement.pos)
 
     def context(
         self, origin: SourceRecord, steps: Sequence[tuple[Frame, Written]]
@@ -52,8 +43,7 @@ class Surroundings:
     ) -> None:
         current: Frame | None = frame
         while current is not None and current.caller is not None and current.call is not None:
-            text = self.texts.get(current.caller.program.path)
-            call = text.statement(current.call.pos) if text is not None else None
+            call = self.texts[current.caller.program.path].statement(current.call.pos)
             if call is not None:
                 self._around(call, step, found, edges)
             current = current.caller

@@ -35,7 +35,8 @@ class Graph:
     numbers: dict[Hashable, int] = field(default_factory=dict)
     literals: dict[int, tuple[object, ir.Pos, str]] = field(default_factory=dict)  # node → constant it is
     copies: set[int] = field(default_factory=set)  # nodes that pass on their only input unchanged
-    carries: set[int] = field(default_factory=set)  # nodes that pass on one thing inside an object
+    carried: dict[int, tuple[int, int]] = field(default_factory=dict)  # node → who passed on what inside an object
+    asking: set[tuple[int, int]] = field(default_factory=set)
     walking: set[int] = field(default_factory=set)  # carriers being followed upwards
 
     def node(self, key: Hashable, place: Place, branches: Branches) -> int:
@@ -77,19 +78,31 @@ class Graph:
             return content
         found: set[int] = set()
         for item in content:
-            hits = [c for c in carriers if item in self.held.get(c, ())]
-            if not hits:
-                found.add(item)
-            for carrier in hits:
-                found.add(self._carry(carrier, item))
+            arrived: set[int] = set()
+            for carrier in carriers:
+                arrived |= self._by(carrier, item)
+            found |= arrived or {item}
         return frozenset(found)
+
+    def _by(self, carrier: int, item: int) -> Nodes | set[int]:
+        """Return an item as passed on by one carrier, nothing when it was not inside then."""
+        parts = self.carried.get(carrier)
+        if parts is None:
+            return {self._carry(carrier, item)} if item in self.held.get(carrier, ()) else set()
+        outer, pointer = parts
+        if (carrier, item) in self.asking:
+            return set()
+        self.asking.add((carrier, item))
+        inner = self._by(pointer, item)
+        self.asking.discard((carrier, item))
+        return self.through(frozenset(inner), frozenset([outer])) if inner else inner
 
     def _carry(self, carrier: int, item: int) -> int:
         """Return the node of `item` being passed on inside an object by `carrier`."""
         if carrier == item:
             return item
         node = self.node(("carry", carrier, item), self.places[carrier], self.branches[carrier])
-        self.carries.add(node)
+        self.carried[node] = (carrier, item)
         if node not in self.walking:
             self.walking.add(node)
             self.flow(self.through(frozenset([item]), frozenset(self.data[carrier])), node)

@@ -20,6 +20,7 @@ from tarl_lint.valueflow.values import (
 )
 
 ANY = "*"  # the field that stands for all elements
+BORN = "<born>"  # the field that every object has which exists
 HOLLOW = frozenset(["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super"])
 MAX_NESTING = 7
 
@@ -46,10 +47,12 @@ class Heap(Machine):
         obj = self.objects.get((kind, key))
         if obj is None:
             obj = self.objects[kind, key] = Obj(kind, key)
+            self.store.put((obj, BORN), BOTTOM)
             return obj
         if kind == "lib" and obj.fields:
             self._age(obj)
         self._clear(obj)
+        self.store.put((obj, BORN), BOTTOM)
         return obj
 
     def _age(self, obj: Obj) -> None:

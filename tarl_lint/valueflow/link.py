@@ -13,7 +13,7 @@ from tarl_lint.valueflow.calls import ROOT_CALL
 from tarl_lint.valueflow.execute import Execution
 from tarl_lint.valueflow.lower import lower_module
 from tarl_lint.valueflow.store import Root, Store
-from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, ClassInfo, Frame, Obj, Value, join, lineage, pointer
+from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, ClassInfo, Frame, Obj, Value, lineage, pointer
 
 MAX_ROUNDS = 12
 STARTS = frozenset(["init_node", "init", "create_node", "spin", "Subscriber", "create_subscription"])
@@ -81,6 +81,7 @@ class Linker(Execution):
         run(root)
         for key in self.store.own():
             value = self._at_end(key)
+            value = self.store.mine(key, value) if value is not None else None
             if value is not None:
                 self.shared.leave(self.shared.ends, root, key, value)
 
@@ -101,10 +102,12 @@ class Linker(Execution):
             value = self.store.get(key)
             if value is None:
                 continue
-            self.shared.leave(self.shared.pauses, root, key, value)
+            mine = self.store.mine(key, value)
+            if mine is not None:
+                self.shared.leave(self.shared.pauses, root, key, mine)
             news = self.shared.others(key, root)
             if news is not None:
-                both = join(value, news)
+                both = self.store.admit(key, value, news)
                 if both is not value:
                     self.store.put(key, both)
 

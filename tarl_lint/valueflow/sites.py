@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from tarl_lint.model import SiteId, Span
@@ -23,6 +23,7 @@ class Written:
     qualname: str
     around: Written | None
     start: tuple[int, int]
+    text: Text
 
 
 @dataclass(slots=True)
@@ -46,10 +47,10 @@ class Text:
 
     def _enter(self, node: ast.stmt | ast.match_case, qualname: str, around: Written | None) -> None:
         start = _start(node)
-        written = Written(node, qualname, around, start)
+        written = Written(node, qualname, around, start, self)
         if isinstance(node, FUNCTIONS):
             inner = f"{qualname}.{node.name}" if qualname else node.name
-            arriving = Written(node, inner, around, start)
+            arriving = Written(node, inner, around, start, self)
             self.functions[start] = arriving
             self.by_name.setdefault(inner, []).append(arriving)
             self._lambdas([*node.decorator_list, *node.args.defaults], qualname, written)
@@ -74,7 +75,7 @@ class Text:
         for node in nodes:
             for child in _outer_lambdas(node):
                 inner = f"{qualname}.<lambda>" if qualname else "<lambda>"
-                written = Written(child.body, inner, around, _start(child.body))
+                written = Written(child.body, inner, around, _start(child.body), self)
                 self.functions[_start(child)] = written
                 self.by_start.setdefault(written.start, written)
                 self.by_name.setdefault(inner, []).append(written)
@@ -149,6 +150,20 @@ class Text:
                     break
             line, offset = line + 1, 0
         return last
+
+
+class Texts:
+    """The texts of all modules, each taken apart when it is first needed."""
+
+    def __init__(self, modules: Mapping[str, Module]) -> None:
+        self.modules = modules
+        self.known: dict[str, Text] = {}
+
+    def __getitem__(self, path: str) -> Text:
+        """Return the text of a file."""
+        if path not in self.known:
+            self.known[path] = Text(self.modules[path])
+        return self.known[path]
 
 
 def _start(node: ast.AST) -> tuple[int, int]:

@@ -75,6 +75,7 @@ class Store:
     root: Root
     layers: list[Delta] = field(default_factory=lambda: [{}])
     found: dict[Key, Value | None] = field(default_factory=dict)
+    foreign: dict[Key, Value] = field(default_factory=dict)  # what others stored while this root waited
 
     def get(self, key: Key) -> Value | None:
         """Return the value now, None where nothing was stored."""
@@ -111,6 +112,23 @@ class Store:
         for layer in self.layers[depth:]:
             merged.update(layer)
         return merged
+
+    def admit(self, key: Key, mine: Value, news: Value) -> Value:
+        """Return a value joined with what others may have stored, and remember which part is theirs."""
+        both = join(mine, news)
+        if both is not mine:
+            theirs = Value(both.deps - mine.deps, both.pts - mine.pts, frozenset())
+            self.foreign[key] = join(self.foreign.get(key, theirs), theirs)
+        return both
+
+    def mine(self, key: Key, value: Value) -> Value | None:
+        """Return the part of a value that this root stored itself, None when there is none."""
+        known = [v for v in (self.foreign.get(key), self.found.get(key)) if v is not None]
+        if not known:
+            return value
+        theirs = join(known[0], known[-1])
+        part = Value(value.deps - theirs.deps, value.pts - theirs.pts, value.consts)
+        return part if part.deps or part.pts or not (value.deps or value.pts) else None
 
     def own(self) -> Iterable[Key]:
         """Return the keys written in this run which others can see."""
