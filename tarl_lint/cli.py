@@ -129,6 +129,7 @@ def _settings(config: Config) -> Iterator[Line]:
         "ignore": list(config.ignore),
         "exclude": list(config.exclude),
         "baseline": shown(config.baseline) if config.baseline else "",
+        "sanitizers": list(config.sanitizers),
         "fail-on": config.fail_on,
     }
     yield ((f"# settings file: {shown(config.file) if config.file else 'none'}", "quiet"),)

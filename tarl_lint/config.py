@@ -40,7 +40,7 @@ class Config:
 
     `select` and `ignore` hold rule codes or their beginnings (`TARL1`); an empty `select` means all rules.
     `exclude` holds patterns as in .gitignore; they and a named baseline are relative to `root`.
-    `sources`, `sinks` and `sanitizers` are qualified names (`robot.bus.listen`).
+    `sources`, `sinks` and `sanitizers` are qualified names (`robot.bus.listen`); what a sanitizer returns is clean.
     `origins` names where each value comes from: "default", "command line" or the settings file.
     """
 
@@ -85,6 +85,7 @@ def resolve(options: Options) -> Config:
         exclude=choose("exclude", options.exclude, ()),
         baseline=_baseline(options, root, choose("baseline", options.baseline, None)),
         fail_on=choose("fail-on", options.fail_on, "explicit"),
+        sanitizers=choose("sanitizers", None, ()),
         file=file,
         origins=tuple(origins.items()),
     )
@@ -198,6 +199,7 @@ KEYS: Final[Mapping[str, tuple[Callable[[Any], Any], str]]] = {
     "ignore": (_codes, 'a list of rule codes such as ["TARL102"]'),
     "exclude": (_texts, 'a list of patterns as in .gitignore, such as ["vendor/"]'),
     "baseline": (_text, f'the name of a file, such as "{BASELINE_NAME}"'),
+    "sanitizers": (_texts, 'a list of qualified names of functions, such as ["robot.safety.clamp"]'),
     "fail-on": (_fail_on, f"one of {', '.join(map(repr, FAIL_ON))}"),
 }
 

@@ -114,6 +114,14 @@ def test_rules_that_are_ignored_find_nothing(example, in_directory, lint):
     assert lint(select=("TARL102",)).findings == ()
 
 
+def test_what_a_sanitizer_of_the_settings_returns_is_clean(example, in_directory, lint):
+    text = example.text.replace("import rospy\n", "import rospy\nfrom safety import fixed\n", 1)
+    root = in_directory({"node.py": text.replace("pub.publish(vel)", "pub.publish(fixed(vel))")})
+    assert [f.code for f in lint().findings] == ["TARL101"]
+    (root / "pyproject.toml").write_text('[tool.tarl-lint]\nsanitizers = ["safety.fixed"]\n')
+    assert "TARL101" not in [f.code for f in lint().findings]
+
+
 def test_a_silenced_flow_is_counted_and_an_idle_comment_is_reported(example, in_directory, lint):
     text = example.text.replace("pub.publish(vel)", "pub.publish(vel)  # tarl: ignore[TARL101]")
     in_directory({"node.py": text, "clean.py": "x = 1  # tarl: ignore\n"})
