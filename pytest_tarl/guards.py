@@ -7,7 +7,8 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from pytest_tarl.bindings import Constant, initial, is_bound, is_checked, prefixes
+from pytest_tarl.absence import is_checked
+from pytest_tarl.bindings import Constant, initial, is_bound, prefixes
 from pytest_tarl.document import Document
 from pytest_tarl.expressions import rounded
 from pytest_tarl.model import Conjunct, Guard

@@ -6,47 +6,19 @@ import ast
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from pytest_tarl.document import Document, Edit, apply_edits, document, parse_expression
+from pytest_tarl.document import Document, Edit, apply_edits, document
 from pytest_tarl.errors import RepairError
 from pytest_tarl.expressions import counting, negated, number, rounded, scaled, shifted
 from pytest_tarl.guards import Reading, always, condition, held
 from pytest_tarl.model import Conjunct, Guard
-from pytest_tarl.statements import (
-    LONGEST_CONDITION,
-    Change,
-    branched,
-    doubled,
-    inlined,
-    lazy,
-    nameable,
-    named,
-    replaced,
-)
-from pytest_tarl.subscriptions import Subscriptions, free_name
+from pytest_tarl.statements import Change, branched, choices, doubled, lazy, neighbours, replaced
+from pytest_tarl.subscriptions import Subscriptions
 from tarl_lint.model import Operand, SiteId
 
 if TYPE_CHECKING:
     from tarl_lint.api import Analysis
-
-
-_ARITHMETIC = {
-    "abs",
-    "bool",
-    "float",
-    "int",
-    "len",
-    "math",
-    "max",
-    "min",
-    "np",
-    "numpy",
-    "pow",
-    "round",
-    "sum",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,57 +138,9 @@ def _file_edits(
         elif doubled(source, statement, changes):
             twice.append((statement, changes, tests[0]))
         else:
-            yield from _choices(source, statement, changes, tests)
-    for group in _neighbours(source, twice):
+            yield from choices(source, statement, changes, tests)
+    for group in neighbours(source, twice):
         yield branched(source, [(statement, changes) for statement, changes, _ in group], group[0][2])
-
-
-def _choices(
-    source: Document, statement: ast.stmt, changes: Sequence[Change], tests: Sequence[str]
-) -> Iterator[Edit]:
-    """Yield the edits that choose inside a statement; a condition long or asked twice gets a name before it."""
-    test = tests[0]
-    long = len(changes) > 1 or len(test) > LONGEST_CONDITION
-    if long and nameable(source, statement, changes):
-        name = free_name(source, "drifted")
-        yield named(source, statement, name, test)
-        tests = [name] * len(changes)
-    for change, each in zip(changes, tests, strict=True):
-        yield inlined(source, change, each)
-
-
-def _neighbours(
-    source: Document, twice: Sequence[tuple[ast.stmt, list[Change], str]]
-) -> Iterator[list[tuple[ast.stmt, list[Change], str]]]:
-    """Group statements that follow each other under one condition that they do not change."""
-    group: list[tuple[ast.stmt, list[Change], str]] = []
-    for each in twice:
-        if group and not _joins(source, group[-1][0], each[0], group[0][2], each[2]):
-            yield group
-            group = []
-        group.append(each)
-    if group:
-        yield group
-
-
-def _joins(source: Document, before: ast.stmt, after: ast.stmt, condition: str, other: str) -> bool:
-    block = source.block(before)
-    follows = any(first is before and second is after for first, second in pairwise(block))
-    stored = {
-        ast.unparse(node) for node in ast.walk(before) if isinstance(getattr(node, "ctx", None), ast.Store)
-    }
-    read = {ast.unparse(node) for node in ast.walk(parse_expression(condition)) if isinstance(node, ast.expr)}
-    return follows and condition == other and not stored & read and not _calls(before)
-
-
-def _calls(statement: ast.stmt) -> bool:
-    """Tell whether a statement runs code that may change what a condition asks; arithmetic does not."""
-    for node in ast.walk(statement):
-        if isinstance(node, ast.Await | ast.Yield | ast.YieldFrom):
-            return True
-        if isinstance(node, ast.Call) and ast.unparse(node.func).partition(".")[0] not in _ARITHMETIC:
-            return True
-    return False
 
 
 def _by_file(

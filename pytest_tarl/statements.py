@@ -3,14 +3,31 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
-from pytest_tarl.document import Document, Edit
+from pytest_tarl.document import Document, Edit, parse_expression
 from pytest_tarl.expressions import choice, fitted
+from pytest_tarl.vocabulary import free, names
 
 LONGEST_COPY = 3  # lines of a statement that still reads well when written twice
 LONGEST_CONDITION = 48  # characters of a condition that still reads well inside an expression
+_ARITHMETIC = {
+    "abs",
+    "bool",
+    "float",
+    "int",
+    "len",
+    "math",
+    "max",
+    "min",
+    "np",
+    "numpy",
+    "pow",
+    "round",
+    "sum",
+}
 _SIMPLE = (ast.Assign, ast.AugAssign, ast.Expr, ast.Return, ast.Raise, ast.Assert, ast.Delete)
 _DIRECTIVES = ("# noqa", "# type:", "# pragma", "# pylint", "# tarl:", "# pyright")
 
@@ -88,6 +105,55 @@ def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -
     once = isinstance(statement, (*_SIMPLE, ast.AnnAssign, ast.If, ast.For, ast.With))
     late = any(lazy(source, change.node) for change in changes)
     return once and not late and source.leads(statement) and not _is_elif(source, statement)
+
+
+def choices(
+    source: Document, statement: ast.stmt, changes: Sequence[Change], tests: Sequence[str]
+) -> Iterator[Edit]:
+    """Yield the edits that choose inside a statement; a condition long or asked twice gets a name before it."""
+    test = tests[0]
+    long = len(changes) > 1 or len(test) > LONGEST_CONDITION
+    if long and nameable(source, statement, changes):
+        asked = {each.id for each in ast.walk(parse_expression(test)) if isinstance(each, ast.Name)}
+        name = free("drifted", names(source) | asked)
+        yield named(source, statement, name, test)
+        tests = [name] * len(changes)
+    for change, each in zip(changes, tests, strict=True):
+        yield inlined(source, change, each)
+
+
+def neighbours(
+    source: Document, twice: Sequence[tuple[ast.stmt, list[Change], str]]
+) -> Iterator[list[tuple[ast.stmt, list[Change], str]]]:
+    """Group statements that follow each other under one condition that they do not change."""
+    group: list[tuple[ast.stmt, list[Change], str]] = []
+    for each in twice:
+        if group and not _joins(source, group[-1][0], each[0], group[0][2], each[2]):
+            yield group
+            group = []
+        group.append(each)
+    if group:
+        yield group
+
+
+def _joins(source: Document, before: ast.stmt, after: ast.stmt, condition: str, other: str) -> bool:
+    block = source.block(before)
+    follows = any(first is before and second is after for first, second in pairwise(block))
+    stored = {
+        ast.unparse(node) for node in ast.walk(before) if isinstance(getattr(node, "ctx", None), ast.Store)
+    }
+    read = {ast.unparse(node) for node in ast.walk(parse_expression(condition)) if isinstance(node, ast.expr)}
+    return follows and condition == other and not stored & read and not _calls(before)
+
+
+def _calls(statement: ast.stmt) -> bool:
+    """Tell whether a statement runs code that may change what a condition asks; arithmetic does not."""
+    for node in ast.walk(statement):
+        if isinstance(node, ast.Await | ast.Yield | ast.YieldFrom):
+            return True
+        if isinstance(node, ast.Call) and ast.unparse(node.func).partition(".")[0] not in _ARITHMETIC:
+            return True
+    return False
 
 
 def _is_elif(source: Document, statement: ast.stmt) -> bool:

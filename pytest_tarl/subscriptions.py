@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import ast
-import builtins
-import keyword
 import re
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import cache
 from typing import TYPE_CHECKING
 
 from pytest_tarl.anchors import Anchor, anchors, is_ros2
@@ -19,6 +16,7 @@ from pytest_tarl.guards import Reading
 from pytest_tarl.imports import Import, import_edits, imported, reference
 from pytest_tarl.sensors import Sensor
 from pytest_tarl.stores import Callback, Store, first_statement, store_edits
+from pytest_tarl.vocabulary import class_attributes, free, names
 from tarl_lint.model import SiteId
 
 if TYPE_CHECKING:
@@ -119,7 +117,7 @@ class Subscriptions:
         package, *_, name = each.type.split("/")
         kind = imported(source, f"{package}.msg", name)
         if not kind:
-            free = name not in _names(source)
+            free = name not in names(source)
             kind = name if free else self._fresh(Store(source), f"{name}Message")
             imports.append(Import(f"{package}.msg", name, "" if free else kind))
         topic = f"{each.anchor.quote}{each.topic}{each.anchor.quote}"
@@ -154,9 +152,9 @@ class Subscriptions:
         attribute = store.owner is not None
         key = (store.source.path, attribute)
         if key not in self._taken:
-            self._taken[key] = self._attributes(store.source) if attribute else _names(store.source)
-        taken = self._taken[key].union(*(() if attribute else (_names(each) for each in elsewhere)))
-        name = _free(base, taken)
+            self._taken[key] = self._attributes(store.source) if attribute else set(names(store.source))
+        taken = self._taken[key].union(*(() if attribute else (names(each) for each in elsewhere)))
+        name = free(base, taken)
         self._taken[key].add(name)
         return name
 
@@ -165,21 +163,11 @@ class Subscriptions:
         names = set(_NODE_ATTRIBUTES)
         for path in self._analysis.sources:
             with suppress(RepairError):  # a file that cannot be read keeps its names to itself
-                names |= _class_attributes(self._document(path))
-        return names | _class_attributes(source)
+                names |= class_attributes(self._document(path))
+        return names | class_attributes(source)
 
     def _document(self, path: str) -> Document:
         return document(path, self._analysis.sources[path])
-
-
-def free_name(source: Document, base: str) -> str:
-    """Return a name that means nothing yet in any scope of a module."""
-    return _free(base, _names(source))
-
-
-def _free(base: str, taken: set[str]) -> str:
-    candidates = (base, f"{base}_reading", *(f"{base}_{i}" for i in range(2, len(taken) + 3)))
-    return next(each for each in candidates if each not in taken and not keyword.iskeyword(each))
 
 
 def _store(anchor: Anchor, source: Document, place: ast.AST) -> Store:
@@ -206,36 +194,3 @@ def _unreachable(topic: str, source: Document, place: ast.AST, seen: Anchor | No
         f"{seen.source.path}:{seen.statement.lineno}, which imports nothing from {source.path}, so that the value "
         "cannot be brought there: choose sensors that are read where the repair is."
     )
-
-
-def _names(source: Document) -> set[str]:
-    """Return every name that a module uses in any scope, and the builtins."""
-    names = set(dir(builtins))
-    for node in ast.walk(source.tree):
-        if isinstance(node, ast.Name):
-            names.add(node.id)
-        elif isinstance(node, ast.arg):
-            names.add(node.arg)
-        elif isinstance(node, ast.alias):
-            names.add(node.asname or node.name.partition(".")[0])
-        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-            names.add(node.name)
-        elif isinstance(node, ast.Global | ast.Nonlocal):
-            names.update(node.names)
-    return names
-
-
-@cache
-def _class_attributes(source: Document) -> frozenset[str]:
-    """Return the attributes that classes of a module define, or use on their instances."""
-    classes = [node for node in ast.walk(source.tree) if isinstance(node, ast.ClassDef)]
-    inside = [each for owner in classes for each in ast.walk(owner)]
-    names = {str(getattr(each, "name", getattr(each, "id", ""))) for each in inside}
-    return frozenset(
-        names | {each.attr for each in inside if isinstance(each, ast.Attribute) and _is_own(each)}
-    )
-
-
-def _is_own(attribute: ast.Attribute) -> bool:
-    """Tell whether an attribute may be one of the instance: it belongs to a plain name."""
-    return isinstance(attribute.value, ast.Name)

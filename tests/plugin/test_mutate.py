@@ -233,6 +233,28 @@ def test_a_condition_asked_twice_in_a_header_gets_a_name() -> None:
     )
 
 
+def test_the_name_of_a_condition_is_not_that_of_its_sensor() -> None:
+    text = dedent(
+        """\
+        import rospy
+        rospy.init_node("n")
+
+        def step(delta):
+            if 5 < delta < 9:
+                return True
+        """
+    )
+    analysis = HandMade({"node.py": text})
+    uses = [analysis.operand("5", 5, "5 < d"), analysis.operand("9", 9, "< 9")]
+    guard = Guard((Conjunct(Sensor("drifted", topic="/terrain", field="data"), 1, 1),))
+    changed = rewrite(analysis, [Mutation(use, 1.5) for use in uses], guard, TOPICS)
+    ros = TinyRos()
+    step = ros.run(changed, "node.py")["step"]
+    assert (step(7), step(1.5)) == (True, None)
+    ros.deliver("/terrain", type("Bool", (), {"data": True}))
+    assert step(7) is None
+
+
 def test_the_condition_of_an_elif_stays_where_it_is() -> None:
     text = "def step(delta, mud):\n    if mud:\n        pass\n    elif 5 < delta < 9:\n        pass\n"
     analysis = HandMade({"node.py": text}, held=HELD)
