@@ -16,6 +16,7 @@ from tarl_lint.valueflow.values import (
     UNKNOWN,
     ClassInfo,
     Frame,
+    Nodes,
     Obj,
     Value,
     const,
@@ -157,8 +158,19 @@ class Evaluation(Heap):
             return Value(values[0].deps | values[1].deps, values[0].pts)
         deps = NONE
         for value in values:
-            deps |= self.use(value)
+            deps |= self.tested(expr.operator, value)
         return Value(deps, consts=self.fold(expr.operator, values))
+
+    def tested(self, name: str, value: Value) -> Nodes:
+        """Return the nodes whose data an operator uses. Whether a message is there at all is not data of it."""
+        if name in ("is", "is not"):
+            return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind != "message")))
+        return self.truth(value) if name == "not" else self.use(value)
+
+    def truth(self, value: Value) -> Nodes:
+        """Return the nodes that decide whether a value counts as true: a whole message always does."""
+        kept = frozenset(o for o in value.pts if o.kind != "message" or o.parent is not None)
+        return self.use(value if len(kept) == len(value.pts) else Value(value.deps, kept))
 
     def boolean(self, name: str, values: list[Value]) -> Value:
         """Return what `a or b` may be: one of them, decided by the former."""
@@ -167,7 +179,7 @@ class Evaluation(Heap):
             known, constant = value.constant()
             decided = known and not value.deps and bool(constant) is (name == "or")
             passed = known and not value.deps and not decided and value is not values[-1]
-            deps |= self.use(value)
+            deps |= self.truth(value)
             if not passed:
                 result = join(result, value)
             if decided:

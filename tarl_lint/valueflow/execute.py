@@ -179,7 +179,7 @@ class Execution(Ros):
         node = self.condition(frame, s)
         value = self.evaluate(test, frame)
         frame.statement = s
-        self.graph.flow(self.use(value), node)
+        self.graph.flow(self.truth(value), node)
         known, constant = value.constant()
         if value.consts and not value.pts and not known:
             ways = {bool(c) for c in value.consts}

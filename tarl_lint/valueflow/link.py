@@ -100,7 +100,10 @@ class Linker(Execution):
         root = self.store.root
         for key in list(self.store.own()):
             value = self.store.get(key)
-            if value is None:
+            if value is None:  # a field of a new object, which others may fill
+                news = self.shared.others(key, root)
+                if news is not None:
+                    self.store.put(key, self.store.admit(key, self.default(*key), news))
                 continue
             mine = self.store.mine(key, value)
             if mine is not None:
