@@ -43,7 +43,7 @@ def drive(node: str, world: Any, edits: Mapping[str, str] | None = None, **param
     ros = Ros(parameters=parameters)
     rewards = []
     with ros.installed():
-        ros.start(lambda: exec(program, {"__name__": "__main__"}), name=path.stem)  # noqa: S102
+        ros.start(lambda: exec(program, {"__name__": "__main__"}), name=path.stem)
         while not world.over:
             world.publish(ros.bus)
             ros.step(world.dt)
