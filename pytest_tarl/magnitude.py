@@ -21,17 +21,17 @@ import math
 import sys
 from array import array
 from collections import deque
-from collections.abc import Callable, Iterable
-from functools import lru_cache
+from collections.abc import Callable, Iterable, Mapping
+from decimal import Decimal
 from itertools import islice
 from operator import attrgetter
-from types import MemberDescriptorType
+from types import GetSetDescriptorType, MemberDescriptorType
 from typing import Any
 
 LIMIT = 1e100
 SAMPLE = 512
 _LEFT_OUT = ("header", "stamp", "seq", "covariance")
-_PLAIN = frozenset({float, int, bool})
+_PLAIN = frozenset(map(id, (float, int, bool)))
 _CONTAINERS = (list, tuple, deque, set, frozenset)
 
 Number = Callable[[Any], float]
@@ -43,8 +43,7 @@ def magnitude(value: object) -> float:
     if value is None or value is True or value is False or type(value) is str:
         return 1.0 if value is True else 0.0
     try:
-        kind: Any = type(value)
-        number, parts = _kind(kind)
+        number, parts = _kind(type(value))
         if number is not None:
             return _size(number, value)
         return 0.0 if parts is None else _bounded(_norm(value))
@@ -67,7 +66,7 @@ def _norm(value: object) -> float:
     while waiting and looked_at < 2 * SAMPLE:
         looked_at += 1
         inner = waiting.pop()
-        kind: Any = type(inner)
+        kind = type(inner)
         if kind is float:
             sizes.append(inner)
             continue
@@ -98,7 +97,7 @@ def _plain_norm(sequence: list[Any] | tuple[Any, ...]) -> float | None:
     """Return the norm of a sequence of finite plain numbers, None when it holds anything else."""
     step = max(1, len(sequence) // SAMPLE)
     sample = sequence[::step] if step > 1 else sequence
-    if not _PLAIN.issuperset(map(type, sample)):
+    if not _PLAIN.issuperset(map(id, map(type, sample))):
         return None
     try:
         size = math.hypot(*sample) * math.sqrt(len(sequence) / (len(sample) or 1))
@@ -107,42 +106,49 @@ def _plain_norm(sequence: list[Any] | tuple[Any, ...]) -> float | None:
     return size if size < math.inf else None
 
 
-@lru_cache(maxsize=1024)
-def _kind(kind: Any) -> tuple[Number | None, Parts | None]:
+def _kind(kind: type) -> tuple[Number | None, Parts | None]:
     """Return what reads objects of a class as a number, else what lists their parts, else nothing."""
-    number = _number(kind)
-    return number, None if number is not None else _parts(kind)
+    known = _KINDS.get(id(kind))
+    if known is None:
+        if len(_KINDS) >= _KINDS_KEPT:
+            _KINDS.clear()
+        number = _number(kind)
+        known = _KINDS[id(kind)] = kind, number, None if number is not None else _parts(kind)
+    return known[1], known[2]
+
+
+# By identity, since the hash of a class may be code of the program; the class is kept with its entry.
+_KINDS: dict[int, tuple[type, Number | None, Parts | None]] = {}
+_KINDS_KEPT = 1024
 
 
 def _number(kind: type) -> Number | None:
-    if issubclass(kind, int):
-        return int.__float__
-    if issubclass(kind, float):
-        return float.__abs__
-    if issubclass(kind, complex):
-        return complex.__abs__
-    if issubclass(kind, array):
-        return _machine_array
-    numpy = sys.modules.get("numpy")
+    for plain, number in _NUMBERS:
+        if issubclass(kind, plain):
+            return number
+    numpy, fractions = sys.modules.get("numpy"), sys.modules.get("fractions")
     if numpy is not None and issubclass(kind, (numpy.ndarray, numpy.generic)):
         return _numpy
-    return _EXACT.get((kind.__module__, kind.__qualname__))
+    return _fraction if fractions is not None and kind is fractions.Fraction else None
 
 
 def _fraction(value: Any) -> float:
     return float(value._numerator / value._denominator)
 
 
-_EXACT: dict[tuple[str, str], Number] = {
-    ("decimal", "Decimal"): float,
-    ("fractions", "Fraction"): _fraction,
-}
-
-
 def _machine_array(value: array[Any]) -> float:
     import numpy as np
 
     return 0.0 if value.typecode in "uw" else _numpy(np.frombuffer(value, value.typecode))
+
+
+_NUMBERS: tuple[tuple[type, Number], ...] = (
+    (int, int.__float__),
+    (float, float.__abs__),
+    (complex, complex.__abs__),
+    (Decimal, float),
+    (array, _machine_array),
+)
 
 
 def _numpy(value: Any) -> float:
@@ -170,43 +176,51 @@ def _parts(kind: type) -> Parts | None:
     if issubclass(kind, dict):
         return dict.values
     names = _fields(kind)
-    slots = [_slot(kind, name) for name in names]
     if not names:
         return None
+    slots = [_slot(kind, name) for name in names]
     known = [slot.__name__ for slot in slots if slot is not None]
-    if len(known) == len(names) > 1 and kind.__getattribute__ is object.__getattribute__:
+    if len(known) == len(names) > 1 and _attribute(kind, "__getattribute__") is object.__getattribute__:
         return attrgetter(*known)
     return lambda message: [_stored(message, slot, name) for slot, name in zip(slots, names, strict=True)]
 
 
 def _fields(kind: type) -> tuple[str, ...]:
     """Return the fields of a message class or dataclass, without those that are no payload."""
-    listed = getattr(kind, "get_fields_and_field_types", None)
+    listed = _attribute(kind, "get_fields_and_field_types")
+    dataclass_fields = _attributes(kind).get("__dataclass_fields__")
     names: list[str] = []
-    if callable(listed):
-        names = list(listed())
-    elif isinstance(kind.__dict__.get("__dataclass_fields__"), dict):
-        names = list(kind.__dict__["__dataclass_fields__"])
+    if isinstance(listed, classmethod):
+        names = list(listed.__get__(None, kind)())
+    elif isinstance(dataclass_fields, dict):
+        names = list(dataclass_fields)
     else:
-        for base in reversed(kind.__mro__):
-            slots = base.__dict__.get("__slots__", ())
+        for base in reversed(_bases(kind)):
+            slots = _attributes(base).get("__slots__", ())
             names += [slots] if isinstance(slots, str) else list(slots)
     return tuple(name for name in names if not name.strip("_").endswith(_LEFT_OUT))
 
 
 def _slot(kind: type, name: str) -> MemberDescriptorType | None:
     """Return where a field is stored; as `_name` where a property checks assignments to it."""
-    for stored in (name, f"_{name}"):
-        holder = next((base for base in kind.__mro__ if stored in base.__dict__), object)
-        slot = holder.__dict__.get(stored)
-        if isinstance(slot, MemberDescriptorType):
-            return slot
-    return None
+    found = (_attribute(kind, stored) for stored in (name, f"_{name}"))
+    return next((slot for slot in found if isinstance(slot, MemberDescriptorType)), None)
 
 
 def _stored(message: object, slot: MemberDescriptorType | None, name: str) -> object:
     """Read a field without running a property."""
+    kind = type(message)
     if slot is not None:
-        return slot.__get__(message, type(message))
-    state: object = getattr(message, "__dict__", None)
-    return state.get(name, state.get(f"_{name}")) if isinstance(state, dict) else None
+        return slot.__get__(message, kind)
+    state = _attribute(kind, "__dict__")
+    stored = state.__get__(message, kind) if isinstance(state, GetSetDescriptorType) else {}
+    return stored.get(name, stored.get(f"_{name}"))
+
+
+# What a class has, past its metaclass, which may run code of the program even for these.
+_bases: Callable[[type], tuple[type, ...]] = type.__dict__["__mro__"].__get__
+_attributes: Callable[[type], Mapping[str, Any]] = type.__dict__["__dict__"].__get__
+
+
+def _attribute(kind: type, name: str) -> object:
+    return next((_attributes(base)[name] for base in _bases(kind) if name in _attributes(base)), None)

@@ -141,11 +141,14 @@ class Recorder:
     def _columns(self, buffer: _Buffer, number: int) -> tuple[Ints, Floats, Ints, Ints, Ints]:
         """Return site, flow, cell, step and thread of every event of one thread."""
         site, flow, starts = paired(buffer.entries)
-        marks = np.searchsorted(np.array(buffer.lengths, np.int64), starts, side="right")
+        before = np.searchsorted(starts, np.array(buffer.lengths, np.int64), side="left")
+        between = np.diff(before, prepend=0, append=len(starts))  # events before each mark and after the last
         cells = np.array([-1, *self._latched], np.int32)
-        closed = np.searchsorted(np.array(self._rewards, np.int64), marks, side="left")
-        step = np.minimum(closed, max(0, len(self._rewards) - 1)).astype(np.int32)
-        return site, sizes(flow), cells[marks], step, np.full(len(site), number, np.int32)
+        closing = np.zeros(len(cells), np.int32)
+        closing[np.array(self._rewards, np.int64) + 1] = 1
+        steps = np.minimum(np.cumsum(closing), max(0, len(self._rewards) - 1)).astype(np.int32)
+        thread = np.full(len(site), number, np.int32)
+        return site, sizes(flow), np.repeat(cells, between), np.repeat(steps, between), thread
 
     def _part_columns(self) -> dict[str, Floats]:
         names = dict.fromkeys(name for parts in self._parts for name in parts)

@@ -61,7 +61,7 @@ def outcome(module: str) -> list[Any]:
 def compared(module: str, root: Path) -> list[Any]:
     before = dict(sys.modules)
     plain = outcome(module)
-    forget(module)
+    forget(module, *(sys.modules.keys() - before.keys()))
     recorder = Recorder()
     plan = {file: every_site(file) for file in files_of(module)}
     with NodeImports(root, plan, recorder.hook, bind=recorder.bind):

@@ -158,6 +158,9 @@ class Refusing:
     __hash__ = None
 
 
+noticed: list[str] = []
+
+
 class Moody(type):
     def __hash__(cls):
         raise RuntimeError("no hash")
@@ -165,9 +168,17 @@ class Moody(type):
     def __eq__(cls, other):
         raise RuntimeError("no comparison")
 
+    def __getattribute__(cls, name):
+        noticed.append(name)
+        return super().__getattribute__(name)
+
+    @property
+    def __dict__(cls):
+        raise RuntimeError("no attributes")
+
 
 class OfMoodyClass(metaclass=Moody):
-    pass
+    __slots__ = ("x", "y")
 
 
 class Numbers(list):
@@ -183,7 +194,11 @@ class Count(int):
 def test_objects_that_refuse_are_left_alone():
     assert magnitude(Refusing()) == 0.0
     assert magnitude([Refusing(), 2.0]) == 2.0
-    assert magnitude(OfMoodyClass()) == 0.0
+    moody = OfMoodyClass()
+    moody.x, moody.y = 3.0, 4.0
+    noticed.clear()
+    assert magnitude([moody]) == 5.0
+    assert noticed == []
 
 
 def test_methods_of_subclasses_do_not_run():
