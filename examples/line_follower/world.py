@@ -104,20 +104,29 @@ class World:
         }
 
     def _reading(self, place: tuple[float, float]) -> float:
-        spot = self.space.point_query_nearest(self.body.local_to_world(place), math.inf, pymunk.ShapeFilter())
+        spot = self._nearest(self.body.local_to_world(place))
         darkness = math.exp(-((spot.distance / LINE_WIDTH) ** 2))
         brightness = self.light / FULL_LIGHT
         return brightness * (FLOOR - (FLOOR - LINE) * darkness) + self.rng.normal(0.0, READING_NOISE)
 
     def _locate(self) -> tuple[float, float]:
         """Return how far along the line the robot is, and how far from it."""
-        spot = self.space.point_query_nearest(self.body.position, math.inf, pymunk.ShapeFilter())
-        return self.starts[spot.shape] + spot.shape.a.get_distance(spot.point), spot.distance
+        spot = self._nearest(self.body.position)
+        piece = spot.shape
+        assert isinstance(piece, pymunk.Segment)
+        return self.starts[piece] + piece.a.get_distance(spot.point), spot.distance
+
+    def _nearest(self, place: pymunk.Vec2d) -> pymunk.PointQueryInfo:
+        """Return the point of the line that is nearest to a place."""
+        spot = self.space.point_query_nearest(place, math.inf, pymunk.ShapeFilter())
+        assert spot is not None
+        return spot
 
 
-def _lay(space: pymunk.Space) -> dict[pymunk.Shape, float]:
+def _lay(space: pymunk.Space) -> dict[pymunk.Segment, float]:
     """Lay the line as short straight pieces; return how far along it each of them starts."""
-    starts, along, heading, end = {}, 0.0, 0.0, pymunk.Vec2d(0.0, 0.0)
+    starts: dict[pymunk.Segment, float] = {}
+    along, heading, end = 0.0, 0.0, pymunk.Vec2d(0.0, 0.0)
     for length, curvature in BENDS:
         pieces = round(length / 0.05)
         for _ in range(pieces):

@@ -98,7 +98,8 @@ class World:
 
         Time costs 1 per time bound; a goal that is missed costs 10 and ends the mission.
         """
-        before, self.remaining = self.remaining, self.goals[self.leg] - self.body.position.x
+        before = self.remaining
+        self.remaining = self.goals[self.leg] - self.body.position.x
         reward = 5.0 * (abs(before) - abs(self.remaining)) / abs(self.way) - self.dt / TIME_BOUND
         self.standing = self.standing + 1 if abs(self.remaining) <= PRECISION else 0
         if self.standing == HANDOVER:
@@ -121,5 +122,7 @@ class World:
             self._depart(TURNROUND + TIME_BOUND)
 
     def _depart(self, time: float) -> None:
-        self.left, self.standing = time, 0
-        self.way = self.remaining = self.goals[self.leg] - self.body.position.x
+        self.left: float = time
+        self.standing: int = 0
+        self.way: float = self.goals[self.leg] - self.body.position.x
+        self.remaining: float = self.way
