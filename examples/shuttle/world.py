@@ -57,7 +57,9 @@ class World:
         friction = pymunk.PivotJoint(self.space.static_body, self.body, self.body.position)
         friction.max_bias, friction.max_force = 0.0, ROLLING * self.body.mass
         self.space.add(self.body, friction)
-        self._depart(TIME_BOUND)
+        self.left = TIME_BOUND
+        self.standing = 0
+        self.way = self.remaining = self._to_goal()
 
     @property
     def delivered(self) -> bool:
@@ -98,8 +100,7 @@ class World:
 
         Time costs 1 per time bound; a goal that is missed costs 10 and ends the mission.
         """
-        before = self.remaining
-        self.remaining = self.goals[self.leg] - self.body.position.x
+        before, self.remaining = self.remaining, self._to_goal()
         reward = 5.0 * (abs(before) - abs(self.remaining)) / abs(self.way) - self.dt / TIME_BOUND
         self.standing = self.standing + 1 if abs(self.remaining) <= PRECISION else 0
         if self.standing == HANDOVER:
@@ -119,10 +120,10 @@ class World:
     def _arrive(self) -> None:
         self.leg += 1
         if not self.delivered:
-            self._depart(TURNROUND + TIME_BOUND)
+            self.left = TURNROUND + TIME_BOUND
+            self.standing = 0
+            self.way = self.remaining = self._to_goal()
 
-    def _depart(self, time: float) -> None:
-        self.left: float = time
-        self.standing: int = 0
-        self.way: float = self.goals[self.leg] - self.body.position.x
-        self.remaining: float = self.way
+    def _to_goal(self) -> float:
+        """Return how far the next goal is, negative when it lies behind."""
+        return self.goals[self.leg] - self.body.position.x
