@@ -21,8 +21,8 @@ from pytest_tarl.instrument import Offset, instrument
 from pytest_tarl.nodecode import NodeCode
 from pytest_tarl.recorder import Recorder
 
-TURNS = 15
-ROUNDS = 20_000
+TURNS = 60
+ROUNDS = 2_000  # some ten thousand events: an episode
 
 STRAIGHT = """
 def work(rounds):

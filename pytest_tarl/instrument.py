@@ -18,6 +18,7 @@ from pytest_tarl.forms import (
     truth,
     where,
 )
+from pytest_tarl.magnitude import magnitude
 
 Offset = tuple[int, int]  # line from 1 and column in UTF-8 bytes from 0, as `ast` counts
 Scope = Literal["module", "class", "function"]
@@ -163,6 +164,8 @@ class _Recording(ast.NodeTransformer):
     _record_asyncfunctiondef = _record_functiondef
 
     def _record_assign(self, node: ast.Assign, number: int) -> list[ast.stmt]:
+        if isinstance(node.value, ast.Constant):
+            return self._before_or_around(node, node.value, number)
         target = node.targets[0]
         plain = len(node.targets) == 1 and isinstance(target, ast.Name) and self._rereadable()
         if plain and isinstance(target, ast.Name) and not self._publishing(node.value, number):
@@ -248,6 +251,8 @@ class _Recording(ast.NodeTransformer):
     ) -> list[ast.stmt]:
         if isinstance(value, ast.Name) and self._rereadable() and not isinstance(node, ast.AugAssign):
             return [note(value.id, number, self._names, where(value)), node]
+        if isinstance(value, ast.Constant):
+            return [*note_constant(magnitude(value.value), number, self._names, start_of(value)), node]
         publish = self._publishing(value, number)
         if publish and isinstance(value, ast.Call) and not (value.args or value.keywords):
             return [*self._nothing(node, number), node]

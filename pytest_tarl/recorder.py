@@ -180,6 +180,9 @@ def _plain_hook(entries: list[Any]) -> Hook:
         elif kind is int and -EXACT < value < EXACT:
             entries.append(number)
             entries.append(value + 0.0)
+        elif kind is bool:
+            entries.append(number)
+            entries.append(1.0 if value else 0.0)
         else:
             flow = size(value)
             entries.append(number)

@@ -13,7 +13,7 @@ MODULES = [
     "fractions",
     "bisect",
     "csv",
-    "configparser",
+    "calendar",
     "dataclasses",
     "string",
     "shlex",
