@@ -95,12 +95,13 @@ def _size(number: Number, value: object) -> float:
 
 def _plain_norm(sequence: list[Any] | tuple[Any, ...]) -> float | None:
     """Return the norm of a sequence of finite plain numbers, None when it holds anything else."""
-    step = max(1, len(sequence) // SAMPLE)
+    length = sequence.__len__()  # `len` may be the program's own for a while
+    step = length // SAMPLE or 1
     sample = sequence[::step] if step > 1 else sequence
     if not _PLAIN.issuperset(map(id, map(type, sample))):
         return None
     try:
-        size = math.hypot(*sample) * math.sqrt(len(sequence) / (len(sample) or 1))
+        size = math.hypot(*sample) * math.sqrt(length / (sample.__len__() or 1))
     except OverflowError:
         return None
     return size if size < math.inf else None
