@@ -41,10 +41,18 @@ FUNCTIONS: Final[Mapping[str, Fact]] = {
         "service", "actionlib.SimpleActionServer", (0, "name"), (1, "ActionSpec"), (2, "execute_cb")
     ),
     "rclpy.action.ActionServer": Fact(
-        "service", "rclpy.action.ActionServer", (2, "action_name"), (1, "action_type"), (3, "execute_callback")
+        "service",
+        "rclpy.action.ActionServer",
+        (2, "action_name"),
+        (1, "action_type"),
+        (3, "execute_callback"),
     ),
     "rclpy.action.server.ActionServer": Fact(
-        "service", "rclpy.action.ActionServer", (2, "action_name"), (1, "action_type"), (3, "execute_callback")
+        "service",
+        "rclpy.action.ActionServer",
+        (2, "action_name"),
+        (1, "action_type"),
+        (3, "execute_callback"),
     ),
     "message_filters.Subscriber": Fact(
         "filter", "message_filters.Subscriber", (0, "topic"), (1, "data_class")
@@ -54,7 +62,9 @@ FUNCTIONS: Final[Mapping[str, Fact]] = {
     "message_filters.Cache": Fact("synchronizer", "message_filters", (0, "f")),
     "threading.Thread": Fact("thread", "threading.Thread", callback=(1, "target"), extra=(3, "args")),
     "threading.Timer": Fact("thread", "threading.Timer", callback=(1, "function"), extra=(2, "args")),
-    "multiprocessing.Process": Fact("thread", "multiprocessing.Process", callback=(1, "target"), extra=(3, "args")),
+    "multiprocessing.Process": Fact(
+        "thread", "multiprocessing.Process", callback=(1, "target"), extra=(3, "args")
+    ),
     "functools.partial": Fact("partial", "functools.partial", callback=(0, "func")),
     "copy.copy": Fact("copy", "copy.copy"),
     "copy.deepcopy": Fact("copy", "copy.deepcopy"),
@@ -70,7 +80,9 @@ METHODS: Final[Mapping[str, Fact]] = {
         "publisher", "rclpy.create_lifecycle_publisher", (1, "topic"), (0, "msg_type")
     ),
     "create_timer": Fact("timer", "rclpy.create_timer", callback=(1, "callback")),
-    "create_service": Fact("service", "rclpy.create_service", (1, "srv_name"), (0, "srv_type"), (2, "callback")),
+    "create_service": Fact(
+        "service", "rclpy.create_service", (1, "srv_name"), (0, "srv_type"), (2, "callback")
+    ),
     "add_done_callback": Fact("call later", "add_done_callback", callback=(0, "callback")),
     "add_on_set_parameters_callback": Fact(
         "call later", "rclpy.add_on_set_parameters_callback", callback=(0, "callback")
@@ -85,6 +97,9 @@ FILTER_WITH_NODE: Final = Fact("filter", "message_filters.Subscriber", (2, "topi
 PARAMETER_VALUES: Final = frozenset(
     ["value", "double_value", "integer_value", "bool_value", "string_value", "get_parameter_value"]
 )
+
+SOURCE_WORDS: Final = ("Subscriber", "create_subscription", "wait_for_message")  # a file without them has no source
+SINK_WORDS: Final = ("publish",)
 
 WAITS: Final = frozenset(
     [
@@ -124,7 +139,17 @@ SCALAR_FUNCTIONS: Final = frozenset(
 SCALAR_MODULES: Final = ("math.", "time.", "random.", "cmath.", "operator.")
 
 DRAWING: Final = frozenset(
-    ["circle", "line", "rectangle", "putText", "polylines", "drawContours", "ellipse", "fillPoly", "arrowedLine"]
+    [
+        "circle",
+        "line",
+        "rectangle",
+        "putText",
+        "polylines",
+        "drawContours",
+        "ellipse",
+        "fillPoly",
+        "arrowedLine",
+    ]
 )
 
 ARGUMENT_WRITERS: Final[Mapping[str, int]] = {

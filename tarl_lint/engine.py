@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 from tarl_lint.config import Config
 from tarl_lint.model import Finding, Flow
+from tarl_lint.relevance import relevant
 from tarl_lint.rules import tarl101, tarl102
 from tarl_lint.source import Module
 from tarl_lint.taint import Tracer
@@ -21,7 +22,7 @@ def analyse(modules: Sequence[Module], config: Config) -> tuple[Flow, ...]:
 
 def trace(modules: Sequence[Module], config: Config) -> tuple[Linker, tuple[Flow, ...]]:
     """Return the flows and the machine that found them, which can be asked more."""
-    machine = Linker(sorted(modules, key=lambda m: m.path), config)
+    machine = Linker(relevant(sorted(modules, key=lambda m: m.path), config), config)
     with _without_collection():
         machine.link()
         flows = Tracer(machine).flows()

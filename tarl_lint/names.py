@@ -14,8 +14,7 @@ class Index:
     def __init__(self, modules: Iterable[Module]) -> None:
         self._by_name: dict[str, list[Module]] = {}
         for module in modules:
-            for name in _names(module):
-                self._by_name.setdefault(name, []).append(module)
+            self._by_name.setdefault(module.name, []).append(module)
 
     def find(self, name: str, importer: Module) -> Module | None:
         """Return the module that `importer` means: of several, the one that shares most of its path."""
@@ -28,12 +27,6 @@ class Index:
     def names(self) -> Mapping[str, list[Module]]:
         """Return the modules by name."""
         return self._by_name
-
-
-def _names(module: Module) -> list[str]:
-    """Return what a module may be imported as: its name, and its bare name beside it in a directory."""
-    bare = module.name.rpartition(".")[2]
-    return [module.name] if bare == module.name else [module.name, f"<beside>.{bare}"]
 
 
 def _shared(a: str, b: str) -> int:

@@ -148,7 +148,13 @@ class Tracer:
         return [*found, *_before_loops(found, turns, function)]
 
     def step(
-        self, written: Written, span: Span, dependence: Dependence, sink: bool, registers: bool, origin: SourceRecord
+        self,
+        written: Written,
+        span: Span,
+        dependence: Dependence,
+        sink: bool,
+        registers: bool,
+        origin: SourceRecord,
     ) -> Step:
         """Return a statement as a step."""
         text = written.text
@@ -217,9 +223,12 @@ def _before_loops(
     formers: dict[int, list[int]] = {}
     for before, after in edges:
         formers.setdefault(after, []).append(before)
-    found: list[tuple[int, int]] = []
+    heads: dict[int, set[int]] = {}
     for carried, head in turns:
-        seen, pending = {carried}, [carried]
+        heads.setdefault(head, set()).add(carried)
+    found: list[tuple[int, int]] = []
+    for head, carried_to in heads.items():
+        seen, pending = set(carried_to), list(carried_to)
         while pending:
             for before in formers.get(pending.pop(), ()):
                 if before not in seen:

@@ -7,7 +7,7 @@ from collections.abc import Hashable, Sequence
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.evaluate import Evaluation
 from tarl_lint.valueflow.heap import BORN, item_field
-from tarl_lint.valueflow.machine import MAX_CALLS, MAX_FRAMES, Arguments
+from tarl_lint.valueflow.machine import MAX_CALLS, MAX_FRAMES, MAX_STATEMENTS, Arguments
 from tarl_lint.valueflow.store import Delta
 from tarl_lint.valueflow.values import (
     ABSENT,
@@ -95,7 +95,14 @@ class Calls(Evaluation):
         return result
 
     def _call_member(
-        self, base: Value, obj: Obj, member: Value, name: str, arguments: Arguments, frame: Frame, expr: ir.Call
+        self,
+        base: Value,
+        obj: Obj,
+        member: Value,
+        name: str,
+        arguments: Arguments,
+        frame: Frame,
+        expr: ir.Call,
     ) -> Value:
         if obj.kind == "ext":
             return self.call_library(f"{obj.name}.{name}", arguments, frame, expr)
@@ -134,7 +141,9 @@ class Calls(Evaluation):
             return self.call_library(target.name, arguments, frame, call)
         if kind == "partial" and isinstance(target.info, tuple):
             function, plain, named = target.info
-            return self.call_value(function, ([*plain, *arguments[0]], {**named, **arguments[1]}), frame, call)
+            return self.call_value(
+                function, ([*plain, *arguments[0]], {**named, **arguments[1]}), frame, call
+            )
         if kind == "method" and isinstance(target.info, tuple):
             owner, name = target.info
             return self.call_method(pointer(owner), owner, name, arguments, frame, call)
@@ -161,7 +170,7 @@ class Calls(Evaluation):
         if not isinstance(closure.info, tuple):
             return None
         function, outer, program, cls = closure.info
-        if len(self.stack) > MAX_CALLS or sum(f.function is function for f in self.stack) > 1:
+        if self.spent > MAX_STATEMENTS or len(self.stack) > MAX_CALLS or sum(f.function is function for f in self.stack) > 1:
             return None
         statement = caller.statement.id if caller.statement is not None else -1
         key = (caller.id, statement, call.slot, closure.key, receiver)
@@ -265,7 +274,9 @@ class Calls(Evaluation):
                 value = self._missing(parameter, closure, rest, mapping)
             self.store.put((frame, parameter.name), value)
 
-    def _missing(self, parameter: ir.Parameter, closure: Obj, rest: Value | None, mapping: Value | None) -> Value:
+    def _missing(
+        self, parameter: ir.Parameter, closure: Obj, rest: Value | None, mapping: Value | None
+    ) -> Value:
         """Return what a parameter is that no argument names."""
         value = self.store.get((closure, parameter.name)) if parameter.default is not None else None
         result = BOTTOM if value is None else value

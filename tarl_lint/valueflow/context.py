@@ -9,8 +9,6 @@ from tarl_lint.valueflow.machine import SourceRecord
 from tarl_lint.valueflow.sites import Texts, Written
 from tarl_lint.valueflow.values import Frame
 
-LOOPS = (ast.For, ast.AsyncFor, ast.While)
-
 
 class Surroundings:
     """Finds context steps."""
@@ -55,7 +53,7 @@ class Surroundings:
         while around is not None:
             if isinstance(around.node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
                 return
-            if isinstance(around.node, LOOPS) or is_main_guard(around.node):
+            if around.shown:
                 found[id(around)] = around
                 edges[id(around), id(step)] = None
                 if inner is not step:
@@ -64,6 +62,3 @@ class Surroundings:
             around = around.around
 
 
-def is_main_guard(node: ast.AST) -> bool:
-    """Tell whether a statement is `if __name__ == "__main__":`."""
-    return isinstance(node, ast.If) and any(isinstance(n, ast.Name) and n.id == "__name__" for n in ast.walk(node.test))

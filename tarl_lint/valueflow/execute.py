@@ -44,6 +44,7 @@ class Execution(Ros):
         """Execute statements in order."""
         for statement in body:
             frame.statement = statement
+            self.spent += 1
             if self.watch is not None:
                 self.watch(frame, statement)
             if not EXECUTE[type(statement)](self, statement, frame):
@@ -307,7 +308,11 @@ class Execution(Ros):
     def define(self, s: ir.Define, frame: Frame) -> bool:
         value = self.closure(s.function, frame, "def")
         for decorator in reversed(s.function.decorators):
-            if isinstance(decorator, ir.Attribute) and decorator.name == "setter" and isinstance(s.target, ir.Name):
+            if (
+                isinstance(decorator, ir.Attribute)
+                and decorator.name == "setter"
+                and isinstance(s.target, ir.Name)
+            ):
                 self.store.put((self.holder(s.target, frame), f"{s.target.name}.setter"), value)
                 return True
             wrapper = self.evaluate(decorator, frame)
@@ -329,12 +334,22 @@ class Execution(Ros):
         info.fields = statement.fields
         for expr in statement.bases:
             value = self.evaluate(expr, frame)
-            info.bases += sorted((o for o in value.pts if o.kind == "class" and o is not cls), key=lambda o: str(o.key))
-            info.external += [o.name for o in value.pts if o.kind not in ("class",) and o.name != "builtins.object"]
+            info.bases += sorted(
+                (o for o in value.pts if o.kind == "class" and o is not cls), key=lambda o: str(o.key)
+            )
+            info.external += [
+                o.name for o in value.pts if o.kind not in ("class",) and o.name != "builtins.object"
+            ]
             if not value.pts:
                 info.external.append("?")
         cls.info = info
-        body = Frame(("class", cls.key), self.frame_number(("class", cls.key)), frame.function, frame.program, frame.module)
+        body = Frame(
+            ("class", cls.key),
+            self.frame_number(("class", cls.key)),
+            frame.function,
+            frame.program,
+            frame.module,
+        )
         body.cls, body.outer, body.base = cls, frame, self.branches(frame, statement)
         body.control = statement.control = statement.control or control_dependence(statement.body)
         body.caller, body.call = frame, statement

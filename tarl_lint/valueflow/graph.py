@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.values import Branches, Frame, Nodes
 
+MAX_CARRIED = 500  # content times carriers; beyond that, content is taken to arrive as it is
+
 
 @dataclass(slots=True)
 class Place:
@@ -35,9 +37,11 @@ class Graph:
     numbers: dict[Hashable, int] = field(default_factory=dict)
     literals: dict[int, tuple[object, ir.Pos, str]] = field(default_factory=dict)  # node → constant it is
     copies: set[int] = field(default_factory=set)  # nodes that pass on their only input unchanged
-    carried: dict[int, tuple[int, int]] = field(default_factory=dict)  # node → who passed on what inside an object
-    asking: set[tuple[int, int]] = field(default_factory=set)
-    walking: set[int] = field(default_factory=set)  # carriers being followed upwards
+    carried: dict[int, tuple[int, int]] = field(
+        default_factory=dict
+    )  # node → who passed on what inside an object
+    arriving: dict[tuple[int, int], None] = field(default_factory=dict)  # (node of a carrier, what it carries)
+    asking: set[tuple[int, int]] = field(default_factory=set)  # questions that are being answered
 
     def node(self, key: Hashable, place: Place, branches: Branches) -> int:
         """Return the node with this key, made at the first time."""
@@ -74,7 +78,7 @@ class Graph:
         Where a carrier passed the object when the content was already inside, a node of the carrier
         stands between.
         """
-        if not content or not carriers:
+        if not content or not carriers or len(content) * len(carriers) > MAX_CARRIED:
             return content
         found: set[int] = set()
         for item in content:
@@ -98,16 +102,29 @@ class Graph:
         return self.through(frozenset(inner), frozenset([outer])) if inner else inner
 
     def _carry(self, carrier: int, item: int) -> int:
-        """Return the node of `item` being passed on inside an object by `carrier`."""
-        if carrier == item:
+        """Return the node of `item` being passed on inside an object by `carrier`.
+
+        What was passed on before is the same thing still, so there are no more such nodes than pairs of a
+        carrier and a first maker.
+        """
+        origin = self.carried[item][1] if item in self.carried else item
+        if carrier in (item, origin):
             return item
-        node = self.node(("carry", carrier, item), self.places[carrier], self.branches[carrier])
-        self.carried[node] = (carrier, item)
-        if node not in self.walking:
-            self.walking.add(node)
-            self.flow(self.through(frozenset([item]), frozenset(self.data[carrier])), node)
-            self.walking.discard(node)
+        node = self.node(("carry", carrier, origin), self.places[carrier], self.branches[carrier])
+        self.carried[node] = (carrier, origin)
+        if item != node:
+            self.arriving[node, item] = None
         return node
+
+    def settle(self) -> None:
+        """Follow everything that was passed on inside objects back through those who passed it before."""
+        done: set[tuple[int, int]] = set()
+        while len(done) < len(self.arriving):
+            for node, item in list(self.arriving):
+                if (node, item) not in done:
+                    done.add((node, item))
+                    carrier = self.carried[node][0]
+                    self.flow(self.through(frozenset([item]), frozenset(self.data[carrier])), node)
 
     def hold(self, carrier: int, content: Nodes) -> None:
         """Remember what was inside an object when `carrier` passed it on."""

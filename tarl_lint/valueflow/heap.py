@@ -21,7 +21,9 @@ from tarl_lint.valueflow.values import (
 
 ANY = "*"  # the field that stands for all elements
 BORN = "<born>"  # the field that every object has which exists
-HOLLOW = frozenset(["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super"])
+HOLLOW = frozenset(
+    ["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super"]
+)
 MAX_NESTING = 7
 
 

@@ -10,7 +10,18 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.calls import Calls
 from tarl_lint.valueflow.heap import ANY, item_field
 from tarl_lint.valueflow.machine import Arguments
-from tarl_lint.valueflow.values import BOTTOM, NONE, UNKNOWN, Frame, Obj, Value, join, join_all, lineage, pointer
+from tarl_lint.valueflow.values import (
+    BOTTOM,
+    NONE,
+    UNKNOWN,
+    Frame,
+    Obj,
+    Value,
+    join,
+    join_all,
+    lineage,
+    pointer,
+)
 
 CONTAINERS = frozenset(["list", "tuple", "set", "frozenset", "sorted", "reversed", "iter", "deque"])
 
@@ -138,7 +149,9 @@ class Library(Calls):
         if not known or not isinstance(text, str) or not all(k for k, _ in (*constants, *named.values())):
             return None
         try:
-            return frozenset([text.format(*(c for _, c in constants), **{k: c for k, (_, c) in named.items()})])
+            return frozenset(
+                [text.format(*(c for _, c in constants), **{k: c for k, (_, c) in named.items()})]
+            )
         except Exception:  # noqa: BLE001 - a format that fails makes no text
             return None
 

@@ -45,6 +45,7 @@ class Linker(Execution):
             self._settle()
             if len(self.roots) == before:
                 break
+        self.graph.settle()
 
     def replay(self) -> None:
         """Run every root once more, for a probe that looks on."""
@@ -78,6 +79,7 @@ class Linker(Execution):
         self.pending.pop(root, None)
         self.store = Store(self.shared, root)
         self.stack = []
+        self.spent = 0
         run(root)
         for key in self.store.own():
             value = self._at_end(key)
@@ -100,6 +102,10 @@ class Linker(Execution):
         root = self.store.root
         for key in list(self.store.own()):
             value = self.store.get(key)
+            before, version = self.store.exchanged.get(key, (BOTTOM, -1))
+            if version == self.shared.version and before is value:
+                continue
+            self.store.exchanged[key] = (value, self.shared.version)
             if value is None:  # a field of a new object, which others may fill
                 news = self.shared.others(key, root)
                 if news is not None:
@@ -120,7 +126,9 @@ class Linker(Execution):
         frame = self.frames.get(key)
         if frame is None:
             program = next(iter(self.programs.values()))
-            frame = Frame(key, len(self.frames) + 1, program.function, program, self.module_objects[program.name])
+            frame = Frame(
+                key, len(self.frames) + 1, program.function, program, self.module_objects[program.name]
+            )
             self.frames[key] = frame
         frame.root_waits = root.once
         return frame
@@ -183,7 +191,8 @@ class Linker(Execution):
 
     def _has_made_heir(self, cls: Obj) -> bool:
         return any(
-            obj.kind == "class" and obj.key in self.made and cls in lineage(obj) for obj in self.objects.values()
+            obj.kind == "class" and obj.key in self.made and cls in lineage(obj)
+            for obj in self.objects.values()
         )
 
     def _frameworks(self) -> None:
@@ -279,5 +288,6 @@ def _registers(statement: ir.Class) -> bool:
 
 def _mentions(node: ast.AST) -> bool:
     return any(
-        isinstance(n, ast.Call) and isinstance(n.func, ast.Attribute) and n.func.attr in STARTS for n in ast.walk(node)
+        isinstance(n, ast.Call) and isinstance(n.func, ast.Attribute) and n.func.attr in STARTS
+        for n in ast.walk(node)
     )

@@ -69,7 +69,9 @@ class Lowering(Expressions):
     def augmented(self, node: ast.AugAssign, scope: Scope) -> list[ir.Stmt]:
         target = self.expr(node.target, scope)
         operator = OPERATORS.get(type(node.op), "")
-        value = ir.Operation("+=" if operator == "+" else "", [target, self.expr(node.value, scope)], position(node))
+        value = ir.Operation(
+            "+=" if operator == "+" else "", [target, self.expr(node.value, scope)], position(node)
+        )
         return [ir.Assign(scope.next(), position(node), [target], value, augmented=True)]
 
     def evaluate(self, node: ast.Expr, scope: Scope) -> list[ir.Stmt]:
@@ -79,7 +81,9 @@ class Lowering(Expressions):
 
     def if_(self, node: ast.If, scope: Scope) -> list[ir.Stmt]:
         test, number = self.expr(node.test, scope), scope.next()
-        return [ir.If(number, position(node), test, self.block(node.body, scope), self.block(node.orelse, scope))]
+        return [
+            ir.If(number, position(node), test, self.block(node.body, scope), self.block(node.orelse, scope))
+        ]
 
     def assert_(self, node: ast.Assert, scope: Scope) -> list[ir.Stmt]:
         failed = ir.Raise(scope.next(), position(node), None)
@@ -140,7 +144,15 @@ class Lowering(Expressions):
         )
         return [
             ir.Class(
-                scope.next(), position(node), target, node.name, inner.qualname, bases, body, decorators, fields
+                scope.next(),
+                position(node),
+                target,
+                node.name,
+                inner.qualname,
+                bases,
+                body,
+                decorators,
+                fields,
             )
         ]
 
@@ -160,7 +172,11 @@ class Lowering(Expressions):
             module = ".".join([*kept, module] if module else kept)
         bindings: list[tuple[ir.Expr | None, str, str | None]] = []
         for alias in node.names:
-            bound = ir.Name(*scope.resolve(alias.asname or alias.name), position(node)) if alias.name != "*" else None
+            bound = (
+                ir.Name(*scope.resolve(alias.asname or alias.name), position(node))
+                if alias.name != "*"
+                else None
+            )
             bindings.append((bound, module, alias.name))
         return [ir.Import(scope.next(), position(node), bindings)]
 
@@ -173,11 +189,17 @@ class Lowering(Expressions):
         orelse: list[ir.Stmt] = []
         for case in reversed(node.cases):
             body = self.captures(case, subject, scope) + self.block(case.body, scope)
-            tests = [n for n in ast.walk(case.pattern) if isinstance(n, ast.expr) and not isinstance(n, ast.Name)]
+            tests = [
+                n for n in ast.walk(case.pattern) if isinstance(n, ast.expr) and not isinstance(n, ast.Name)
+            ]
             if _irrefutable(case) and not tests:
                 orelse = body
                 continue
-            parts = [subject, *self.all(tests, scope), *([self.expr(case.guard, scope)] if case.guard else [])]
+            parts = [
+                subject,
+                *self.all(tests, scope),
+                *([self.expr(case.guard, scope)] if case.guard else []),
+            ]
             where = position(node) if case is node.cases[0] else _case_position(case)
             orelse = [ir.If(scope.next(), where, ir.Operation("", parts, where), body, orelse)]
         return orelse
@@ -185,9 +207,13 @@ class Lowering(Expressions):
     def captures(self, case: ast.match_case, subject: ir.Expr, scope: Scope) -> list[ir.Stmt]:
         """Return assignments of the names that a pattern binds."""
         where = _case_position(case)
-        names = [n.name for n in ast.walk(case.pattern) if isinstance(n, (ast.MatchAs, ast.MatchStar)) and n.name]
+        names = [
+            n.name for n in ast.walk(case.pattern) if isinstance(n, (ast.MatchAs, ast.MatchStar)) and n.name
+        ]
         targets: list[ir.Expr] = [ir.Name(*scope.resolve(n), where) for n in names]
-        return [ir.Assign(scope.next(), where, targets, ir.Operation("", [subject], where))] if targets else []
+        return (
+            [ir.Assign(scope.next(), where, targets, ir.Operation("", [subject], where))] if targets else []
+        )
 
 
 def _irrefutable(case: ast.match_case) -> bool:

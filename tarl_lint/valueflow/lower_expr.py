@@ -31,7 +31,12 @@ OPERATORS: dict[type[ast.AST], str] = {
 
 def position(node: ast.expr | ast.stmt | ast.excepthandler) -> ir.Pos:
     """Return where a node stands."""
-    return (node.lineno, node.col_offset, node.end_lineno or node.lineno, node.end_col_offset or node.col_offset)
+    return (
+        node.lineno,
+        node.col_offset,
+        node.end_lineno or node.lineno,
+        node.end_col_offset or node.col_offset,
+    )
 
 
 class Expressions:
@@ -83,7 +88,9 @@ class Expressions:
                 return ir.Const(-node.operand.value, position(node))
             if isinstance(node.op, ast.UAdd):
                 return ir.Const(node.operand.value, position(node))
-        return ir.Operation(OPERATORS.get(type(node.op), ""), [self.expr(node.operand, scope)], position(node))
+        return ir.Operation(
+            OPERATORS.get(type(node.op), ""), [self.expr(node.operand, scope)], position(node)
+        )
 
     def boolean(self, node: ast.BoolOp, scope: Scope) -> ir.Expr:
         return ir.Operation(OPERATORS[type(node.op)], self.all(node.values, scope), position(node))
@@ -159,7 +166,10 @@ class Expressions:
     def parameters(self, arguments: ast.arguments, scope: Scope) -> list[ir.Parameter]:
         """Return the parameters in order, with their defaults."""
         plain = [*arguments.posonlyargs, *arguments.args]
-        defaults: list[ast.expr | None] = [*([None] * (len(plain) - len(arguments.defaults))), *arguments.defaults]
+        defaults: list[ast.expr | None] = [
+            *([None] * (len(plain) - len(arguments.defaults))),
+            *arguments.defaults,
+        ]
         found = [
             ir.Parameter(a.arg, "plain", self.expr(d, scope) if d is not None else None)
             for a, d in zip(plain, defaults, strict=True)

@@ -17,7 +17,8 @@ from tarl_lint.valueflow.store import Root, Shared, Store
 from tarl_lint.valueflow.values import NONE, Branches, Frame, Nodes, Obj, Value
 
 MAX_CALLS = 24  # nested calls that are told apart; deeper ones are taken for library calls
-MAX_FRAMES = 4000  # activations per root
+MAX_FRAMES = 20_000  # activations in all
+MAX_STATEMENTS = 60_000  # executed in one run of a root; then calls are taken for library calls
 
 
 @dataclass(slots=True, eq=False)
@@ -83,6 +84,7 @@ class Machine:
         self.frames: dict[Hashable, Frame] = {}
         self.frame_numbers: dict[Hashable, int] = {}
         self.stack: list[Frame] = []
+        self.spent = 0  # statements executed in this run of a root
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.sources: dict[tuple[str, ir.Pos], SourceRecord] = {}
         self.sinks: dict[tuple[str, ir.Pos], SinkRecord] = {}

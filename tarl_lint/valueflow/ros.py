@@ -18,7 +18,9 @@ from tarl_lint.valueflow.values import BOTTOM, NONE, UNKNOWN, Frame, Obj, Value,
 class Ros(Library):
     """Performs the calls that the catalog knows."""
 
-    def ros_call(self, fact: Fact, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+    def ros_call(
+        self, fact: Fact, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call
+    ) -> Value:
         """Do what the catalog says about a call. Of a method, the first argument is the receiver."""
         receiver = BOTTOM
         if qualified in catalog.METHODS:
@@ -27,7 +29,9 @@ class Ros(Library):
 
     # --- publishers and sinks -----------------------------------------------------------------------------
 
-    def publisher(self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:  # noqa: ARG002
+    def publisher(
+        self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call
+    ) -> Value:  # noqa: ARG002
         statement = frame.statement.id if frame.statement is not None else -1
         obj = self.intern("publisher", (frame.id, statement, call.slot))
         info = obj.info if isinstance(obj.info, Publisher) else Publisher(api=fact.api)
@@ -96,7 +100,9 @@ class Ros(Library):
 
     # --- sources ------------------------------------------------------------------------------------------
 
-    def source(self, fact: Fact, arguments: Arguments, callback: Value, frame: Frame, call: ir.Call) -> SourceRecord:
+    def source(
+        self, fact: Fact, arguments: Arguments, callback: Value, frame: Frame, call: ir.Call
+    ) -> SourceRecord:
         """Record a subscription at the outermost call that supplies its callback."""
         place, pos, statement, via = frame, call.pos, frame.statement, []
         while place.caller is not None and place.call is not None and _supplied(place, callback):
@@ -120,7 +126,9 @@ class Ros(Library):
         assert frame.call is not None  # noqa: S101 - asked before
         return frame.call_pos or frame.call.pos
 
-    def subscribe(self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:  # noqa: ARG002
+    def subscribe(
+        self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call
+    ) -> Value:  # noqa: ARG002
         callback = argument(arguments, fact.callback)
         record = self.source(fact, arguments, callback, frame, call)
         extra = argument(arguments, fact.extra)
@@ -137,7 +145,9 @@ class Ros(Library):
         for target in callback.pts:
             if target.kind in CALLABLE or target.kind == "instance":
                 message = self.message(record, target)
-                self.call_when(("callback", record.path, record.pos), target, [pointer(message), *extra], "callback")
+                self.call_when(
+                    ("callback", record.path, record.pos), target, [pointer(message), *extra], "callback"
+                )
 
     def message(self, record: SourceRecord, target: Obj) -> Obj:
         """Return the message object that a source hands to a callback."""
@@ -170,7 +180,9 @@ class Ros(Library):
         function, _, program, _ = target.info
         return Frame(("described", target.key), -1, function, program, self.module_objects[program.name])
 
-    def receive(self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:  # noqa: ARG002
+    def receive(
+        self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call
+    ) -> Value:  # noqa: ARG002
         """Return the message that a waiting call gives."""
         record = self.source(fact, arguments, BOTTOM, frame, call)
         key = (frame.id, call.slot)
@@ -193,7 +205,9 @@ class Ros(Library):
         obj.info = record
         return pointer(obj)
 
-    def synchronizer(self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:  # noqa: ARG002
+    def synchronizer(
+        self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call
+    ) -> Value:  # noqa: ARG002
         """Return a synchroniser of several subscribers."""
         given = argument(arguments, fact.topic)
         statement = frame.statement.id if frame.statement is not None else -1
@@ -226,7 +240,9 @@ class Ros(Library):
                         subscriber.info.registered |= places
                         message = join(message, pointer(self.message(subscriber.info, function)))
                 messages.append(message)
-            self.call_when(("filter", frame.program.path, call.pos), function, [*messages, *extra], "callback")
+            self.call_when(
+                ("filter", frame.program.path, call.pos), function, [*messages, *extra], "callback"
+            )
         return UNKNOWN
 
     # --- what runs on its own -----------------------------------------------------------------------------
@@ -263,7 +279,9 @@ class Ros(Library):
 
     # --- values -------------------------------------------------------------------------------------------
 
-    def partial(self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:  # noqa: ARG002
+    def partial(
+        self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call
+    ) -> Value:  # noqa: ARG002
         statement = frame.statement.id if frame.statement is not None else -1
         obj = self.intern("partial", (frame.id, statement, call.slot))
         plain, named = arguments
@@ -276,7 +294,9 @@ class Ros(Library):
     def copied(self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:  # noqa: ARG002
         return self.copy_of(arguments[0][0], frame, call) if arguments[0] else UNKNOWN
 
-    def parameter(self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:  # noqa: ARG002
+    def parameter(
+        self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call
+    ) -> Value:  # noqa: ARG002
         """Return a parameter's value: its default, as far as is known here."""
         default = argument(arguments, fact.extra)
         if default is BOTTOM:
@@ -293,18 +313,27 @@ class Ros(Library):
         self.graph.flow(default.deps, node)
         return Value(frozenset([node]))
 
-    def declare(self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+    def declare(
+        self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call
+    ) -> Value:
         """Remember a declared parameter's default under the node and its name."""
         default = argument(arguments, fact.extra)
         expr = call.arguments[1] if len(call.arguments) > 1 else dict(call.keywords).get(fact.extra[1])
-        value = UNKNOWN if default is BOTTOM else self._default_of(default, expr, frame, ("parameter", call.slot))
+        value = (
+            UNKNOWN if default is BOTTOM else self._default_of(default, expr, frame, ("parameter", call.slot))
+        )
         found = self._parameter_object(receiver, argument(arguments, fact.topic))
         for obj in found.pts:
             self.store.put((obj, "value"), value)
         return found
 
     def parameter_object(
-        self, fact: Fact, receiver: Value, arguments: Arguments, frame: Frame, call: ir.Call  # noqa: ARG002
+        self,
+        fact: Fact,
+        receiver: Value,
+        arguments: Arguments,
+        frame: Frame,
+        call: ir.Call,  # noqa: ARG002
     ) -> Value:
         return self._parameter_object(receiver, argument(arguments, fact.topic))
 

@@ -12,6 +12,7 @@ from tarl_lint.source import Module
 from tarl_lint.valueflow.ir import Pos
 
 COMPOUND = (ast.If, ast.For, ast.AsyncFor, ast.While, ast.With, ast.AsyncWith, ast.Try, ast.Match)
+LOOPS = (ast.For, ast.AsyncFor, ast.While)
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 
@@ -24,6 +25,11 @@ class Written:
     around: Written | None
     start: tuple[int, int]
     text: Text
+
+    @property
+    def shown(self) -> bool:
+        """Tell whether it is shown around steps inside it: a loop, or the `__main__` guard."""
+        return isinstance(self.node, LOOPS) or (isinstance(self.node, ast.If) and _guards_main(self.node.test))
 
 
 @dataclass(slots=True)
@@ -164,6 +170,11 @@ class Texts:
         if path not in self.known:
             self.known[path] = Text(self.modules[path])
         return self.known[path]
+
+
+def _guards_main(test: ast.expr) -> bool:
+    """Tell whether a test is `__name__ == "__main__"`."""
+    return isinstance(test, ast.Compare) and isinstance(test.left, ast.Name) and test.left.id == "__name__"
 
 
 def _start(node: ast.AST) -> tuple[int, int]:

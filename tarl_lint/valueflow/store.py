@@ -28,6 +28,7 @@ class Shared:
     pauses: dict[Key, dict[Root, Value]] = field(default_factory=dict)
     readers: dict[Key, set[Root]] = field(default_factory=dict)
     dirty: set[Root] = field(default_factory=set)
+    version: int = 0  # grows with every news
 
     def entry(self, key: Key, root: Root) -> Value | None:
         """Return what a root finds when it starts: the join of all that any other can have stored."""
@@ -58,6 +59,7 @@ class Shared:
         after = value if before is None else join(before, value)
         if before is None or after != before:
             owners[root] = after
+            self.version += 1
             self.dirty |= self.readers.get(key, set()) - ({root} if root.once else set())
 
 
@@ -75,6 +77,7 @@ class Store:
     root: Root
     layers: list[Delta] = field(default_factory=lambda: [{}])
     found: dict[Key, Value | None] = field(default_factory=dict)
+    exchanged: dict[Key, tuple[Value | None, int]] = field(default_factory=dict)  # at the last wait
     foreign: dict[Key, Value] = field(default_factory=dict)  # what others stored while this root waited
 
     def get(self, key: Key) -> Value | None:

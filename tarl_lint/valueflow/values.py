@@ -69,7 +69,9 @@ class Frame(Obj):
         "module", "outer", "owner", "program", "result", "returns", "slot", "statement", "tries", "yielded",
     )  # fmt: skip
 
-    def __init__(self, key: object, number: int, function: ir.Function, program: ir.Program, module: Obj) -> None:
+    def __init__(
+        self, key: object, number: int, function: ir.Function, program: ir.Program, module: Obj
+    ) -> None:
         super().__init__("frame", key, function.name)
         self.id = number
         self.function = function
@@ -202,9 +204,7 @@ class ClassInfo:
     @property
     def opaque(self) -> bool:
         """Tell whether code that is not analysed may see its instances' attributes and call its methods."""
-        return bool(self.external) or any(
-            isinstance(b.info, ClassInfo) and b.info.opaque for b in self.bases
-        )
+        return bool(self.external) or any(isinstance(b.info, ClassInfo) and b.info.opaque for b in self.bases)
 
 
 def lineage(cls: Obj) -> list[Obj]:
