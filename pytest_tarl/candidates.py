@@ -20,23 +20,22 @@ Bins = tuple[int, int]  # first and last
 
 @dataclass(frozen=True)
 class Evidence:
-    """What a guard can be read from: both worlds, the region, and what an on-line episode loses in a cell."""
+    """What a guard can be read from: both worlds, the region, and how far on-line differs by cell."""
 
     sensors: Sequence[Sensor]
     offline: Sample
     online: Sample
     region: Region
-    losses: Mapping[Cell, float]
+    changes: Mapping[Cell, float]
 
     def shares(self) -> dict[Cell, float]:
-        """Return, per cell, the share of the whole loss less the share of the on-line steps that fall there."""
+        """Return, per cell, the share of the whole change less the share of the on-line steps that fall there."""
         counts = np.bincount(
             self.online.chain.cell, self.online.chain.count, minlength=len(self.online.cells)
         )
         steps = max(float(counts.sum()), 1.0)
-        lost = {cell: loss for cell, loss in self.losses.items() if loss > 0}
-        whole = sum(lost.values()) or 1.0
-        merit = {cell: loss / whole for cell, loss in lost.items()}
+        whole = sum(self.changes.values()) or 1.0
+        merit = {cell: change / whole for cell, change in self.changes.items()}
         for cell, count in zip(self.online.cells, counts.tolist(), strict=True):
             merit[cell] = merit.get(cell, 0.0) - count / steps
         return merit
@@ -63,9 +62,9 @@ def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
 
 
 def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Guard, ...]:
-    """Return the guards to search under: those that hold where much is lost and seldom elsewhere, and none at all.
+    """Return the guards to search under: those that hold where much changed and seldom elsewhere, and none at all.
 
-    Ordered by the share of the loss that falls under the guard less the share of steps that do (Youden's J).
+    Ordered by the share of the change that falls under the guard less the share of steps that do (Youden's J).
     """
     shares = evidence.shares()
 
@@ -114,7 +113,7 @@ def _hull(cells: Sequence[Cell], i: int) -> Bins | None:
 
 
 def _steepest(evidence: Evidence, i: int) -> Bins | None:
-    """Return the interval of a sensor's bins that holds most of the loss in fewest steps (Kadane's maximum sum)."""
+    """Return the interval of a sensor's bins that holds most of the change in fewest steps (Kadane's maximum sum)."""
     by_bin: dict[int, float] = {}
     for cell, value in evidence.shares().items():
         by_bin[cell[i]] = by_bin.get(cell[i], 0.0) + value

@@ -83,7 +83,7 @@ def run_online(
         culprits=localize.culprits(ranked, {}, (), difference.verdict.loss),
         notes=lost_sites(fixture, plan),
         parts=_parts(offline, online),
-        losses=difference.losses,
+        changes=difference.changes,
     )
     return Online(comparison, recorded, learned)
 

@@ -1,6 +1,6 @@
 """Compare two worlds: is performance worse, is the world another one, and in which cells?
 
-Bellman residuals of the off-line utility are zero in expectation where the world still is the one that it was
+The Bellman residuals of the off-line utility are zero in expectation where the world still is the one that it was
 fitted in, so what stands out is where it changed, not what lies upstream of it (performance-difference lemma,
 Kakade & Langford 2002). Significance is by permutation of whole episodes, corrected over cells by the largest
 statistic (Westfall & Young 1993).
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from pytest_tarl.model import Region, Result, Verdict
 from pytest_tarl.sensors import Cell
-from pytest_tarl.statistics import END, Ints, Sample, aligned
+from pytest_tarl.statistics import END, Chain, Ints, Sample, aligned
 from pytest_tarl.utility import GAMMA_STEP, Floats, chain_utility
 
 PERMUTATIONS = 999
@@ -30,7 +30,7 @@ NOVEL_EPISODES = 2  # in so many episodes
 
 @dataclass(frozen=True)
 class Residuals:
-    """Per episode and cell: γU(x')-U(x) and r summed over visits, visits to novel cells; shape (episodes, cells)."""
+    """Per episode and cell, shape (episodes, cells): the two parts of the Bellman residual, visits to novel cells."""
 
     move: Floats
     reward: Floats
@@ -41,12 +41,13 @@ class Residuals:
 class Difference:
     """What the comparison of two samples found, before any word of it.
 
-    `losses` tells by cell what an on-line episode loses there, by the residual part that the region is read from.
+    `changes` tells by cell how far an on-line episode is from an off-line one, in the residual part that the region
+    is read from.
     """
 
     verdict: Verdict
     region: Region
-    losses: Mapping[Cell, float]
+    changes: Mapping[Cell, float]
 
 
 def compare(
@@ -57,7 +58,7 @@ def compare(
     margin = max(0.05 * abs(float(offline.total.mean())), tolerance or 0.0)
     p_loss = permuted_loss(offline.total, online.total, generator)
     loss = float(offline.total.mean() - online.total.mean())
-    p_drift, region, losses = _drift(offline, online, alpha, generator)
+    p_drift, region, changes = _drift(offline, online, alpha, generator)
     result: Result = "no difference"
     if p_loss < alpha and loss > margin:
         result = "degraded"
@@ -65,7 +66,7 @@ def compare(
         result = "drifted"
     detectable = max(margin, smallest_detectable_loss(offline.total, online.total, alpha))
     found = region if result != "no difference" else Region()
-    return Difference(Verdict(result, p_drift, p_loss, loss, detectable, margin), found, losses)
+    return Difference(Verdict(result, p_drift, p_loss, loss, detectable, margin), found, changes)
 
 
 def in_fit(seed: int) -> bool:
@@ -87,33 +88,62 @@ def smallest_detectable_loss(offline: Floats, online: Floats, alpha: float) -> f
     return float((normal.inv_cdf(1 - alpha) + normal.inv_cdf(POWER)) * spread)
 
 
-def residuals(compared: Sample, utility: Floats) -> Residuals:
-    """Return each episode's residuals per cell; `utility` has shape (cells,), NaN where unknown.
+@dataclass(frozen=True)
+class Model:
+    """What one step is expected to bring in each cell of the off-line world, shape (cells,); NaN where unknown."""
 
-    The last step of an episode has no move. Transitions from or to a cell of unknown utility are left out.
+    utility: Floats
+    move: Floats  # mean of γU(x')-U(x) over the steps that are not the last
+    reward: Floats
+
+
+def fitted(chain: Chain, cells: int) -> Model:
+    """Fit the model to off-line transitions."""
+    utility = chain_utility(chain, cells)
+    inside = chain.next_cell != END
+    moves = np.bincount(chain.cell, weights=_gain(chain, utility) * chain.count, minlength=cells)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        move = moves / np.bincount(chain.cell, weights=chain.count * inside, minlength=cells)
+        reward = np.bincount(chain.cell, weights=chain.reward, minlength=cells)
+        reward = reward / np.bincount(chain.cell, weights=chain.count, minlength=cells)
+    return Model(utility, move, reward)
+
+
+def residuals(compared: Sample, model: Model) -> Residuals:
+    """Return each episode's residuals per cell, each part less what the off-line world brings per visit.
+
+    So both parts are zero in expectation in that world, however often a cell is visited. The last step of an episode
+    has no move. Transitions from or to a cell of unknown utility are left out.
     """
     chain, shape = compared.chain, (compared.episodes, len(compared.cells))
-    known = ~np.isnan(utility)
-    inside = chain.next_cell != END
-    usable = inside & known[chain.cell] & known[np.where(inside, chain.next_cell, 0)]
-    gain = GAMMA_STEP * utility[np.where(inside, chain.next_cell, 0)] - utility[chain.cell]
-    weighted = np.where(usable, gain * chain.count, 0.0)
+    known = ~np.isnan(model.utility)
+    move = (_gain(chain, model.utility) - model.move[chain.cell]) * chain.count
+    move = np.where((chain.next_cell != END) & ~np.isnan(move), move, 0.0)
+    reward = chain.reward - model.reward[chain.cell] * chain.count
     return Residuals(
-        move=_sum_by(chain.episode, chain.cell, weighted, shape),
-        reward=_sum_by(chain.episode, chain.cell, np.where(known[chain.cell], chain.reward, 0.0), shape),
+        move=_sum_by(chain.episode, chain.cell, move, shape),
+        reward=_sum_by(chain.episode, chain.cell, np.where(known[chain.cell], reward, 0.0), shape),
         novel=_sum_by(chain.episode, chain.cell, np.where(known[chain.cell], 0.0, chain.count), shape),
+    )
+
+
+def _gain(chain: Chain, utility: Floats) -> Floats:
+    """Return γU(x')-U(x) of every transition, 0 for the last step, NaN where a utility is unknown."""
+    inside = chain.next_cell != END
+    return np.where(
+        inside, GAMMA_STEP * utility[np.where(inside, chain.next_cell, 0)] - utility[chain.cell], 0.0
     )
 
 
 def _drift(
     offline: Sample, online: Sample, alpha: float, generator: np.random.Generator
 ) -> tuple[float, Region, dict[Cell, float]]:
-    """Return p_drift, the region and what is lost by cell; both samples share their cells."""
+    """Return p_drift, the region and the change by cell; both samples share their cells."""
     fit = np.array([in_fit(seed) for seed in offline.seeds])
     rows = fit[offline.chain.episode]
     known = type(offline.chain)(*(column[rows] for column in vars(offline.chain).values()))
-    utility = chain_utility(known, len(offline.cells))
-    held_out, deployed = residuals(offline, utility), residuals(online, utility)
+    model = fitted(known, len(offline.cells))
+    held_out, deployed = residuals(offline, model), residuals(online, model)
     blocks = [
         np.concatenate((getattr(deployed, part), getattr(held_out, part)[~fit]))
         for part in ("move", "reward", "novel")
@@ -129,8 +159,8 @@ def _drift(
     seen[offline.chain.cell] = True
     chosen = (significant[part] & material & seen, significant[2] & ~seen)
     region = Region(*(tuple(offline.cells[i] for i in np.flatnonzero(one)) for one in chosen))
-    losses = {offline.cells[i]: float(-difference[i]) for i in np.flatnonzero(difference)}
-    return float(p_values.min(initial=1.0)), region, losses
+    changes = {offline.cells[i]: abs(float(difference[i])) for i in np.flatnonzero(difference)}
+    return float(p_values.min(initial=1.0)), region, changes
 
 
 def max_statistic(columns: Floats, first: int, generator: np.random.Generator) -> Floats:

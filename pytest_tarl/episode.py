@@ -115,22 +115,23 @@ class Tarl:
         """End the nodes and forget the episode."""
         self._open.close()
 
-    def check(self) -> None:
-        """Raise RecordingError where the episode cannot be learned from: no reward, a silent sensor, a mute node."""
+    def problem(self) -> RecordingError | None:
+        """Return why the episode cannot be learned from: no reward, a silent sensor, a mute node; None when it can."""
         if not self._rewards:
-            raise RecordingError(
-                "The test never called tarl.reward: call it once a simulation step with the "
-                "monitor's judgement, for instance tarl.reward(world.monitor())."
+            return RecordingError(
+                "The test never called tarl.reward: call it once a simulation step with the monitor's judgement, "
+                "for instance tarl.reward(world.monitor())."
             )
         silent = [sensor for sensor in self._sensors if sensor.name not in self._bins]
         if silent:
-            raise RecordingError(_silence(silent[0]))
+            return RecordingError(_silence(silent[0]))
         if self.drives_ros and not self.ros.published:
-            raise RecordingError(
-                "The node published nothing in the whole episode, so nothing can be learned: look "
-                "whether it gets the messages that it waits for"
-                f" (it subscribes to {', '.join(sorted(self.ros.subscribed)) or 'no topic'})."
+            heard = ", ".join(sorted(self.ros.subscribed)) or "no topic"
+            return RecordingError(
+                "The node published nothing in the whole episode, so nothing can be learned: look whether it gets "
+                f"the messages that it waits for (it subscribes to {heard})."
             )
+        return None
 
     def _latch(self, topic: str, message: Any) -> None:
         """Hold the sensors' bins until the next message on their topic."""

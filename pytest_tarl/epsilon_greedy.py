@@ -44,7 +44,7 @@ class EpsilonGreedy:
         self,
         operands: Sequence[Operand],
         mutate: Mutate,
-        guard: Guard,
+        guards: Sequence[Guard],
         trials: Trials,
         goal: Goal,
         seeds: Sequence[int],
@@ -52,7 +52,7 @@ class EpsilonGreedy:
     ) -> None:
         sites = list(dict.fromkeys(operand.site for operand in operands))[: self.SITES]
         tries = [mutate(o, f) for f in FACTORS for o in operands if o.site in sites]
-        self.actions = [Candidate((m,), guard) for m in dict.fromkeys(tries) if m is not None]
+        self.actions = [Candidate((m,), g) for g in guards for m in dict.fromkeys(tries) if m is not None]
         self.trials = trials
         self.goal = goal
         self.seeds = seeds

@@ -179,4 +179,4 @@ class Comparison:
     repair: Repair | None = None
     notes: tuple[str, ...] = ()
     parts: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # part → mean off-line, on-line
-    losses: Mapping[Cell, float] = field(default_factory=dict)  # what an on-line episode loses in a cell
+    changes: Mapping[Cell, float] = field(default_factory=dict)  # how far on-line differs, by cell

@@ -115,7 +115,7 @@ def repair(shop: RepairShop) -> Repaired:
         shop.fixture.sample,
         shop.online.recorded.sample,
         comparison.region,
-        comparison.losses,
+        comparison.changes,
     )
     guards = candidates.candidate_guards(evidence)
     telling = candidates.telling(guards, evidence, MOST_GUARDS)
@@ -152,7 +152,7 @@ def _strategy(shop: RepairShop, method: str, guards: Sequence[Guard], trials: Tr
     return EpsilonGreedy(
         shop.operands,
         shop.mutate,
-        guards[0],
+        tuple(dict.fromkeys((guards[0], candidates.ALWAYS))),
         trials,
         shop.goal,
         fresh,

@@ -45,6 +45,7 @@ class Episode:
     designation: Designation
     instruments: Instruments = NOTHING
     error: BaseException | None = None
+    problem: TarlError | None = None  # why it cannot be learned from
     trace: Trace | None = None
     topics: Mapping[str, str] = field(default_factory=dict)
 
@@ -81,9 +82,8 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
     finally:
         episode.trace = recorder.finish()
         episode.topics = dict(tarl.topics)
+        episode.problem = tarl.problem()
         tarl.close()
-    if EPISODE in item.stash and episode.error is None:
-        tarl.check()
 
 
 def drift_value(item: pytest.Item) -> Any:
@@ -145,10 +145,12 @@ def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestRe
 def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
     if isinstance(episode.error, TarlError) and not isinstance(episode.error, NodeError):
         raise episode.error
+    mission = isinstance(episode.error, (AssertionError, pytest.fail.Exception, NodeError))
+    if episode.problem is not None and (episode.error is None or isinstance(episode.error, AssertionError)):
+        raise episode.problem
     skipped = next((report for report in reports if report.skipped), None)
     if skipped is not None:
         pytest.skip(_reason(skipped))
-    mission = isinstance(episode.error, (AssertionError, pytest.fail.Exception, NodeError))
     failed = [report for report in reports if report.failed]
     broken = [report for report in failed if report.when != "call" or not mission]
     if episode.trace is None:

@@ -44,16 +44,16 @@ ONLINE = drive(3, range(4, 7))
 REGION = Region(tuple((x, 1) for x in (4, 5, 6)))
 
 
-LOSSES = {(4, 1): 2.0, (5, 1): 2.0, (6, 1): 2.0, (8, 0): 0.1, (1, 0): -5.0}
+CHANGES = {(4, 1): 2.0, (5, 1): 2.0, (6, 1): 2.0, (8, 0): 0.1}
 
 
 def evidence(
     region: Region,
     sensors: tuple[Sensor, ...] = (X, WET),
     worlds: tuple[Sample, Sample] = (OFFLINE, ONLINE),
-    losses: dict[Cell, float] | None = None,
+    changes: dict[Cell, float] | None = None,
 ) -> Evidence:
-    return Evidence(sensors, *worlds, region, losses or {})
+    return Evidence(sensors, *worlds, region, changes or {})
 
 
 def test_single_sensors_come_before_pairs_and_narrow_before_wide() -> None:
@@ -66,22 +66,22 @@ def test_single_sensors_come_before_pairs_and_narrow_before_wide() -> None:
     assert max(sizes) == 2
 
 
-def test_guards_to_search_under_hold_where_much_is_lost_and_seldom_elsewhere() -> None:
+def test_guards_to_search_under_hold_where_much_changed_and_seldom_elsewhere() -> None:
     mixed = merge([drive(3, range(4, 7)), drive(4, range(0))])
-    seen = evidence(REGION, worlds=(OFFLINE, mixed), losses=LOSSES)
+    seen = evidence(REGION, worlds=(OFFLINE, mixed), changes=CHANGES)
     assert telling(candidate_guards(seen), seen, most=2) == (Guard((Conjunct(WET, 1.0, 1.0),)), ALWAYS)
 
 
-def test_losses_propose_a_guard_where_the_region_spans_everything() -> None:
+def test_changes_propose_a_guard_where_the_region_spans_everything() -> None:
     spread = Region((*REGION.cells, (0, 0), (9, 0)))
-    seen = evidence(spread, losses=LOSSES)
+    seen = evidence(spread, changes=CHANGES)
     assert Guard((Conjunct(WET, 1.0, 1.0),)) in candidate_guards(seen)
     assert Guard((Conjunct(X, 4.0, 7.0),)) in candidate_guards(seen)
     assert candidate_guards(evidence(spread)) == (ALWAYS,)
 
 
 def test_without_a_telling_guard_the_search_runs_without_one() -> None:
-    seen = evidence(REGION, losses={(1, 0): -3.0})
+    seen = evidence(REGION, changes={})
     assert telling(candidate_guards(seen), seen, most=3) == (ALWAYS,)
     assert telling((), seen, most=3) == (ALWAYS,)
 

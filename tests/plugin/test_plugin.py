@@ -24,6 +24,24 @@ def tank(pytester: pytest.Pytester) -> pytest.Pytester:
     return pytester
 
 
+@pytest.fixture(scope="module")
+def record_once() -> dict[str, bytes]:
+    return {}
+
+
+@pytest.fixture
+def recorded(tank: pytest.Pytester, record_once: dict[str, bytes]) -> pytest.Pytester:
+    """The project with its utility recorded, once for all tests that only compare."""
+    if not record_once:
+        tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+        record_once[fixture_file(tank).name] = fixture_file(tank).read_bytes()
+    folder = tank.path / ".tarl" / "utility"
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in record_once.items():
+        (folder / name).write_bytes(content)
+    return tank
+
+
 def changed(tank: pytest.Pytester, name: str, old: str, new: str) -> None:
     path = tank.path / f"{name}.py"
     text = path.read_text()
@@ -61,12 +79,11 @@ def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(tank: pytest
     assert fixture_file(tank).read_bytes() != first
 
 
-def test_a_drift_that_costs_is_degraded_and_fails_the_test(tank: pytest.Pytester) -> None:
-    tank.runpytest(*RECORD)
-    result = tank.runpytest(*ONLINE)
+def test_a_drift_that_costs_is_degraded_and_fails_the_test(recorded: pytest.Pytester) -> None:
+    result = recorded.runpytest(*ONLINE)
     result.assert_outcomes(failed=1, deselected=1)
     result.stdout.fnmatch_lines(["*test_fills?clogged?*degraded*", "*keeper.py:*"])
-    found = json.loads(next((tank.path / ".tarl" / "results").glob("*clogged*.json")).read_text())
+    found = json.loads(next((recorded.path / ".tarl" / "results").glob("*clogged*.json")).read_text())
     jsonschema.validate(found, json_result.schema())
     assert found["verdict"]["result"] == "degraded"
     assert found["episodes"] == {"offline": 16, "online": 12, "search": 0, "acceptance": 0}
@@ -89,19 +106,18 @@ def test_without_a_drift_the_scenario_is_called_online(tank: pytest.Pytester) ->
 
 
 @pytest.mark.parametrize("search", ["sweep", "epsilon-greedy"])
-def test_a_repair_is_found_applies_and_heals_the_test(tank: pytest.Pytester, search: str) -> None:
-    tank.runpytest(*RECORD)
-    result = tank.runpytest(*ONLINE, "--tarl-repair", f"--tarl-search={search}")
+def test_a_repair_is_found_applies_and_heals_the_test(recorded: pytest.Pytester, search: str) -> None:
+    result = recorded.runpytest(*ONLINE, "--tarl-repair", f"--tarl-search={search}")
     result.assert_outcomes(failed=1, deselected=1)
     result.stdout.fnmatch_lines(["*git apply .tarl/patches/*.patch*"])
-    (patch,) = (tank.path / ".tarl" / "patches").glob("*.patch")
-    found = json.loads(next((tank.path / ".tarl" / "results").glob("*.json")).read_text())
+    (patch,) = (recorded.path / ".tarl" / "patches").glob("*.patch")
+    found = json.loads(next((recorded.path / ".tarl" / "results").glob("*.json")).read_text())
     assert found["repair"]["accepted"]
     assert found["repair"]["edits"][0]["path"] == "keeper.py"
-    subprocess.run(["git", "apply", "--check", patch], cwd=tank.path, check=True)
-    subprocess.run(["git", "apply", patch], cwd=tank.path, check=True)
-    tank.runpytest(*ONLINE).assert_outcomes(passed=1, deselected=1)
-    tank.runpytest().assert_outcomes(passed=2)
+    subprocess.run(["git", "apply", "--check", patch], cwd=recorded.path, check=True)
+    subprocess.run(["git", "apply", patch], cwd=recorded.path, check=True)
+    recorded.runpytest(*ONLINE).assert_outcomes(passed=1, deselected=1)
+    recorded.runpytest().assert_outcomes(passed=2)
 
 
 def test_a_world_that_no_constant_can_mend_gets_no_patch(tank: pytest.Pytester) -> None:
@@ -131,25 +147,25 @@ def test_an_unknown_drift_is_named_with_the_known_ones(tank: pytest.Pytester) ->
     assert result.ret == pytest.ExitCode.USAGE_ERROR
 
 
-def test_a_damaged_fixture_is_named(tank: pytest.Pytester) -> None:
-    tank.runpytest(*RECORD)
-    fixture_file(tank).write_bytes(fixture_file(tank).read_bytes()[:300])
-    result = tank.runpytest(*ONLINE)
+def test_a_damaged_fixture_is_named(recorded: pytest.Pytester) -> None:
+    fixture_file(recorded).write_bytes(fixture_file(recorded).read_bytes()[:300])
+    result = recorded.runpytest(*ONLINE)
     result.assert_outcomes(failed=1, deselected=1)
     result.stdout.fnmatch_lines(["*is damaged*--tarl-record*"])
 
 
-def test_an_edited_node_loses_slices_by_name_and_keeps_its_verdict(tank: pytest.Pytester) -> None:
-    tank.runpytest(*RECORD)
-    changed(tank, "keeper", "missing = 1.0 - level", "missing = 1.0 - 1.0 * level")
-    result = tank.runpytest(*ONLINE)
-    result.stdout.fnmatch_lines(["*degraded*", "*node was edited*missing = 1.0 - level*"])
+def test_an_edited_node_loses_slices_by_name_and_keeps_its_verdict(recorded: pytest.Pytester) -> None:
+    changed(recorded, "keeper", "missing = 1.0 - level", "missing = 1.0 - 1.0 * level")
+    result = recorded.runpytest(*ONLINE)
+    told = " ".join(result.stdout.str().split())
+    assert "degraded" in told
+    assert "the node was edited since the recording" in told
+    assert "`missing = 1.0 - level` are lost" in told
 
 
-def test_moved_lines_lose_nothing(tank: pytest.Pytester) -> None:
-    tank.runpytest(*RECORD)
-    changed(tank, "keeper", "GAIN = 2.0", "# gains\n\n\nGAIN = 2.0")
-    result = tank.runpytest(*ONLINE)
+def test_moved_lines_lose_nothing(recorded: pytest.Pytester) -> None:
+    changed(recorded, "keeper", "GAIN = 2.0", "# gains\n\n\nGAIN = 2.0")
+    result = recorded.runpytest(*ONLINE)
     result.stdout.no_fnmatch_line("*was edited*")
     result.stdout.fnmatch_lines(["*degraded*"])
 
@@ -176,7 +192,7 @@ def test_moved_lines_lose_nothing(tank: pytest.Pytester) -> None:
             "*published nothing*/level*",
         ),
         ("keeper", "GAIN = 2.0", "GAIN = (2.0", "*keeper.py:*cannot be analysed*"),
-        ("keeper", "flow = GAIN * missing", "flow = GAIN * mising", "*NameError*mising*"),
+        ("keeper", "rospy.Rate(10)", "rospy.Rate(ten)", "*NameError*ten*"),
         ("keeper", "rospy.Rate(10)", "rospy.Rait(10)", "*rospy.Rait*"),
         ("test_tank", "valve.data if valve else 0.0", "valve.dota", "*dota*"),
     ],

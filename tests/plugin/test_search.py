@@ -81,7 +81,9 @@ def test_every_run_is_paired_with_the_unmutated_run_of_its_seed() -> None:
 def test_epsilon_greedy_finds_it_too_and_spends_more() -> None:
     trials = Trials(run, 300)
     seeds = range(1000, 1000 + EpsilonGreedy.episodes(300))
-    search = EpsilonGreedy(OPERANDS, mutations, ALWAYS, trials, GOAL, seeds, generator(0, "epsilon-greedy"))
+    search = EpsilonGreedy(
+        OPERANDS, mutations, (ALWAYS,), trials, GOAL, seeds, generator(0, "epsilon-greedy")
+    )
     goal = Goal(GOAL.pairs, near=OFFLINE - 3.0, enough=OFFLINE - 3.0)  # it knows the seven factors only
     search.goal = goal
     found = next(search.candidates())
@@ -95,7 +97,7 @@ def test_the_same_generator_gives_the_same_search() -> None:
         trials = Trials(run, 120)
         seeds = range(EpsilonGreedy.episodes(120))
         search = EpsilonGreedy(
-            OPERANDS, mutations, ALWAYS, trials, GOAL, seeds, generator(5, "epsilon-greedy")
+            OPERANDS, mutations, (ALWAYS,), trials, GOAL, seeds, generator(5, "epsilon-greedy")
         )
         list(search.candidates())
         return trials.totals
