@@ -25,20 +25,22 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pytest_tarl import candidates, localize, seeds
+from pytest_tarl import seeds
 from pytest_tarl.comparing import run_online
-from pytest_tarl.drift import compare
-from pytest_tarl.fixture import Fixture
+from pytest_tarl.instrumentation.sites import Plan, plan
+from pytest_tarl.learning import localize
+from pytest_tarl.learning.drift import compare
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.statistics import aligned
+from pytest_tarl.learning.utility import Floats, batch
 from pytest_tarl.model import Region
 from pytest_tarl.recording import Recorded, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.repairing import Repaired, RepairShop, repair
 from pytest_tarl.repeating import Instruments, ItemRollout, designated, finish
 from pytest_tarl.rollout import EpisodePlan
+from pytest_tarl.searching import candidates
 from pytest_tarl.sensors import Cell
 from pytest_tarl.settings import Designation, Options
-from pytest_tarl.sites import Plan, plan
-from pytest_tarl.statistics import aligned
-from pytest_tarl.utility import Floats, batch
 from tarl_lint.api import Analysis, analyse
 
 EXAMPLE = Path(__file__).resolve().parent.parent / "examples" / "shuttle"

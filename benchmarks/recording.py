@@ -16,10 +16,10 @@ from pathlib import Path
 from types import CodeType
 from typing import Any
 
-from pytest_tarl.codecache import CodeCache
-from pytest_tarl.instrument import Offset, instrument
-from pytest_tarl.nodecode import NodeCode
-from pytest_tarl.recorder import Recorder
+from pytest_tarl.instrumentation.codecache import CodeCache
+from pytest_tarl.instrumentation.instrument import Offset, instrument
+from pytest_tarl.instrumentation.nodecode import NodeCode
+from pytest_tarl.instrumentation.recorder import Recorder
 
 TURNS = 60
 ROUNDS = 2_000  # some ten thousand events: an episode

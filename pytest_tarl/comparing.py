@@ -7,18 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pytest_tarl import localize, seeds
-from pytest_tarl.drift import compare, paper_region
-from pytest_tarl.fixture import Fixture
+from pytest_tarl import seeds
+from pytest_tarl.instrumentation.sites import Plan
+from pytest_tarl.learning import localize
+from pytest_tarl.learning.drift import compare, paper_region
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.statistics import Sample, aligned
+from pytest_tarl.learning.utility import Floats, Ints, batch
 from pytest_tarl.model import Comparison, ListComparison, Region, SitePlace, TaintList
 from pytest_tarl.recording import Progress, Recorded, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import Cell
 from pytest_tarl.settings import Designation, Options
-from pytest_tarl.sites import Plan
-from pytest_tarl.statistics import Sample, aligned
-from pytest_tarl.utility import Floats, Ints, batch
 
 MOST_NAMED = 3  # lost sites that a note names
 

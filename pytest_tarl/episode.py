@@ -14,8 +14,8 @@ from pytest_tarl.sensors import Cell, Sensor, field_value
 if TYPE_CHECKING:
     import numpy as np
 
-    from pytest_tarl.importhook import NodeImports
-    from pytest_tarl.recorder import Recorder
+    from pytest_tarl.instrumentation.importhook import NodeImports
+    from pytest_tarl.instrumentation.recorder import Recorder
     from pytest_tarl.ros import Bus, Ros
 
 

@@ -8,12 +8,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from tarl_lint.api import Analysis, analyse
-
-from pytest_tarl import fixture as fixtures
 from pytest_tarl.comparing import Online, run_online
 from pytest_tarl.errors import AnalysisError, FixtureError, TarlError
-from pytest_tarl.fixture import Fixture
+from pytest_tarl.instrumentation.sites import Plan, plan
+from pytest_tarl.learning import fixture as fixtures
+from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison
 from pytest_tarl.recording import Progress, record
 from pytest_tarl.repairing import RepairShop, repair
@@ -21,7 +20,7 @@ from pytest_tarl.repeating import Instruments
 from pytest_tarl.report import json_result, terminal
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.settings import Designation, Options
-from pytest_tarl.sites import Plan, plan
+from tarl_lint.api import Analysis, analyse
 
 IGNORED = "# Only the recorded utility is worth committing.\n*\n!.gitignore\n!utility/\n!utility/**\n"
 

@@ -8,16 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
-from pytest_tarl import fixture as fixtures
 from pytest_tarl.errors import FixtureError, RecordingError
-from pytest_tarl.fixture import Fixture
+from pytest_tarl.instrumentation.sites import Plan
+from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.learning import fixture as fixtures
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.statistics import Sample, event_sequence, merge, relabelled, sample
+from pytest_tarl.learning.utility import Floats, sarsa
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.settings import Designation, Options
-from pytest_tarl.sites import Plan
-from pytest_tarl.statistics import Sample, event_sequence, merge, relabelled, sample
-from pytest_tarl.trace import Trace
-from pytest_tarl.utility import Floats, sarsa
 
 Progress = Callable[[int, int, str], None]
 Members = Sequence[Sequence[int]]

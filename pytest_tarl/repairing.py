@@ -8,19 +8,30 @@ from functools import cached_property
 from pathlib import Path
 from statistics import fmean, stdev
 
-from pytest_tarl import candidates, localize, patch, seeds
-from pytest_tarl.accept import LOOKS, Acceptance, Outcome, Reference, accept
+from pytest_tarl import seeds
 from pytest_tarl.comparing import Online
-from pytest_tarl.epsilon_greedy import EpsilonGreedy
 from pytest_tarl.errors import RepairError
-from pytest_tarl.fixture import Fixture
+from pytest_tarl.learning import localize
+from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison, Edit, Guard, OperandEffect, Reason, Repair, SearchTrace, SitePlace
-from pytest_tarl.mutate import Mutation, guard_text, is_integral, mutations, rewrite
+from pytest_tarl.patching import patch
+from pytest_tarl.patching.mutate import Mutation, guard_text, is_integral, mutations, rewrite
 from pytest_tarl.recording import Progress, sound
 from pytest_tarl.rollout import EpisodePlan, Rollout
-from pytest_tarl.search import BudgetSpentError, Candidate, Goal, Pair, Strategy, Trials, effective_value
+from pytest_tarl.searching import candidates
+from pytest_tarl.searching.accept import LOOKS, Acceptance, Outcome, Reference, accept
+from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
+from pytest_tarl.searching.search import (
+    BudgetSpentError,
+    Candidate,
+    Goal,
+    Pair,
+    Strategy,
+    Trials,
+    effective_value,
+)
+from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.settings import Options
-from pytest_tarl.sweep import Sweep
 from tarl_lint.api import Analysis
 from tarl_lint.model import Operand
 

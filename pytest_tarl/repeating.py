@@ -22,8 +22,8 @@ from pytest_tarl.settings import Designation, designation
 
 if TYPE_CHECKING:
     from pytest_tarl.episode import Tarl
-    from pytest_tarl.sites import Positions
-    from pytest_tarl.trace import Trace
+    from pytest_tarl.instrumentation.sites import Positions
+    from pytest_tarl.instrumentation.trace import Trace
 
 
 @dataclass(frozen=True)
@@ -63,8 +63,8 @@ def designated(item: pytest.Item) -> Designation | None:
 def opened(item: pytest.Item) -> Iterator[Tarl]:
     """Open the item's episode, close it afterwards and keep its trace."""
     from pytest_tarl.episode import Tarl
-    from pytest_tarl.importhook import NodeImports
-    from pytest_tarl.recorder import Recorder
+    from pytest_tarl.instrumentation.importhook import NodeImports
+    from pytest_tarl.instrumentation.recorder import Recorder
 
     episode = _episode(item)
     recorder = Recorder()

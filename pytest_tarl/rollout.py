@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
-from pytest_tarl.trace import Trace
+from pytest_tarl.instrumentation.trace import Trace
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""From taint lists to recorded events: numbered sites, instrumented code, one trace an episode."""

@@ -1,0 +1,60 @@
+"""Where blocks begin to run, and what functions receive."""
+
+from __future__ import annotations
+
+import ast
+
+from pytest_tarl.instrumentation.forms import Where, start_of
+
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+def first_evaluated_in(body: list[ast.stmt]) -> ast.expr | ast.stmt:
+    """Return what runs first in the body of a branch or loop."""
+    return _first_part(next((statement for statement in body if not _is_declaration(statement)), body[0]))
+
+
+def entry_of(node: Function) -> Where:
+    """Return where the body of a function begins to run; its head when nothing runs in it."""
+    at = _entry(node)
+    return start_of(_first_part(node.body[at]) if at < len(node.body) else node)
+
+
+def enter(node: Function | ast.ClassDef, statement: ast.stmt) -> None:
+    """Put a statement at the entry of a function or class, behind its docstring and declarations."""
+    node.body.insert(_entry(node), statement)
+
+
+def parameters(arguments: ast.arguments) -> list[ast.arg]:
+    """Return all parameters of a function."""
+    extra = [one for one in (arguments.vararg, arguments.kwarg) if one is not None]
+    return [*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs, *extra]
+
+
+def message_parameter(node: Function, *, in_class: bool) -> str | None:
+    """Name the parameter that receives the message: the first one, behind `self` or `cls`."""
+    static = any(isinstance(d, ast.Name) and d.id == "staticmethod" for d in node.decorator_list)
+    positional = [parameter.arg for parameter in (*node.args.posonlyargs, *node.args.args)]
+    named = positional[1:] if in_class and not static else positional
+    rest = [one.arg for one in (node.args.vararg, *node.args.kwonlyargs) if one is not None]
+    return next(iter([*named, *rest]), None)
+
+
+def _entry(node: Function | ast.ClassDef) -> int:
+    start = 1 if ast.get_docstring(node, clean=False) is not None else 0
+    running = (i for i, inner in enumerate(node.body) if i >= start and not _is_declaration(inner))
+    return next(running, len(node.body))
+
+
+def _first_part(node: ast.stmt) -> ast.expr | ast.stmt:
+    decorators: list[ast.expr] = getattr(node, "decorator_list", [])
+    for part in (*decorators, *(getattr(node, name, None) for name in ("value", "test", "iter"))):
+        if isinstance(part, ast.expr):
+            return part
+    return node
+
+
+def _is_declaration(node: ast.stmt) -> bool:
+    """Tell whether no code runs for a statement: global, nonlocal, bare annotation."""
+    bare = isinstance(node, ast.AnnAssign) and node.value is None
+    return bare or isinstance(node, (ast.Global, ast.Nonlocal))

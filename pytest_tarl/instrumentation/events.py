@@ -1,0 +1,41 @@
+"""Flat buffers of events → columns, vectorised."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.instrumentation.magnitude import LIMIT
+from pytest_tarl.instrumentation.trace import Floats, Ints
+
+Starts = NDArray[np.int64]
+
+
+def paired(entries: list[Any]) -> tuple[Ints, Floats, Starts]:
+    """Split `[site, value, site, value, …]` into site, value and where each event starts; shape (events,).
+
+    A signal handler that raises (a time-out, Ctrl-C) can leave a site without its value: such half events
+    are dropped.
+    """
+    if len(entries) % 2 == 0 and set(map(type, entries[1::2])) <= {float}:
+        starts = np.arange(0, len(entries), 2)
+        return np.array(entries[0::2], np.int32), np.array(entries[1::2], np.float64), starts
+    starts = np.array(_whole(entries), np.int64)
+    sites = np.array([entries[i] for i in starts], np.int32)
+    return sites, np.array([entries[i + 1] for i in starts], np.float64), starts
+
+
+def sizes(flow: Floats) -> Floats:
+    """Return the magnitudes of plain floats, as `magnitude` gives them, shape as `flow`."""
+    flow = np.minimum(np.abs(flow), np.where(np.isinf(flow), np.inf, LIMIT))
+    flow[~np.isfinite(flow)] = 0.0
+    return flow
+
+
+def _whole(entries: list[Any]) -> list[int]:
+    """Return where whole events start: a site, which is an int, before a value, which is a float."""
+    pairs = enumerate(pairwise(entries))
+    return [start for start, (site, value) in pairs if type(site) is int and type(value) is float]

@@ -1,0 +1,251 @@
+"""Node files → running code: instrumented, edited where a repair is tried, executed afresh each episode.
+
+The only file that touches `sys.meta_path`.
+"""
+
+from __future__ import annotations
+
+import builtins
+import contextlib
+import linecache
+import sys
+import warnings
+from collections.abc import Callable, Collection, Iterator, Mapping
+from functools import lru_cache
+from importlib.machinery import ModuleSpec, SourceFileLoader
+from pathlib import Path
+from types import CodeType, FrameType, MappingProxyType, ModuleType
+from typing import Any
+
+from pytest_tarl.instrumentation.codecache import CodeCache
+from pytest_tarl.instrumentation.instrument import HOOK
+from pytest_tarl.instrumentation.nodecode import NodeCode
+from pytest_tarl.instrumentation.sites import Position, Positions
+
+Bind = Callable[[dict[str, Any]], None]
+_INSTALLED = frozenset({"site-packages", "dist-packages"})
+_OURS = frozenset({"pytest_tarl", "tarl_lint"})
+
+
+class AlreadyImportedWarning(UserWarning):
+    """A node file was imported before the episode began, so that it runs as it is."""
+
+
+class NodeImports:
+    """What a node and its imports are compiled and executed by, for one episode.
+
+    `plan` tells by file where sites stand, `overlay` gives other text to some files (sites keep their lines
+    there where they can). While entered as a context, imports of those files go through here, and whatever
+    project modules a node imports are forgotten at the end. `bind`, when given, puts the recorder's globals
+    into a module (`Recorder.bind`), else `hook` alone is put there.
+    """
+
+    def __init__(
+        self,
+        root: Path,
+        plan: Mapping[Path, Positions],
+        hook: Callable[[int, Any], Any],
+        overlay: Mapping[Path, str] = MappingProxyType({}),
+        *,
+        publishes: Collection[int] = (),
+        bind: Bind | None = None,
+    ) -> None:
+        self._root = root.resolve()
+        self._code = NodeCode(plan, overlay, publishes, inline=bind is not None, cache=code_cache(self._root))
+        self._overlay = overlay
+        self._bind = bind or (lambda namespace: namespace.update({HOOK: hook}))
+        self._tails = {_tail(path) for path in self._code.files}
+        self._executed: set[Path] = set()
+        self._imported: set[str] = set()  # names of modules that belong to this episode
+        self._namespaces: list[dict[str, Any]] = []
+        self._open = contextlib.ExitStack()
+
+    def __enter__(self) -> NodeImports:
+        """Begin to watch imports."""
+        early = self._early()
+        self._open.callback(self._warn, early)
+        self._open.callback(self._forget_modules)
+        self._open.enter_context(_restored_interpreter())
+        for path, text in self._overlay.items():
+            self._open.enter_context(_shown(path, text))
+        sys.meta_path.insert(0, self)
+        self._open.callback(sys.meta_path.remove, self)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Leave sys.modules, sys.path and `__main__` as they were found."""
+        self._open.close()
+
+    @property
+    def unrecorded(self) -> Mapping[Path, tuple[Position, ...]]:
+        """Return the sites, by file, at which nothing stands that can be recorded."""
+        return self._code.unrecorded
+
+    def compile_file(self, path: Path) -> CodeType:
+        """Compile a file with its sites recorded. Raises SyntaxError and OSError as an import does."""
+        return self._code.compile(path)
+
+    def run_script(self, path: Path, name: str = "__main__") -> ModuleType:
+        """Execute a file as `python path` does, in a fresh module that `sys.modules` holds under `name`."""
+        __tracebackhide__ = True
+        module = ModuleType(name)
+        module.__file__ = str(path)
+        module.__loader__ = NodeLoader(name, str(path), self)
+        module.__dict__.update(__builtins__=builtins, __cached__=None)
+        code = self.compile_file(path)
+        sys.modules[name] = module
+        folder = str(path.parent)
+        if folder not in sys.path:
+            sys.path.insert(0, folder)
+        self.prepare(module, path)
+        exec(code, module.__dict__)  # noqa: S102 - running the node is the purpose
+        return module
+
+    def prepare(self, module: ModuleType, path: Path) -> None:
+        """Give a module what its instrumented code needs, before it is executed."""
+        file = path.resolve()
+        self._executed.add(file)
+        self._namespaces.append(module.__dict__)
+        if self._code.recorded(file):
+            self._bind(module.__dict__)
+
+    def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
+        """Find a file of the plan or overlay; of all other imports only note whether a node asks for them."""
+        if fullname.rpartition(".")[2] not in self._tails:
+            if fullname.partition(".")[0] not in _OURS and self._asked_by_node(sys._getframe(1)):
+                self._imported.add(fullname)
+            return None
+        spec = self._found_by_others(fullname, path, target)
+        if spec is None or spec.origin is None or type(spec.loader) is not SourceFileLoader:
+            return spec
+        file = Path(spec.origin).resolve()
+        if file in self._code.files:
+            spec.loader = NodeLoader(fullname, spec.origin, self)
+            self._imported.add(fullname)
+        elif self._asked_by_node(sys._getframe(1)):
+            self._imported.add(fullname)
+        return spec
+
+    def edited(self, path: Path) -> bytes | None:
+        """Return the text that replaces a file, None when it is as on disk."""
+        return self._code.edited(path.resolve())
+
+    def _found_by_others(self, fullname: str, path: Any, target: Any) -> ModuleSpec | None:
+        for finder in sys.meta_path:
+            if finder is not self and hasattr(finder, "find_spec"):
+                spec = finder.find_spec(fullname, path, target)
+                if spec is not None:
+                    return spec
+        return None
+
+    def _asked_by_node(self, frame: FrameType | None) -> bool:
+        """Tell whether code of a node, or of a module that belongs to the episode, is on the stack."""
+        while frame is not None:
+            space = frame.f_globals
+            if space.get("__name__") in self._imported or any(space is known for known in self._namespaces):
+                return True
+            frame = frame.f_back
+        return False
+
+    def _early(self) -> dict[Path, str]:
+        """Return the files of plan and overlay that are imported already, with their module names."""
+        early = {}
+        endings = tuple(self._tails)
+        for name in [name for name in sys.modules if name.endswith(endings)]:
+            file = (
+                sys.modules[name].__dict__.get("__file__") if name.rpartition(".")[2] in self._tails else None
+            )
+            path = Path(file).resolve() if isinstance(file, str) else None
+            if path is not None and path in self._code.files:
+                early[path] = name
+        return early
+
+    def _warn(self, early: Mapping[Path, str]) -> None:
+        for path in sorted(early.keys() - self._executed):
+            warnings.warn(
+                f"{path.name} was imported (as {early[path]}) before the episode began, so it ran as it is and "
+                "nothing was recorded in it: import it inside the test function, or start it with tarl.start.",
+                AlreadyImportedWarning,
+                stacklevel=2,
+            )
+
+    def _forget_modules(self) -> None:
+        for name in sorted(self._imported, reverse=True):  # submodules before their packages
+            module = sys.modules.get(name)
+            if module is not None and self._belongs(module):
+                del sys.modules[name]
+                package, _, tail = name.rpartition(".")
+                outer = sys.modules.get(package)
+                if outer is not None and outer.__dict__.get(tail) is module:
+                    delattr(outer, tail)
+
+    def _belongs(self, module: ModuleType) -> bool:
+        """Tell whether a module is the project's own source."""
+        spec = module.__dict__.get("__spec__")
+        if spec is None or not isinstance(spec.loader, SourceFileLoader) or not spec.origin:
+            return False
+        file = Path(spec.origin).resolve()
+        if file in self._code.files:
+            return True
+        return file.is_relative_to(self._root) and _INSTALLED.isdisjoint(file.parts) and not _of_tests(file)
+
+
+class NodeLoader(SourceFileLoader):
+    """Load a node file: everything as the ordinary loader does, but for the code that is executed."""
+
+    def __init__(self, fullname: str, path: str, imports: NodeImports) -> None:
+        super().__init__(fullname, path)
+        self._imports = imports
+
+    def get_code(self, fullname: str) -> CodeType:  # noqa: ARG002 - the base class names it
+        """Return the instrumented code."""
+        return self._imports.compile_file(Path(self.path))
+
+    def get_data(self, path: Any) -> bytes:
+        """Return the text that runs, so that `get_source` shows it."""
+        edited = self._imports.edited(Path(path))
+        return super().get_data(path) if edited is None else edited
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Execute the module with the names of the recorder in it."""
+        self._imports.prepare(module, Path(self.path))
+        super().exec_module(module)
+
+
+@lru_cache(maxsize=8)
+def code_cache(root: Path) -> CodeCache:
+    """Return the cache of a project, the same for all its episodes."""
+    return CodeCache(root / ".tarl" / "cache")
+
+
+def _tail(path: Path) -> str:
+    """Return the last part of the name under which a file can be imported."""
+    return path.parent.name if path.stem == "__init__" else path.stem
+
+
+def _of_tests(file: Path) -> bool:
+    return file.name == "conftest.py" or file.name.startswith("test_") or file.name.endswith("_test.py")
+
+
+@contextlib.contextmanager
+def _restored_interpreter() -> Iterator[None]:
+    """Put back what a running script changes: the search path and `__main__`."""
+    path, main = list(sys.path), sys.modules["__main__"]
+    try:
+        yield
+    finally:
+        sys.path[:] = path
+        sys.modules["__main__"] = main
+
+
+@contextlib.contextmanager
+def _shown(path: Path, text: str) -> Iterator[None]:
+    """Let tracebacks and `inspect` show the text that runs, not the one on disk."""
+    before = linecache.cache.pop(str(path), None)
+    linecache.cache[str(path)] = (len(text), None, text.splitlines(keepends=True), str(path))
+    try:
+        yield
+    finally:
+        linecache.cache.pop(str(path), None)
+        if before is not None:
+            linecache.cache[str(path)] = before

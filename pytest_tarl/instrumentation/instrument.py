@@ -1,0 +1,280 @@
+"""ast → ast with recording. Pure; the instrumented program computes exactly what the original computes."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection, Mapping
+from typing import Literal, TypeVar
+
+from pytest_tarl.instrumentation.blocks import (
+    enter,
+    entry_of,
+    first_evaluated_in,
+    message_parameter,
+    parameters,
+)
+from pytest_tarl.instrumentation.forms import (
+    Names,
+    Where,
+    note,
+    note_constant,
+    reached,
+    recorded,
+    start_of,
+    truth,
+    where,
+)
+from pytest_tarl.instrumentation.magnitude import magnitude
+
+Offset = tuple[int, int]  # line from 1 and column in UTF-8 bytes from 0, as `ast` counts
+Scope = Literal["module", "class", "function"]
+
+HOOK = "__tarl__"
+# They make names known to the compiler, or nothing at all: there is no value to record.
+_SILENT = (ast.ClassDef, ast.Import, ast.ImportFrom, ast.Global, ast.Nonlocal)
+Function = TypeVar("Function", ast.FunctionDef, ast.AsyncFunctionDef)
+Loop = TypeVar("Loop", ast.For, ast.AsyncFor)
+Block = TypeVar("Block", ast.With, ast.AsyncWith)
+
+
+def instrument(
+    tree: ast.Module,
+    sites: Mapping[Offset, int],
+    hook: str = HOOK,
+    *,
+    publishes: Collection[int] = (),
+    inline: bool = False,
+    placed: set[Offset] | None = None,
+) -> ast.Module:
+    """Return the module with every statement (or lambda body) that starts at a position of `sites` recorded.
+
+    `hook(number, value)` must give `value` back. Sites in `publishes`, and calls of methods named publish,
+    are recorded with 0 when they are reached. A condition is recorded as 1 or 0, the head of a function as
+    its message parameter, a loop as its target at each turn. With `inline`, plain floats are appended to
+    the list in `Names(hook).buffer` without a call. `tree` is used up; the positions at which something
+    stood are added to `placed`.
+    """
+    found: set[Offset] = set() if placed is None else placed
+    changed = _Recording(sites, Names(hook, inline), frozenset(publishes), found).visit(tree)
+    assert isinstance(changed, ast.Module)  # noqa: S101 - for the type checker
+    return changed
+
+
+class _Recording(ast.NodeTransformer):
+    """One walk over a module."""
+
+    def __init__(
+        self, sites: Mapping[Offset, int], names: Names, publishes: frozenset[int], placed: set[Offset]
+    ) -> None:
+        self._sites = sites
+        self._names = names
+        self._publishes = publishes
+        self._placed = placed
+        self._scope: list[Scope] = ["module"]
+
+    def visit(self, node: ast.AST) -> ast.AST | list[ast.stmt]:
+        """Transform what is inside first, then the statement itself."""
+        number = self._number(node) if isinstance(node, ast.stmt) else None
+        inner: ast.AST = super().visit(node)
+        if number is None or not isinstance(inner, ast.stmt):
+            return inner
+        change = getattr(self, f"_record_{type(inner).__name__.lower()}", None)
+        if change is not None:
+            changed: list[ast.stmt] = change(inner, number)
+            return changed
+        return inner if isinstance(inner, _SILENT) else [*self._nothing(inner, number), inner]
+
+    def _number(self, node: ast.expr | ast.stmt | ast.arg | ast.excepthandler | ast.pattern) -> int | None:
+        offset = (node.lineno, node.col_offset)
+        number = self._sites.get(offset)
+        if number is not None:
+            self._placed.add(offset)
+        return number
+
+    # Scopes, and what is recorded inside of them
+
+    def _inside(self, node: ast.AST, scope: Scope) -> None:
+        self._scope.append(scope)
+        self.generic_visit(node)
+        self._scope.pop()
+
+    def visit_ClassDef(self, node: ast.ClassDef) -> ast.ClassDef:
+        """Enter a class, whose namespace may answer to any name: ours are looked up outside of it."""
+        before = len(self._placed)
+        self._inside(node, "class")
+        if len(self._placed) > before:
+            enter(node, ast.Global(self._names.all, **start_of(node)))
+        return node
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
+        """Enter a function; a site at one of its parameters is recorded at its entry."""
+        return self._function(node)
+
+    def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> ast.AsyncFunctionDef:
+        """Enter a coroutine."""
+        return self._function(node)
+
+    def _function(self, node: Function) -> Function:
+        numbers = [(self._number(parameter), parameter) for parameter in parameters(node.args)]
+        at = entry_of(node)
+        self._inside(node, "function")
+        for number, parameter in reversed(numbers):
+            if number is not None:
+                enter(node, note(parameter.arg, number, self._names, at))
+        return node
+
+    def visit_Lambda(self, node: ast.Lambda) -> ast.Lambda:
+        """Record the body, and the message where the site is the lambda itself."""
+        body, receives = self._number(node.body), self._number(node)
+        same = (node.lineno, node.col_offset) == (node.body.lineno, node.body.col_offset)
+        publish = self._publishing(node.body, body)
+        self._inside(node, "function")
+        if body is not None:
+            node.body = self._value(node.body, body, where(node.body), publish=publish)
+        received = parameters(node.args)
+        if receives is not None and received and not same:
+            at = start_of(node.body)
+            message = recorded(ast.Name(received[0].arg, ast.Load(), **at), receives, self._names)
+            pair = ast.Tuple([message, node.body], ast.Load(), **at)
+            node.body = ast.Subscript(pair, ast.Constant(1, **at), ast.Load(), **at)
+        return node
+
+    def visit_ExceptHandler(self, node: ast.ExceptHandler) -> ast.ExceptHandler:
+        """Record that an exception was caught."""
+        number = self._number(node)
+        self.generic_visit(node)
+        if number is not None:
+            node.body[:0] = note_constant(0.0, number, self._names, start_of(first_evaluated_in(node.body)))
+        return node
+
+    def visit_match_case(self, node: ast.match_case) -> ast.match_case:
+        """Record the guard of a case, which stands where its pattern does."""
+        number = self._number(node.pattern)
+        self.generic_visit(node)
+        if number is not None and node.guard is not None:
+            node.guard = recorded(truth(node.guard), number, self._names)
+        return node
+
+    # Statements
+
+    def _record_functiondef(self, node: Function, number: int) -> list[ast.stmt]:
+        at = entry_of(node)
+        message = message_parameter(node, in_class=self._scope[-1] == "class")
+        if message is None:
+            for statement in reversed(note_constant(0.0, number, self._names, at)):
+                enter(node, statement)
+        else:
+            enter(node, note(message, number, self._names, at))
+        return [node]
+
+    _record_asyncfunctiondef = _record_functiondef
+
+    def _record_assign(self, node: ast.Assign, number: int) -> list[ast.stmt]:
+        if isinstance(node.value, ast.Constant):
+            return self._before_or_around(node, node.value, number)
+        target = node.targets[0]
+        plain = len(node.targets) == 1 and isinstance(target, ast.Name) and self._rereadable()
+        if plain and isinstance(target, ast.Name) and not self._publishing(node.value, number):
+            return [node, note(target.id, number, self._names, where(target))]
+        return self._before_or_around(node, node.value, number)
+
+    def _record_annassign(self, node: ast.AnnAssign, number: int) -> list[ast.stmt]:
+        if node.value is None:
+            return [node]
+        node.value = self._value(node.value, number, where(node))
+        return [node]
+
+    def _record_augassign(self, node: ast.AugAssign, number: int) -> list[ast.stmt]:
+        if isinstance(node.target, ast.Name):
+            return [node, note(node.target.id, number, self._names, where(node.target))]
+        return self._before_or_around(node, node.value, number)
+
+    def _record_return(self, node: ast.Return, number: int) -> list[ast.stmt]:
+        if node.value is None:
+            return [*self._nothing(node, number), node]
+        return self._before_or_around(node, node.value, number)
+
+    def _record_expr(self, node: ast.Expr, number: int) -> list[ast.stmt]:
+        value = node.value
+        if isinstance(value, ast.Constant):
+            return [node]  # a docstring must stay where it is, and `...` does nothing
+        if isinstance(value, ast.Yield):
+            if value.value is None:
+                return [*self._nothing(node, number), node]
+            value.value = recorded(value.value, number, self._names, where(value))
+            return [node]
+        return self._before_or_around(node, value, number)
+
+    def _record_raise(self, node: ast.Raise, number: int) -> list[ast.stmt]:
+        return [*self._nothing(node, number), node]
+
+    def _record_assert(self, node: ast.Assert, number: int) -> list[ast.stmt]:
+        # A failing one leaves no event: the exception tells, and its caret depends on how the test is compiled.
+        return [node, *note_constant(1.0, number, self._names, start_of(node.test))]
+
+    def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:
+        if isinstance(node.test, ast.Constant):
+            return [node]  # nothing is evaluated, `while True` has no line of its own
+        true = start_of(first_evaluated_in(node.body))
+        false = start_of(first_evaluated_in(node.orelse) if node.orelse else node.test)
+        node.body[:0] = note_constant(1.0, number, self._names, true)
+        node.orelse[:0] = note_constant(0.0, number, self._names, false)
+        return [node]
+
+    _record_while = _record_if
+
+    def _record_for(self, node: Loop, number: int) -> list[ast.stmt]:
+        if isinstance(node.target, ast.Name) and self._rereadable():
+            node.body.insert(0, note(node.target.id, number, self._names, where(node.target)))
+        else:
+            node.iter = recorded(node.iter, number, self._names, where(node.iter))
+        return [node]
+
+    _record_asyncfor = _record_for
+
+    def _record_with(self, node: Block, number: int) -> list[ast.stmt]:
+        last = node.items[-1]
+        if isinstance(last.optional_vars, ast.Name) and self._rereadable():
+            node.body.insert(0, note(last.optional_vars.id, number, self._names, where(last.optional_vars)))
+        else:
+            last.context_expr = recorded(last.context_expr, number, self._names)
+        return [node]
+
+    _record_asyncwith = _record_with
+
+    def _record_match(self, node: ast.Match, number: int) -> list[ast.stmt]:
+        node.subject = recorded(node.subject, number, self._names)
+        return [node]
+
+    # Values
+
+    def _rereadable(self) -> bool:
+        """Tell whether a plain name can be read again without running code: not so in a class body."""
+        return self._scope[-1] != "class"
+
+    def _before_or_around(
+        self, node: ast.Assign | ast.AugAssign | ast.Return | ast.Expr, value: ast.expr, number: int
+    ) -> list[ast.stmt]:
+        if isinstance(value, ast.Name) and self._rereadable() and not isinstance(node, ast.AugAssign):
+            return [note(value.id, number, self._names, where(value)), node]
+        if isinstance(value, ast.Constant):
+            return [*note_constant(magnitude(value.value), number, self._names, start_of(value)), node]
+        publish = self._publishing(value, number)
+        if publish and isinstance(value, ast.Call) and not (value.args or value.keywords):
+            return [*self._nothing(node, number), node]
+        node.value = self._value(value, number, where(node), publish=publish)
+        return [node]
+
+    def _publishing(self, value: ast.expr, number: int | None) -> bool:
+        if not isinstance(value, ast.Call):
+            return False
+        named = isinstance(value.func, ast.Attribute) and value.func.attr == "publish"
+        return named or number in self._publishes
+
+    def _value(self, value: ast.expr, number: int, then: Where, *, publish: bool = False) -> ast.expr:
+        if publish and isinstance(value, ast.Call) and (value.args or value.keywords):
+            return reached(value, number, self._names)
+        return recorded(value, number, self._names, then)
+
+    def _nothing(self, node: ast.stmt, number: int) -> list[ast.stmt]:
+        return note_constant(0.0, number, self._names, start_of(first_evaluated_in([node])))

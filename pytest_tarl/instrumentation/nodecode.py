@@ -1,0 +1,107 @@
+"""Node file → code object: its text or the text that replaces it, with its sites recorded."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import warnings
+from collections.abc import Collection, Mapping
+from functools import lru_cache
+from importlib.util import decode_source
+from pathlib import Path
+from types import CodeType
+
+from pytest_tarl.instrumentation import forms
+from pytest_tarl.instrumentation import instrument as transform
+from pytest_tarl.instrumentation.codecache import CodeCache, entry_name
+from pytest_tarl.instrumentation.instrument import Offset, instrument
+from pytest_tarl.instrumentation.sites import Position, Positions, relocate
+
+
+class NodeCode:
+    """Compile the files of a plan (where sites stand) and of an overlay (texts that replace files)."""
+
+    def __init__(
+        self,
+        plan: Mapping[Path, Positions],
+        overlay: Mapping[Path, str],
+        publishes: Collection[int],
+        *,
+        inline: bool,
+        cache: CodeCache,
+    ) -> None:
+        self.unrecorded: dict[Path, tuple[Position, ...]] = {}
+        self._plan = {path.resolve(): positions for path, positions in plan.items()}
+        self._overlay = {path.resolve(): text for path, text in overlay.items()}
+        self._publishes = tuple(sorted(publishes))
+        self._inline = inline
+        self._cache = cache
+        self.files = frozenset({*self._plan, *self._overlay})
+
+    def edited(self, file: Path) -> bytes | None:
+        """Return the text that replaces a file (a resolved path), None when it is as on disk."""
+        text = self._overlay.get(file)
+        return None if text is None else text.encode()
+
+    def recorded(self, file: Path) -> bool:
+        """Tell whether a file (a resolved path) holds sites."""
+        return bool(self._plan.get(file))
+
+    def compile(self, path: Path) -> CodeType:
+        """Compile a file with its sites recorded. Raises SyntaxError and OSError as an import does."""
+        file = path.resolve()
+        data, text, positions = self._text(file)
+        parts = (data, sorted(positions.items()), self._publishes, self._inline, _transform_digest())
+        name = entry_name(path, parts)
+        code = self._cache.load(name)
+        if code is None:
+            code = self._compiled(path, data if text is None else text, positions)
+            if path not in self.unrecorded:
+                self._cache.store(name, code, keep=text is None)
+        return code
+
+    def _text(self, file: Path) -> tuple[bytes, str | None, Positions]:
+        """Return the bytes that are compiled, the text where it replaces the file, and its sites."""
+        positions = self._plan.get(file, {})
+        text = self._overlay.get(file)
+        if text is None:
+            return file.read_bytes(), None, positions
+        if positions:
+            positions = relocate(positions, decode_source(file.read_bytes()), text)
+        return text.encode(), text, positions
+
+    def _compiled(self, path: Path, source: bytes | str, positions: Positions) -> CodeType:
+        placed: set[Offset] = set()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # the developers' own runs show them
+            tree = ast.parse(source, str(path))
+            offsets = _offsets(source if isinstance(source, str) else decode_source(source), positions)
+            tree = instrument(
+                tree,
+                {offset: positions[position] for position, offset in offsets.items()},
+                publishes=self._publishes,
+                inline=self._inline,
+                placed=placed,
+            )
+            code: CodeType = compile(tree, str(path), "exec", dont_inherit=True)
+        missing = tuple(position for position, offset in offsets.items() if offset not in placed)
+        if missing:
+            self.unrecorded[path] = missing
+        return code
+
+
+def _offsets(text: str, positions: Positions) -> dict[Position, Offset]:
+    """Turn columns in characters, from 1, into columns in UTF-8 bytes, from 0."""
+    lines = text.split("\n")
+    offsets = {}
+    for line, column in positions:
+        before = lines[line - 1][: column - 1] if line <= len(lines) else ""
+        offsets[line, column] = (line, len(before.encode()))
+    return offsets
+
+
+@lru_cache(maxsize=1)
+def _transform_digest() -> str:
+    """Identify the transform itself, so that code of another version of it is not taken."""
+    texts = [Path(module.__file__ or "").read_bytes() for module in (forms, transform)]
+    return hashlib.sha256(b"".join(texts)).hexdigest()

@@ -1,0 +1,204 @@
+"""Event buffers of one episode: as little as possible while the node runs, everything else at its end.
+
+A buffer is one flat list per thread, `[site, value, site, value, …]`. What happens around the node (a cell
+is latched, a step is rewarded) goes into a list of marks, each with the length of every buffer at that
+moment; so nobody but its thread ever writes to a buffer. Greenlets of one thread share its buffer.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import FrameType
+from typing import Any, TypeVar
+
+import numpy as np
+
+from pytest_tarl.instrumentation.events import paired, sizes
+from pytest_tarl.instrumentation.forms import Names
+from pytest_tarl.instrumentation.instrument import HOOK
+from pytest_tarl.instrumentation.magnitude import magnitude
+from pytest_tarl.instrumentation.trace import Floats, Ints, Trace
+from pytest_tarl.sensors import Cell
+
+EXACT = 2**53  # integers below are floats without loss, which is all that the short way does
+T = TypeVar("T")
+Hook = Callable[[int, Any], Any]
+
+
+@dataclass
+class _Buffer:
+    """The events of one thread, and how many entries it had at each mark."""
+
+    entries: list[Any] = field(default_factory=list)
+    lengths: list[int] = field(default_factory=list)
+
+
+class Recorder:
+    """Record one episode.
+
+    `hook` may be called from any thread. `bind` gives instrumented code the names that it uses, by default
+    faster ones: they write to the buffer of the thread that made the recorder and are exchanged for the
+    general ones before a second thread runs its first line. `threads=True` binds the general ones at once:
+    for real ROS, whose threads are already there.
+    """
+
+    def __init__(self, *, threads: bool = False) -> None:
+        self._lock = threading.Lock()
+        self._local = threading.local()
+        self._buffers: list[_Buffer] = []
+        self._namespaces: list[tuple[dict[str, Any], Names]] = []
+        self._cells: dict[Cell, int] = {}
+        self._latched: list[int] = []  # at each mark, the cell that holds from there on
+        self._rewards: list[int] = []  # the marks that close a step
+        self._totals: list[float] = []
+        self._parts: list[Mapping[str, float]] = []
+        self.hook: Callable[[int, T], T] = _threaded_hook(self._entries)
+        own = self._entries()
+        self._single = not threads and threading.active_count() == 1
+        self._fast = _plain_hook(own), own
+        self._profile = threading.getprofile()
+
+    def bind(self, namespace: dict[str, Any], hook: str = HOOK) -> None:
+        """Put the globals of instrumented code into a module's namespace."""
+        names = Names(hook)
+        namespace[names.type], namespace[names.float] = type, float
+        if self._single and not self._namespaces:
+            threading.setprofile(self._second_thread)
+        self._namespaces.append((namespace, names))
+        self._put(namespace, names)
+
+    def latch(self, cell: Cell | None) -> None:
+        """Note the cell that the node has now been told; None when it is unknown again."""
+        with self._lock:
+            self._mark(-1 if cell is None else self._cells.setdefault(cell, len(self._cells)))
+
+    def reward(self, total: float, parts: Mapping[str, float] | None = None) -> None:
+        """Close a simulation step with its reward."""
+        with self._lock:
+            self._rewards.append(len(self._latched))
+            self._mark(self._latched[-1] if self._latched else -1)
+            self._totals.append(float(total))
+            self._parts.append(dict(parts or {}))
+
+    def finish(self) -> Trace:
+        """End the episode and return what was recorded. Later events are dropped."""
+        self._release()
+        parts = [self._columns(buffer, number) for number, buffer in enumerate(self._buffers)]
+        columns = [np.concatenate(part) for part in zip(*parts, strict=True)]
+        if len(self._buffers) > 1:
+            order = np.lexsort((columns[4], columns[3]))
+            columns = [column[order] for column in columns]
+        site, flow, event_cell, event_step, thread = columns
+        latched = np.array(self._latched, np.int32)
+        return Trace(
+            cells=tuple(self._cells),
+            site=site,
+            flow=flow,
+            event_cell=event_cell,
+            event_step=event_step,
+            step_cell=latched[self._rewards],
+            reward=np.array(self._totals, np.float64),
+            parts=self._part_columns(),
+            thread=thread if len(self._buffers) > 1 else None,
+        )
+
+    def _mark(self, cell: int) -> None:
+        self._latched.append(cell)
+        for buffer in self._buffers:
+            buffer.lengths.append(len(buffer.entries))
+
+    def _entries(self) -> list[Any]:
+        """Return the buffer of the running thread."""
+        try:
+            entries: list[Any] = self._local.entries
+        except AttributeError:
+            with self._lock:
+                buffer = _Buffer(lengths=[0] * len(self._latched))
+                self._buffers.append(buffer)
+            entries = self._local.entries = buffer.entries
+        return entries
+
+    def _put(self, namespace: dict[str, Any], names: Names) -> None:
+        if self._single:
+            namespace[names.hook], namespace[names.buffer] = self._fast
+        else:
+            namespace[names.hook], namespace[names.buffer] = self.hook, _ThreadedList(self._entries)
+
+    def _second_thread(self, _frame: FrameType, _event: str, _argument: object) -> None:
+        """Exchange the names; runs in the new thread, before its first line."""
+        sys.setprofile(self._profile)
+        self._single = False
+        for namespace, names in self._namespaces:
+            self._put(namespace, names)
+
+    def _release(self) -> None:
+        if threading.getprofile() == self._second_thread:
+            threading.setprofile(self._profile)
+
+    def _columns(self, buffer: _Buffer, number: int) -> tuple[Ints, Floats, Ints, Ints, Ints]:
+        """Return site, flow, cell, step and thread of every event of one thread."""
+        site, flow, starts = paired(buffer.entries)
+        before = np.searchsorted(starts, np.array(buffer.lengths, np.int64), side="left")
+        between = np.diff(before, prepend=0, append=len(starts))  # events before each mark and after the last
+        cells = np.array([-1, *self._latched], np.int32)
+        closing = np.zeros(len(cells), np.int32)
+        closing[np.array(self._rewards, np.int64) + 1] = 1
+        steps = np.minimum(np.cumsum(closing), max(0, len(self._rewards) - 1)).astype(np.int32)
+        thread = np.full(len(site), number, np.int32)
+        return site, sizes(flow), np.repeat(cells, between), np.repeat(steps, between), thread
+
+    def _part_columns(self) -> dict[str, Floats]:
+        names = dict.fromkeys(name for parts in self._parts for name in parts)
+        return {name: np.array([parts.get(name, 0.0) for parts in self._parts], np.float64) for name in names}
+
+
+class _ThreadedList:
+    """Stand in for the buffer when several threads record: append to that of the running one."""
+
+    __slots__ = ("_entries",)
+
+    def __init__(self, entries: Callable[[], list[Any]]) -> None:
+        self._entries = entries
+
+    def append(self, entry: object) -> None:
+        """Append half an event."""
+        self._entries().append(entry)
+
+
+def _plain_hook(entries: list[Any]) -> Hook:
+    """Make the hook of code that runs in one thread only."""
+    size = magnitude
+
+    def hook(number: int, value: Any) -> Any:
+        kind = type(value)
+        if kind is float:
+            entries.append(number)
+            entries.append(value)
+        elif kind is int and -EXACT < value < EXACT:
+            entries.append(number)
+            entries.append(value + 0.0)
+        elif kind is bool:
+            entries.append(number)
+            entries.append(1.0 if value else 0.0)
+        else:
+            flow = size(value)
+            entries.append(number)
+            entries.append(flow)
+        return value
+
+    return hook
+
+
+def _threaded_hook(own: Callable[[], list[Any]]) -> Hook:
+    """Make the hook that any thread may call."""
+    size = magnitude
+
+    def hook(number: int, value: Any) -> Any:
+        flow = value if type(value) is float else size(value)
+        own().extend((number, flow))
+        return value
+
+    return hook

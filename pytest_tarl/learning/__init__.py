@@ -1,0 +1,1 @@
+"""From traces to what they say: statistics, utility, fixture, comparison, slices."""

@@ -1,0 +1,187 @@
+"""The utility fixture: what `--tarl-record` leaves on disk for `--tarl-online` to compare with.
+
+One `.npz` file: a JSON header with a format version and a digest, and the columns of the statistics. Loaded
+without pickle, written to a temporary file and renamed; the same episodes give the same bytes.
+
+FORMAT_VERSION history: 1, the first.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+import tempfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile
+
+import numpy as np
+
+from pytest_tarl.errors import FixtureError
+from pytest_tarl.learning.statistics import Chain, Edges, ListSample, Sample, Visits
+from pytest_tarl.learning.utility import Floats
+from pytest_tarl.model import SitePlace, TaintList
+from pytest_tarl.sensors import Sensor
+
+FORMAT_VERSION = 1
+HEADER = "header"
+
+
+@dataclass(frozen=True)
+class Fixture:
+    """What one test recorded. `sarsa` holds the paper's table per taint list, shape (cells, sites)."""
+
+    test: str
+    seed: int
+    sensors: tuple[Sensor, ...]
+    lists: tuple[TaintList, ...]
+    topics: Mapping[str, str]  # sensor topic → message type
+    sample: Sample
+    sarsa: tuple[Floats, ...]
+
+
+def save(fixture: Fixture, path: Path) -> None:
+    """Write the fixture whole or not at all."""
+    columns = _columns(fixture)
+    header = {
+        "format": FORMAT_VERSION,
+        "test": fixture.test,
+        "seed": fixture.seed,
+        "sensors": [asdict(sensor) for sensor in fixture.sensors],
+        "lists": [asdict(taint_list) for taint_list in fixture.lists],
+        "topics": dict(sorted(fixture.topics.items())),
+        "seeds": [str(seed) for seed in fixture.sample.seeds],
+        "parts": list(fixture.sample.part_names),
+    }
+    header["digest"] = _digest(header, columns)
+    text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, allow_pickle=False, **{HEADER: text}, **columns)
+    write_atomically(path, buffer.getvalue())
+
+
+def load(path: Path) -> Fixture:
+    """Read a fixture. Raises FixtureError when it is missing, damaged, foreign or of another format."""
+    advice = "Record it again with `pytest --tarl-record`."
+    try:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
+            columns = {name: archive[name] for name in archive.files}
+        header = json.loads(columns.pop(HEADER).tobytes().decode())
+        found = header["format"]
+    except FileNotFoundError:
+        raise FixtureError(f"There is no utility fixture {path}. {advice}") from None
+    except (
+        OSError,
+        ValueError,
+        LookupError,
+        EOFError,
+        TypeError,
+        AttributeError,
+        zlib.error,
+        BadZipFile,
+    ) as problem:
+        raise FixtureError(
+            f"The utility fixture {path} is damaged or is not one ({problem}). {advice}"
+        ) from problem
+    if found != FORMAT_VERSION:
+        raise FixtureError(
+            f"The utility fixture {path} has format {found}, this version of tarl reads "
+            f"{FORMAT_VERSION}. {advice}"
+        )
+    if header.pop("digest", None) != _digest(header, columns):
+        raise FixtureError(
+            f"The utility fixture {path} is damaged: its digest does not fit its content. {advice}"
+        )
+    return _fixture(header, columns)
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Write to a temporary file beside `path` and rename it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        Path(name).chmod(0o644)
+        Path(name).replace(path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def _columns(fixture: Fixture) -> dict[str, np.ndarray[Any, Any]]:
+    sample = fixture.sample
+    width = len(fixture.sensors)
+    columns: dict[str, np.ndarray[Any, Any]] = {
+        "cells": np.array(sample.cells, dtype=np.int64).reshape(len(sample.cells), width),
+        "passed": sample.passed,
+        "total": sample.total,
+        "steps": sample.steps,
+    }
+    columns |= _named("chain", sample.chain)
+    for i, one in enumerate(sample.lists):
+        columns |= _named(f"edges{i}", one.edges) | _named(f"visits{i}", one.visits)
+        columns[f"sarsa{i}"] = fixture.sarsa[i]
+    return {name: _compact(column) for name, column in columns.items()}
+
+
+def _named(prefix: str, table: Chain | Edges | Visits) -> dict[str, np.ndarray[Any, Any]]:
+    return {f"{prefix}.{f.name}": getattr(table, f.name) for f in fields(table)}
+
+
+def _compact(column: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Store integers in the smallest type that holds them."""
+    if column.dtype.kind != "i" or not column.size:
+        return column
+    kinds = (np.int8, np.int16, np.int32, np.int64)
+    low, high = column.min(), column.max()
+    return column.astype(next(k for k in kinds if np.iinfo(k).min <= low and high <= np.iinfo(k).max))
+
+
+def _digest(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, Any]]) -> str:
+    digest = hashlib.sha256(json.dumps(header, ensure_ascii=False, sort_keys=True).encode())
+    for name in sorted(columns):
+        digest.update(f"{name}:{columns[name].dtype.str}:{columns[name].shape}".encode())
+        digest.update(np.ascontiguousarray(columns[name]).tobytes())
+    return digest.hexdigest()
+
+
+def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, Any]]) -> Fixture:
+    lists = tuple(
+        TaintList(one["source"], one["sink"], tuple(SitePlace(**site) for site in one["sites"]))
+        for one in header["lists"]
+    )
+    sensors = tuple(Sensor(**one | {"categories": tuple(one["categories"])}) for one in header["sensors"])
+    wide: dict[str, Any] = {n: c.astype(np.int64) if c.dtype.kind == "i" else c for n, c in columns.items()}
+
+    def chain() -> Chain:
+        return Chain(**{f.name: wide[f"chain.{f.name}"] for f in fields(Chain)})
+
+    def listed(i: int, width: int) -> ListSample:
+        edges = Edges(**{f.name: wide[f"edges{i}.{f.name}"] for f in fields(Edges)})
+        visits = Visits(**{f.name: wide[f"visits{i}.{f.name}"] for f in fields(Visits)})
+        return ListSample(width, edges, visits)
+
+    return Fixture(
+        test=header["test"],
+        seed=header["seed"],
+        sensors=sensors,
+        lists=lists,
+        topics=header["topics"],
+        sample=Sample(
+            cells=tuple(tuple(row) for row in wide["cells"].tolist()),
+            seeds=tuple(int(seed) for seed in header["seeds"]),
+            passed=columns["passed"],
+            total=columns["total"],
+            steps=wide["steps"],
+            part_names=tuple(header["parts"]),
+            chain=chain(),
+            lists=tuple(listed(i, len(one.sites)) for i, one in enumerate(lists)),
+        ),
+        sarsa=tuple(columns[f"sarsa{i}"] for i in range(len(lists))),
+    )

@@ -1,0 +1,1 @@
+"""Repairs as source: constants changed at their use, guards, subscriptions, the diff."""

@@ -1,0 +1,225 @@
+"""Mutations: another value for a constant at its use, written into the source as the patch will have it."""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.model import Conjunct, Guard
+from pytest_tarl.patching.document import Document, Edit, apply_edits, document
+from pytest_tarl.patching.expressions import counting, negated, number, rounded, scaled, shifted
+from pytest_tarl.patching.guards import Reading, always, condition, held
+from pytest_tarl.patching.statements import Change, branched, choices, doubled, lazy, neighbours, replaced
+from pytest_tarl.patching.subscriptions import Subscriptions
+from tarl_lint.model import Operand, SiteId
+
+if TYPE_CHECKING:
+    from tarl_lint.api import Analysis
+
+
+@dataclass(frozen=True, slots=True)
+class Mutation:
+    """Another value for an operand at its use.
+
+    `value` is the new value of a literal; otherwise the factor that the use is multiplied by, or what is added
+    where the constant is zero. A boolean operand is flipped.
+    """
+
+    operand: Operand
+    value: float | int | bool
+
+
+def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutation | None:
+    """Return the mutation of one sweep step, or None when it would change nothing.
+
+    Zero moves by `factor - 1`, and by `1 - 1/factor` below one, so that steps stay symmetric on a log scale.
+    With `integral` (see `is_integral`) an integer stays one and moves by at least one.
+    """
+    value = operand.value
+    if isinstance(value, bool):
+        return Mutation(operand, not value)
+    if not math.isfinite(factor) or (value is not None and not math.isfinite(value)):
+        return None
+    if value == 0:
+        return (
+            _literal(operand, 0, _step(factor), integral)
+            if operand.literal
+            else _moved(operand, _step(factor), 0.0)
+        )
+    if operand.literal and value is not None:
+        return _literal(operand, value, value * factor, integral)
+    return _moved(operand, factor, 1.0)
+
+
+def is_integral(analysis: Analysis, operand: Operand) -> bool:
+    """Tell whether only an integer makes sense at the operand's place: an index, a length, a compared code."""
+    source = _document(analysis, operand.span.path)
+    return isinstance(operand.value, int) and counting(source, source.find(operand.span))
+
+
+def rewrite(
+    analysis: Analysis, mutations: Sequence[Mutation], guard: Guard, topics: Mapping[str, str]
+) -> dict[str, str]:
+    """Return the new text of every file that changes when the mutations hold under the guard.
+
+    `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that have to be added.
+    Raises RepairError when it cannot be written.
+    """
+    conditions = Conditions(analysis, guard, topics)
+    edits: dict[str, list[Edit]] = {}
+    for source, statements in _by_file(analysis, mutations):
+        edits[source.path] = list(_file_edits(source, statements, conditions))
+    for path, added in conditions.subscriptions.edits().items():
+        edits[path] = [*added, *edits.get(path, [])]
+    return {path: apply_edits(_document(analysis, path), edits[path]) for path in sorted(edits)}
+
+
+def guard_text(
+    guard: Guard, analysis: Analysis, mutations: Sequence[Mutation], topics: Mapping[str, str]
+) -> str:
+    """Return the guard as Python, as `rewrite` writes it at the first mutation; empty when it always holds."""
+    conditions = Conditions(analysis, guard, topics)
+    for source, statements in _by_file(analysis, mutations[:1]):
+        for statement, uses in statements:
+            return conditions.at(source, uses[0].site, _place(source, statement, uses)(uses[0]))
+    return ""
+
+
+@dataclass(frozen=True)
+class Use:
+    """A mutation where it stands in a file."""
+
+    site: SiteId
+    change: Change
+
+
+class Conditions:
+    """One guard, as Python at every place that asks for it, and the subscriptions that this takes."""
+
+    def __init__(self, analysis: Analysis, guard: Guard, topics: Mapping[str, str]) -> None:
+        self._analysis = analysis
+        self._guard = guard
+        self._topics = topics
+        self.subscriptions = Subscriptions(analysis, topics)
+
+    def at(self, source: Document, site: SiteId, place: ast.AST) -> str:
+        """Return the guard as Python at a place. Raises RepairError when a sensor's value cannot be brought there."""
+        wanted = [each for each in self._guard.conjuncts if not always(each)]
+        readings = {each.sensor.name: self._reading(each, source, site, place) for each in wanted}
+        return condition(self._guard, readings, self._topics)
+
+    def _reading(self, conjunct: Conjunct, source: Document, site: SiteId, place: ast.AST) -> Reading:
+        sensor = conjunct.sensor
+        if sensor.topic is None or sensor.field is None:
+            raise RepairError(
+                f"Sensor {sensor.name!r} is only observed by the test, so that the node cannot read it: "
+                "give it topic and field, or leave it out of the guard."
+            )
+        expressions = self._analysis.holders(sensor.topic, sensor.field, site)
+        reading = held(source, place, expressions, conjunct)
+        return reading or self.subscriptions.reading(sensor, site, source, place)
+
+
+def _file_edits(
+    source: Document, statements: Sequence[tuple[ast.stmt, list[Use]]], conditions: Conditions
+) -> Iterator[Edit]:
+    """Yield the edits of one file: plain ones, choices inside expressions, and branches around statements."""
+    twice: list[tuple[ast.stmt, list[Change], str]] = []
+    for statement, uses in statements:
+        changes = [use.change for use in uses]
+        place = _place(source, statement, uses)
+        tests = [conditions.at(source, use.site, place(use)) for use in uses]
+        if not tests[0]:
+            yield from replaced(source, changes)
+        elif doubled(source, statement, changes):
+            twice.append((statement, changes, tests[0]))
+        else:
+            yield from choices(source, statement, changes, tests)
+    for group in neighbours(source, twice):
+        yield branched(source, [(statement, changes) for statement, changes, _ in group], group[0][2])
+
+
+def _by_file(
+    analysis: Analysis, mutations: Sequence[Mutation]
+) -> list[tuple[Document, list[tuple[ast.stmt, list[Use]]]]]:
+    """Return the mutated uses, by file and statement, in the order of the text."""
+    files: dict[str, dict[ast.stmt, list[Use]]] = {}
+    for mutation in sorted(mutations, key=lambda each: each.operand.span):
+        source = _document(analysis, mutation.operand.span.path)
+        use = Use(mutation.operand.site, _change(source, mutation))
+        files.setdefault(source.path, {}).setdefault(source.statement(use.change.node), []).append(use)
+    return [(_document(analysis, path), list(statements.items())) for path, statements in files.items()]
+
+
+def _place(source: Document, statement: ast.stmt, uses: Sequence[Use]) -> Callable[[Use], ast.AST]:
+    """Return where the condition of each use is asked: at the statement, or inside a function written in it."""
+    if doubled(source, statement, [use.change for use in uses]):
+        return lambda _: statement
+    return lambda use: lazy(source, use.change.node) or statement
+
+
+def _change(source: Document, mutation: Mutation) -> Change:
+    """Return what takes the place of an operand."""
+    operand, value = mutation.operand, mutation.value
+    node = source.find(operand.span)
+    integral = isinstance(operand.value, int) and counting(source, node)
+    if operand.literal:
+        _check_literal(node, operand)
+        new = value if isinstance(value, bool) or not integral else round(value)
+        return Change(node, number(new))
+    code = source.source(node)
+    if isinstance(operand.value, bool):
+        return Change(node, negated(code))
+    if operand.value == 0:
+        return Change(node, shifted(code, round(value) if integral else value))
+    if integral:
+        return Change(node, f"round({scaled(code, value)})")
+    factored = operand.value is not None
+    rest = scaled(code, value).removeprefix(number(value))
+    return Change(node, scaled(code, value), number(value) if factored else "", rest)
+
+
+def _check_literal(node: ast.expr, operand: Operand) -> None:
+    try:
+        written = ast.literal_eval(node)
+    except ValueError:
+        written = None
+    if written != operand.value:
+        raise RepairError(
+            f"{operand.span.path}:{operand.span.line} holds {ast.unparse(node)} where the analysis saw "
+            f"{operand.code}: analyse the file again."
+        )
+
+
+def _literal(operand: Operand, value: float, wanted: float, integral: bool) -> Mutation | None:
+    """Return the mutation of a literal; integers stay integers where they can."""
+    new: float | int = rounded(wanted)
+    if isinstance(value, int) and integral:
+        new = round(new) if round(new) != value else value + (1 if wanted > value else -1)
+        new = value if wanted == value else new
+    elif isinstance(value, int) and float(new).is_integer():
+        new = int(new)
+    return None if new == value or not math.isfinite(new) else Mutation(operand, new)
+
+
+def _moved(operand: Operand, wanted: float, unchanged: float) -> Mutation | None:
+    new = rounded(wanted)
+    return None if new == unchanged else Mutation(operand, new)
+
+
+def _step(factor: float) -> float:
+    """Return by how much zero moves for a factor: symmetric on a log scale, no step for 1."""
+    size = abs(factor)
+    if size < 1e-9:
+        return 0.0
+    return math.copysign(1.0, factor) * (size - 1.0 if size >= 1 else 1.0 - 1.0 / size)
+
+
+def _document(analysis: Analysis, path: str) -> Document:
+    if path not in analysis.sources:
+        raise RepairError(f"{path} is not among the analysed files: name it among the nodes of the test.")
+    return document(path, analysis.sources[path])

@@ -1,0 +1,193 @@
+"""How a statement takes another value under a condition: an `if` around it, or a choice inside it."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from pytest_tarl.patching.document import Document, Edit, parse_expression
+from pytest_tarl.patching.expressions import choice, fitted
+from pytest_tarl.patching.vocabulary import free, names
+
+LONGEST_COPY = 3  # lines of a statement that still reads well when written twice
+LONGEST_CONDITION = 48  # characters of a condition that still reads well inside an expression
+_ARITHMETIC = {
+    "abs",
+    "bool",
+    "float",
+    "int",
+    "len",
+    "math",
+    "max",
+    "min",
+    "np",
+    "numpy",
+    "pow",
+    "round",
+    "sum",
+}
+_SIMPLE = (ast.Assign, ast.AugAssign, ast.Expr, ast.Return, ast.Raise, ast.Assert, ast.Delete)
+_DIRECTIVES = ("# noqa", "# type:", "# pragma", "# pylint", "# tarl:", "# pyright")
+
+
+@dataclass(frozen=True)
+class Change:
+    """A use of a constant and what takes its place where the condition holds.
+
+    Where the change is a mere factor, `factor` and `rest` are its parts: `2.4` and ` * self.kp`.
+    """
+
+    node: ast.expr
+    then: str
+    factor: str = ""
+    rest: str = ""
+
+
+def lazy(source: Document, node: ast.expr) -> ast.expr | None:
+    """Return the body of the lambda or generator in which a use runs later than its statement, or None."""
+    for around in source.ancestors(node):
+        if isinstance(around, ast.stmt):
+            return None
+        if isinstance(around, ast.Lambda):
+            return around.body
+        if isinstance(around, ast.GeneratorExp) and not _consumed(source, around):
+            return around.elt
+    return None
+
+
+def doubled(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> bool:
+    """Tell whether a statement may be written twice, once for either case."""
+    short = (statement.end_lineno or 0) - statement.lineno < LONGEST_COPY
+    late = any(lazy(source, change.node) for change in changes)
+    plain = isinstance(statement, _SIMPLE) and source.alone(statement)
+    return plain and short and not late and not _has_long_text(statement)
+
+
+def replaced(source: Document, changes: Sequence[Change]) -> list[Edit]:
+    """Return the edits that make changes hold always."""
+    return [
+        Edit(*_place(source, change.node), fitted(source, change.node, change.then)) for change in changes
+    ]
+
+
+def inlined(source: Document, change: Change, condition: str) -> Edit:
+    """Return the edit that chooses inside the expression."""
+    if change.factor:
+        code = f"({choice(condition, change.factor, '1')}){change.rest}"
+    else:
+        code = choice(condition, change.then, source.source(change.node))
+    return Edit(*_place(source, change.node), fitted(source, change.node, code))
+
+
+def branched(source: Document, group: Sequence[tuple[ast.stmt, Sequence[Change]]], condition: str) -> Edit:
+    """Return the edit that writes consecutive statements twice, below `if` and `else`."""
+    first, last = group[0][0], group[-1][0]
+    indent, unit = source.indentation(first), source.unit
+    start, end = source.start(first), source.line_end(last)
+    changed = f"\n{indent}".join(_changed(source, statement, changes) for statement, changes in group)
+    original = source.text[start:end]
+    head = f"if {condition}:\n{indent}{unit}{_deeper(changed, unit)}\n{indent}"
+    if len(group) == 1 and isinstance(first, ast.Return | ast.Raise):
+        return Edit(start, end, f"{head}{original}")
+    return Edit(start, end, f"{head}else:\n{indent}{unit}{_deeper(original, unit)}")
+
+
+def named(source: Document, statement: ast.stmt, name: str, condition: str) -> Edit:
+    """Return the edit that gives the condition a name before a statement."""
+    start = source.start(statement)
+    return Edit(start, start, f"{name} = {condition}\n{source.indentation(statement)}")
+
+
+def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> bool:
+    """Tell whether a condition named just before a statement is still the condition when its expressions run."""
+    once = isinstance(statement, (*_SIMPLE, ast.AnnAssign, ast.If, ast.For, ast.With))
+    late = any(lazy(source, change.node) for change in changes)
+    return once and not late and source.leads(statement) and not _is_elif(source, statement)
+
+
+def choices(
+    source: Document, statement: ast.stmt, changes: Sequence[Change], tests: Sequence[str]
+) -> Iterator[Edit]:
+    """Yield the edits that choose inside a statement; a condition long or asked twice gets a name before it."""
+    test = tests[0]
+    long = len(changes) > 1 or len(test) > LONGEST_CONDITION
+    if long and nameable(source, statement, changes):
+        asked = {each.id for each in ast.walk(parse_expression(test)) if isinstance(each, ast.Name)}
+        name = free("drifted", names(source) | asked)
+        yield named(source, statement, name, test)
+        tests = [name] * len(changes)
+    for change, each in zip(changes, tests, strict=True):
+        yield inlined(source, change, each)
+
+
+def neighbours(
+    source: Document, twice: Sequence[tuple[ast.stmt, list[Change], str]]
+) -> Iterator[list[tuple[ast.stmt, list[Change], str]]]:
+    """Group statements that follow each other under one condition that they do not change."""
+    group: list[tuple[ast.stmt, list[Change], str]] = []
+    for each in twice:
+        if group and not _joins(source, group[-1][0], each[0], group[0][2], each[2]):
+            yield group
+            group = []
+        group.append(each)
+    if group:
+        yield group
+
+
+def _joins(source: Document, before: ast.stmt, after: ast.stmt, condition: str, other: str) -> bool:
+    block = source.block(before)
+    follows = any(first is before and second is after for first, second in pairwise(block))
+    stored = {
+        ast.unparse(node) for node in ast.walk(before) if isinstance(getattr(node, "ctx", None), ast.Store)
+    }
+    read = {ast.unparse(node) for node in ast.walk(parse_expression(condition)) if isinstance(node, ast.expr)}
+    return follows and condition == other and not stored & read and not _calls(before)
+
+
+def _calls(statement: ast.stmt) -> bool:
+    """Tell whether a statement runs code that may change what a condition asks; arithmetic does not."""
+    for node in ast.walk(statement):
+        if isinstance(node, ast.Await | ast.Yield | ast.YieldFrom):
+            return True
+        if isinstance(node, ast.Call) and ast.unparse(node.func).partition(".")[0] not in _ARITHMETIC:
+            return True
+    return False
+
+
+def _is_elif(source: Document, statement: ast.stmt) -> bool:
+    return isinstance(statement, ast.If) and source.text.startswith("elif", source.start(statement))
+
+
+def _consumed(source: Document, generator: ast.GeneratorExp) -> bool:
+    """Tell whether a generator is handed to a builtin that runs it at once."""
+    call = source.parents[generator]
+    eager = {"sum", "min", "max", "any", "all", "list", "tuple", "set", "sorted", "dict"}
+    return isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in eager
+
+
+def _has_long_text(statement: ast.stmt) -> bool:
+    """Tell whether a text inside goes over several lines, so that another indentation would change it."""
+    texts = (node for node in ast.walk(statement) if isinstance(node, ast.Constant | ast.JoinedStr))
+    return any(node.end_lineno != node.lineno for node in texts)
+
+
+def _place(source: Document, node: ast.expr) -> tuple[int, int]:
+    return source.start(node), source.end(node)
+
+
+def _changed(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> str:
+    """Return a statement with its changes, and of its comment only what tools read."""
+    start, end = source.start(statement), source.end(statement)
+    text = source.text[start:end]
+    for edit in sorted(replaced(source, changes), key=lambda each: -each.start):
+        text = text[: edit.start - start] + edit.text + text[edit.end - start :]
+    comment = source.comment(statement)
+    return f"{text}  {comment}" if comment.startswith(_DIRECTIVES) else text
+
+
+def _deeper(text: str, unit: str) -> str:
+    """Indent the lines after the first by one level more."""
+    first, *others = text.replace("\r\n", "\n").split("\n")
+    return "\n".join([first, *(unit + line if line.strip() else line for line in others)])

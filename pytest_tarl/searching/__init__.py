@@ -1,0 +1,1 @@
+"""Which mutation, under which guard, and does it hold."""

@@ -1,0 +1,161 @@
+"""Candidate guards: what region, novelty and single sensors propose; simulation selects among them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from pytest_tarl.learning.statistics import Sample
+from pytest_tarl.model import Conjunct, Guard, Region
+from pytest_tarl.sensors import Cell, Sensor
+
+ALWAYS = Guard()
+WIDER = 2  # bins by which an interval is widened on either side, as a last proposal
+
+Bins = tuple[int, int]  # first and last
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a guard can be read from: both worlds, the region, and how far on-line differs by cell."""
+
+    sensors: Sequence[Sensor]
+    offline: Sample
+    online: Sample
+    region: Region
+    changes: Mapping[Cell, float]
+
+    def shares(self) -> dict[Cell, float]:
+        """Return, per cell, the share of the whole change less the share of the on-line steps that fall there."""
+        counts = np.bincount(
+            self.online.chain.cell, self.online.chain.count, minlength=len(self.online.cells)
+        )
+        steps = max(float(counts.sum()), 1.0)
+        whole = sum(self.changes.values()) or 1.0
+        merit = {cell: change / whole for cell, change in self.changes.items()}
+        for cell, count in zip(self.online.cells, counts.tolist(), strict=True):
+            merit[cell] = merit.get(cell, 0.0) - count / steps
+        return merit
+
+
+def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
+    """Return the guards worth simulating: fewest conditions first, then those that hold least often off-line."""
+    region = evidence.region
+    proposals = [
+        ALWAYS,
+        *_combined(
+            [_hull((*region.cells, *region.novel), i) for i in range(len(evidence.sensors))], evidence
+        ),
+        *_combined([_hull(region.novel, i) for i in range(len(evidence.sensors))], evidence),
+        *_combined([_steepest(evidence, i) for i in range(len(evidence.sensors))], evidence),
+    ]
+    proposals += [_widened(guard) for guard in proposals]
+    offline, sensors = evidence.offline, evidence.sensors
+    return tuple(
+        sorted(
+            dict.fromkeys(proposals), key=lambda guard: (len(guard.conjuncts), share(guard, offline, sensors))
+        )
+    )
+
+
+def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Guard, ...]:
+    """Return the guards to search under: those that hold where much changed and seldom elsewhere, and none at all.
+
+    Ordered by the share of the change that falls under the guard less the share of steps that do (Youden's J).
+    """
+    shares = evidence.shares()
+
+    def merit(guard: Guard) -> float:
+        return sum(share for cell, share in shares.items() if holds(guard, cell, evidence.sensors))
+
+    ranked = sorted((guard for guard in guards if guard.conjuncts), key=lambda guard: -merit(guard))
+    best = [guard for guard in ranked if merit(guard) > 0][: most - 1]
+    return (*best, ALWAYS)
+
+
+def share(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> float:
+    """Return the share of steps with a known cell in which the guard holds."""
+    steps = np.bincount(world.chain.cell, weights=world.chain.count, minlength=len(world.cells))
+    return float(steps[_holding(guard, world, sensors)].sum() / max(steps.sum(), 1.0))
+
+
+def firing_episodes(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> tuple[int, ...]:
+    """Return the seeds of the episodes in which the guard holds at least once."""
+    firing = np.unique(world.chain.episode[_holding(guard, world, sensors)[world.chain.cell]])
+    return tuple(world.seeds[i] for i in firing)
+
+
+def holds(guard: Guard, cell: Cell, sensors: Sequence[Sensor]) -> bool:
+    """Tell whether the guard is true in a cell; its bounds lie on those of bins."""
+    bins = dict(zip((sensor.name for sensor in sensors), cell, strict=True))
+    return all(_within(conjunct, bins[conjunct.sensor.name]) for conjunct in guard.conjuncts)
+
+
+def _holding(
+    guard: Guard, world: Sample, sensors: Sequence[Sensor]
+) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    return np.array([holds(guard, cell, sensors) for cell in world.cells], dtype=bool)
+
+
+def _within(conjunct: Conjunct, index: int) -> bool:
+    low, high = conjunct.sensor.interval(index, index)
+    slack = 1e-9 * max(1.0, abs(low), abs(high)) if np.isfinite(high - low) else 0.0
+    return conjunct.low <= low + slack and high - slack <= conjunct.high
+
+
+def _hull(cells: Sequence[Cell], i: int) -> Bins | None:
+    """Return the bins of a sensor that the cells span."""
+    chosen = [cell[i] for cell in cells]
+    return (min(chosen), max(chosen)) if chosen else None
+
+
+def _steepest(evidence: Evidence, i: int) -> Bins | None:
+    """Return the interval of a sensor's bins that holds most of the change in fewest steps (Kadane's maximum sum)."""
+    by_bin: dict[int, float] = {}
+    for cell, value in evidence.shares().items():
+        by_bin[cell[i]] = by_bin.get(cell[i], 0.0) + value
+    best, best_sum, start, running = None, 0.0, None, 0.0
+    for index in sorted(by_bin):
+        if running <= 0.0:
+            start, running = index, 0.0
+        running += by_bin[index]
+        if running > best_sum and start is not None:
+            best, best_sum = (start, index), running
+    return best
+
+
+def _combined(intervals: Sequence[Bins | None], evidence: Evidence) -> Iterator[Guard]:
+    """Yield the conditions on single sensors and on pairs of them that can be false and that a node can ask."""
+    conjuncts = []
+    for i, (sensor, bins) in enumerate(zip(evidence.sensors, intervals, strict=True)):
+        seen = {cell[i] for world in (evidence.offline, evidence.online) for cell in world.cells}
+        everywhere = bins is None or (bins[0] <= min(seen) and bins[1] >= max(seen))
+        if bins is not None and sensor.guardable and not everywhere:
+            conjuncts.append(_conjunct(sensor, bins, seen))
+    for size in (1, 2):
+        yield from map(Guard, combinations(conjuncts, size))
+
+
+def _conjunct(sensor: Sensor, bins: Bins, seen: set[int]) -> Conjunct:
+    """Return the interval of the bins, left open at an end beyond which nothing was ever seen."""
+    low, high = sensor.interval(*bins)
+    if sensor.numeric:
+        low = -np.inf if bins[0] <= min(seen) else low
+        high = np.inf if bins[1] >= max(seen) else high
+    return Conjunct(sensor, float(low), float(high))
+
+
+def _widened(guard: Guard) -> Guard:
+    """Widen every numeric interval by a few bins."""
+    return Guard(tuple(_wider(conjunct) for conjunct in guard.conjuncts))
+
+
+def _wider(conjunct: Conjunct) -> Conjunct:
+    sensor = conjunct.sensor
+    if sensor.bins is None or sensor.low is None or sensor.high is None:
+        return conjunct
+    step = WIDER * (sensor.high - sensor.low) / sensor.bins
+    return Conjunct(sensor, conjunct.low - step, conjunct.high + step)

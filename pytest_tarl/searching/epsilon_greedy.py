@@ -1,0 +1,113 @@
+"""The paper's search: SARSA over mutations, ε-greedy, one mutation an episode, the state being the last one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from statistics import fmean
+from typing import TYPE_CHECKING
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.searching.search import (
+    CONFIRMATIONS,
+    FACTORS,
+    BudgetSpentError,
+    Candidate,
+    Goal,
+    Mutate,
+    Trials,
+    confirmed,
+    operand_effect,
+)
+from tarl_lint.model import Operand
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+class EpsilonGreedy:
+    """Learn on fresh seeds which mutation pays, then confirm the best on episodes that lost."""
+
+    EPSILON = 0.2
+    ALPHA = 0.3
+    GAMMA = 0.5
+    SITES = 3  # the sites that the slices rank first
+    CONFIRMED = 3  # how many of the best mutations are confirmed in the end
+    EPISODES = 200
+
+    @classmethod
+    def episodes(cls, budget: int) -> int:
+        """Return how many episodes to learn for, so that some of the budget is left for confirming."""
+        return max(1, min(cls.EPISODES, budget - cls.CONFIRMED * CONFIRMATIONS))
+
+    def __init__(
+        self,
+        operands: Sequence[Operand],
+        mutate: Mutate,
+        guards: Sequence[Guard],
+        trials: Trials,
+        goal: Goal,
+        seeds: Sequence[int],
+        generator: np.random.Generator,
+    ) -> None:
+        sites = list(dict.fromkeys(operand.site for operand in operands))[: self.SITES]
+        tries = [mutate(o, f) for f in FACTORS for o in operands if o.site in sites]
+        self.actions = [Candidate((m,), g) for g in guards for m in dict.fromkeys(tries) if m is not None]
+        self.trials = trials
+        self.goal = goal
+        self.seeds = seeds
+        self.generator = generator
+        self.q: dict[tuple[int, int], float] = {}
+        self.seen: dict[int, list[float]] = {}
+
+    def candidates(self) -> Iterator[Candidate]:
+        """Learn for all seeds, then yield the best mutations that confirm."""
+        if not self.actions:
+            return
+        self._learn()
+        ranked = sorted(self.seen, key=lambda action: -fmean(self.seen[action]))
+        for action in ranked[: self.CONFIRMED]:
+            if confirmed(self.actions[action], self.trials, self.goal, 0):
+                yield self.actions[action]
+
+    def effects(self) -> dict[str, list[OperandEffect]]:
+        """Return, per site, the mean gain of the best mutation of each operand over the unmutated world."""
+        base = fmean(pair.total for pair in self.goal.pairs)
+        best: dict[tuple[str, str], OperandEffect] = {}
+        for action, totals in self.seen.items():
+            mutation = self.actions[action].mutations[0]
+            operand = mutation.operand
+            effect = operand_effect(mutation, fmean(totals) - base)
+            key = (str(operand.site), operand.code)
+            if key not in best or effect.effect > best[key].effect:
+                best[key] = effect
+        found: dict[str, list[OperandEffect]] = {}
+        for (site, _), effect in best.items():
+            found.setdefault(site, []).append(effect)
+        return found
+
+    def _learn(self) -> None:
+        last, action = 0, self._choose(0)
+        for seed in self.seeds:
+            try:
+                total = self.trials(self.actions[action], seed).total
+            except RepairError:
+                total = min(pair.total for pair in self.goal.pairs)
+            except BudgetSpentError:
+                return
+            self.seen.setdefault(action, []).append(total)
+            following = self._choose(action)
+            learned = self.q.get((last, action), total)
+            ahead = self.q.get((action, following), total)
+            reward = (1 - self.GAMMA) * total
+            self.q[last, action] = learned + self.ALPHA * (reward + self.GAMMA * ahead - learned)
+            last, action = action, following
+
+    def _choose(self, state: int) -> int:
+        """Explore with probability ε and while something is untried, else take the best known mutation."""
+        untried = [a for a in range(len(self.actions)) if a not in self.seen]
+        if untried and self.generator.random() < 0.5:
+            return untried[int(self.generator.integers(len(untried)))]
+        if not self.seen or self.generator.random() < self.EPSILON:
+            return int(self.generator.integers(len(self.actions)))
+        return max(self.seen, key=lambda action: self.q.get((state, action), fmean(self.seen[action])))

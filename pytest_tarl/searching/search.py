@@ -1,0 +1,123 @@
+"""What every search shares: candidates, trials in the drifted world, and when one counts as confirmed.
+
+A search yields confirmed candidates, best first; whether one is accepted is decided elsewhere, on fresh seeds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from statistics import fmean
+from typing import Protocol
+
+from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.searching.accept import Outcome
+from tarl_lint.model import Operand
+
+Mutate = Callable[[Operand, float], Mutation | None]
+
+FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
+CONFIRMATIONS = 5  # further seeds that a promising candidate must hold on
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """Mutations that hold together under one guard."""
+
+    mutations: tuple[Mutation, ...]
+    guard: Guard
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """An on-line episode that lost: its seed, and its total reward without any mutation."""
+
+    seed: int
+    total: float
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What the search is after. `near`: a total worth confirming; `enough`: a mean that confirms."""
+
+    pairs: tuple[Pair, ...]
+    near: float
+    enough: float
+
+
+class BudgetSpentError(Exception):
+    """The search has used up its episodes."""
+
+
+@dataclass
+class Trials:
+    """Runs candidates in the drifted world, each seed once, and keeps count and history."""
+
+    run: Callable[[Candidate, int], Outcome]
+    budget: int
+    totals: list[float] = field(default_factory=list)
+    labels: list[str] = field(default_factory=list)
+    _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
+
+    def __call__(self, candidate: Candidate, seed: int) -> Outcome:
+        """Run one episode, or remember it. Raises BudgetSpentError, or RepairError from writing the candidate."""
+        key = (candidate, seed)
+        if key not in self._known:
+            if len(self.totals) >= self.budget:
+                raise BudgetSpentError
+            self._known[key] = self.run(candidate, seed)
+            self.totals.append(self._known[key].total)
+            self.labels.append(label(candidate))
+        return self._known[key]
+
+    @property
+    def spent(self) -> int:
+        """Return how many episodes were run."""
+        return len(self.totals)
+
+
+def label(candidate: Candidate) -> str:
+    """Name a candidate's mutations for people: `line 30: 5 → 11.0`."""
+    return ", ".join(
+        f"line {m.operand.span.line}: {m.operand.code} → {m.value:.4g}"
+        if m.operand.literal
+        else f"line {m.operand.span.line}: {m.operand.code} × {m.value:.4g}"
+        for m in candidate.mutations
+    )
+
+
+def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
+    """Try further seeds, beginning after the pair `first`; drop the candidate at its second miss."""
+    others = [goal.pairs[(first + i) % len(goal.pairs)] for i in range(1, len(goal.pairs))][:CONFIRMATIONS]
+    totals: list[float] = []
+    for pair in others:
+        totals.append(trials(candidate, pair.seed).total)
+        if sum(total < goal.near for total in totals) > 1:
+            return False
+    return not totals or fmean(totals) >= goal.enough
+
+
+class Strategy(Protocol):
+    """A search."""
+
+    def candidates(self) -> Iterator[Candidate]:
+        """Yield confirmed candidates, best first. Raises BudgetSpentError."""
+
+    def effects(self) -> dict[str, list[OperandEffect]]:
+        """Return, per site id, what each of its operands was found to gain."""
+
+
+def operand_effect(mutation: Mutation, gain: float) -> OperandEffect:
+    """Say what a mutation's value gained; a constant known only at run time has a factor for a value."""
+    constant = mutation.operand.value
+    known = None if constant is None else float(constant)
+    return OperandEffect(mutation.operand.code, known, effective_value(mutation), gain, factor=known is None)
+
+
+def effective_value(mutation: Mutation) -> float:
+    """Return the value that the use has under the mutation; of a constant known only at run time, the factor."""
+    constant, value = mutation.operand.value, float(mutation.value)
+    if mutation.operand.literal or constant is None or isinstance(constant, bool):
+        return value
+    return constant * value if constant else value

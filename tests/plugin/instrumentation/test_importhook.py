@@ -1,0 +1,279 @@
+from __future__ import annotations
+
+import inspect
+import linecache
+import sys
+import traceback
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pytest_tarl.instrumentation.importhook import AlreadyImportedWarning, NodeImports
+from pytest_tarl.instrumentation.recorder import Recorder
+
+NODE = '''\
+"""A node."""
+import pickle
+
+from gains import gain, seen
+
+
+class Message:
+    value = 1.0
+
+
+def callback(data):
+    vel = gain(data) * 2.0
+    return vel
+
+
+if __name__ == "__main__":
+    again = pickle.loads(pickle.dumps(Message()))
+    out = callback(1.5)
+'''
+GAINS = "seen = []\n\n\ndef gain(x):\n    seen.append(x)\n    return 10.0 * len(seen)\n"
+SITES = {(12, 5): 0, (13, 5): 1}
+IN_GAINS = {(6, 5): 2}
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    (tmp_path / "node.py").write_text(NODE)
+    (tmp_path / "gains.py").write_text(GAINS)
+    return tmp_path
+
+
+@pytest.fixture(autouse=True)
+def _bytecode_is_written(monkeypatch):
+    monkeypatch.setattr("sys.dont_write_bytecode", False)
+
+
+def imports(project: Path, recorder: Recorder, **options: Any) -> NodeImports:
+    plan = {project / "node.py": SITES, project / "gains.py": IN_GAINS}
+    return NodeImports(project, options.pop("plan", plan), recorder.hook, bind=recorder.bind, **options)
+
+
+def recorded(recorder: Recorder) -> list[tuple[int, float]]:
+    trace = recorder.finish()
+    return list(zip(trace.site.tolist(), trace.flow.tolist(), strict=True))
+
+
+def test_a_script_and_what_it_imports_are_recorded(project):
+    recorder = Recorder()
+    with imports(project, recorder) as node:
+        module = node.run_script(project / "node.py")
+    assert module.out == 20.0
+    assert module.again.value == 1.0
+    assert recorded(recorder) == [(2, 10.0), (0, 20.0), (1, 20.0)]
+
+
+def test_without_bind_the_hook_alone_is_enough(project):
+    events: list[Any] = []
+    plan = {project / "node.py": SITES}
+
+    def hook(number, value):
+        events.append((number, value))
+        return value
+
+    with NodeImports(project, plan, hook) as node:
+        node.run_script(project / "node.py")
+    assert events == [(0, 20.0), (1, 20.0)]
+
+
+def test_every_episode_begins_with_fresh_modules_and_leaves_the_interpreter_as_it_was(project):
+    main, path, finders = sys.modules["__main__"], list(sys.path), list(sys.meta_path)
+    known = set(sys.modules)
+    for _ in range(2):
+        with imports(project, Recorder()) as node:
+            module = node.run_script(project / "node.py")
+            assert sys.modules["__main__"] is module
+            assert sys.modules["gains"].seen == [1.5]
+    assert sys.modules["__main__"] is main
+    assert (sys.path, sys.meta_path) == (path, finders)
+    assert set(sys.modules) - known <= {"pickle"}
+
+
+def test_helpers_without_sites_are_fresh_too_and_those_of_the_test_stay(project, monkeypatch):
+    (project / "world.py").write_text("tide = []\n")
+    monkeypatch.syspath_prepend(project)
+    with imports(project, Recorder(), plan={}) as node:
+        world = __import__("world")
+        node.run_script(project / "node.py")
+        assert "gains" in sys.modules
+    try:
+        assert sys.modules["world"] is world
+        assert "gains" not in sys.modules
+    finally:
+        del sys.modules["world"]
+
+
+def test_a_test_may_import_its_node_inside_the_episode(project, monkeypatch):
+    monkeypatch.syspath_prepend(project)
+    recorder = Recorder()
+    with imports(project, recorder):
+        node = __import__("node")
+        assert node.__name__ == node.__spec__.name == "node"
+        assert node.__file__ == node.__spec__.origin == str(project / "node.py")
+        assert inspect.getsource(node.callback) == "".join(NODE.splitlines(keepends=True)[10:13])
+        assert node.__loader__.get_source("node") == NODE
+        node.callback(0.0)
+    assert "node" not in sys.modules
+    assert recorded(recorder) == [(2, 10.0), (0, 20.0), (1, 20.0)]
+
+
+def test_modules_in_packages_are_found_and_forgotten(project, monkeypatch):
+    package = project / "robot"
+    package.mkdir()
+    (package / "__init__.py").write_text("name = 'r2'\n")
+    (package / "drive.py").write_text("from . import name\nspeed = len(name) * 1.0\n")
+    monkeypatch.syspath_prepend(project)
+    import robot
+
+    recorder = Recorder()
+    try:
+        with imports(project, recorder, plan={package / "drive.py": {(2, 1): 0}}):
+            from robot import drive
+
+            assert robot.drive is drive
+        assert not hasattr(robot, "drive")
+        assert "robot.drive" not in sys.modules
+        assert sys.modules["robot"] is robot
+    finally:
+        del sys.modules["robot"]
+    assert recorded(recorder) == [(0, 2.0)]
+
+
+def test_an_overlay_replaces_the_text_and_sites_keep_their_lines(project):
+    edited = NODE.replace("import pickle\n", "import pickle\nimport math\n").replace(
+        "* 2.0", "* (5.0 if data else 2.0)"
+    )
+    recorder = Recorder()
+    file = project / "node.py"
+    with imports(project, recorder, overlay={file: edited}) as node:
+        module = node.run_script(file)
+        assert module.out == 50.0
+        assert linecache.getline(str(file), 13) == "    vel = gain(data) * (5.0 if data else 2.0)\n"
+        assert inspect.getsource(module.callback).endswith("return vel\n")
+    assert recorded(recorder) == [(2, 10.0), (0, 50.0), (1, 50.0)]
+    assert linecache.getline(str(file), 13) == "    return vel\n"
+    assert file.read_text() == NODE
+    assert not [entry for entry in (project / ".tarl" / "cache").iterdir() if entry.name.startswith("node-")]
+
+
+def test_an_overlay_of_an_import_is_what_the_node_gets(project):
+    recorder = Recorder()
+    with imports(project, recorder, overlay={project / "gains.py": GAINS.replace("10.0", "7.0")}) as node:
+        assert node.run_script(project / "node.py").out == 14.0
+        assert "7.0" in sys.modules["gains"].__loader__.get_source("gains")
+
+
+def test_errors_point_at_the_lines_of_the_text_that_runs(project):
+    edited = NODE.replace("vel = gain(data) * 2.0", "vel = gain(data) / (data - 1.5)")
+    with imports(project, Recorder(), overlay={project / "node.py": edited}) as node:
+        with pytest.raises(ZeroDivisionError) as caught:
+            node.run_script(project / "node.py")
+        last = traceback.extract_tb(caught.value.__traceback__)[-1]
+    assert (last.lineno, last.line) == (12, "vel = gain(data) / (data - 1.5)")
+
+
+def test_a_syntax_error_is_raised_as_an_import_raises_it(project):
+    (project / "node.py").write_text("x = (\n")
+    with imports(project, Recorder()) as node, pytest.raises(SyntaxError) as caught:
+        node.run_script(project / "node.py")
+    assert caught.value.filename == str(project / "node.py")
+
+
+def test_warnings_of_the_compiler_are_left_to_the_developers_own_runs(project):
+    (project / "node.py").write_text("x = 1 is 1\n")
+    with imports(project, Recorder()) as node:
+        assert node.run_script(project / "node.py").x
+
+
+def test_a_file_that_the_test_imported_before_is_named(project, monkeypatch):
+    monkeypatch.syspath_prepend(project)
+    gains = __import__("gains")
+    try:
+        with (
+            pytest.warns(
+                AlreadyImportedWarning, match=r"gains\.py was imported \(as gains\) before the episode"
+            ),
+            imports(project, Recorder()) as node,
+        ):
+            node.run_script(project / "node.py")
+        assert sys.modules["gains"] is gains
+    finally:
+        del sys.modules["gains"]
+
+
+def test_no_warning_when_the_script_runs_although_the_test_imported_it_too(project, monkeypatch):
+    monkeypatch.syspath_prepend(project)
+    node_module = __import__("node")
+    plan = {project / "node.py": SITES}
+    try:
+        with imports(project, Recorder(), plan=plan) as node:
+            node.run_script(project / "node.py")
+        assert sys.modules["node"] is node_module
+    finally:
+        del sys.modules["node"], sys.modules["gains"]
+
+
+def test_columns_are_characters_and_encodings_are_obeyed(project):
+    text = "# -*- coding: latin-1 -*-\nü = 'é'; größe = 2.0; x = größe * 2\n"
+    (project / "node.py").write_bytes(text.encode("latin-1"))
+    recorder = Recorder()
+    plan = {project / "node.py": {(2, 10): 0, (2, 23): 1}}
+    with imports(project, recorder, plan=plan) as node:
+        node.run_script(project / "node.py")
+        assert node.unrecorded == {}
+    assert recorded(recorder) == [(0, 2.0), (1, 4.0)]
+
+
+def test_positions_at_which_nothing_stands_are_told(project):
+    plan = {project / "node.py": {(12, 5): 0, (99, 1): 1}}
+    for _ in range(2):
+        with imports(project, Recorder(), plan=plan) as node:
+            node.run_script(project / "node.py")
+            assert node.unrecorded == {project / "node.py": ((99, 1),)}
+
+
+def test_code_comes_from_the_cache_until_text_or_sites_change(project):
+    cache = project / ".tarl" / "cache"
+
+    def run(plan):
+        recorder = Recorder()
+        with imports(project, recorder, plan=plan) as node:
+            node.run_script(project / "node.py")
+        return recorded(recorder)
+
+    file = project / "node.py"
+    assert run({file: SITES}) == run({file: SITES}) == [(0, 20.0), (1, 20.0)]
+    assert len(list(cache.iterdir())) == 1
+    assert run({file: {(12, 5): 7}}) == [(7, 20.0)]
+    file.write_text(NODE.replace("* 2.0", "* 3.0"))
+    assert run({file: SITES}) == [(0, 30.0), (1, 30.0)]
+    assert len(list(cache.iterdir())) == 3
+
+
+def test_a_script_without_a_plan_runs_as_it_is(project):
+    recorder = Recorder()
+    with imports(project, recorder, plan={}) as node:
+        module = node.run_script(project / "node.py")
+    assert module.out == 20.0
+    assert not [name for name in vars(module) if "tarl" in name]
+    assert recorded(recorder) == []
+
+
+def test_no_import_is_searched_for_twice(project, monkeypatch):
+    asked: list[str] = []
+
+    class Listener:
+        @staticmethod
+        def find_spec(fullname, path=None, target=None):
+            asked.append(fullname)
+
+    with imports(project, Recorder()) as node:
+        monkeypatch.setattr(sys, "meta_path", [*sys.meta_path[:1], Listener, *sys.meta_path[1:]])
+        node.run_script(project / "node.py")
+        monkeypatch.undo()
+    assert asked.count("gains") == 1

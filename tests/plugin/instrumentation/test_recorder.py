@@ -1,0 +1,251 @@
+from __future__ import annotations
+
+import ast
+import math
+import threading
+from typing import Any
+
+import greenlet
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pytest_tarl.instrumentation.events import paired, sizes
+from pytest_tarl.instrumentation.instrument import instrument
+from pytest_tarl.instrumentation.magnitude import LIMIT, magnitude
+from pytest_tarl.instrumentation.recorder import Recorder
+
+SOURCE = """
+def work(values):
+    for value in values:
+        doubled = value * 2
+        if doubled > 2:
+            note(doubled)
+"""
+SITES = {(3, 4): 0, (4, 8): 1, (5, 8): 2, (6, 12): 3}
+
+
+def program(recorder: Recorder, **extra: Any) -> dict[str, Any]:
+    space: dict[str, Any] = {"note": lambda value: value, **extra}
+    recorder.bind(space)
+    exec(compile(instrument(ast.parse(SOURCE), SITES, inline=True), "<p>", "exec"), space)
+    return space
+
+
+@pytest.mark.parametrize("threads", [False, True])
+def test_events_come_in_order_with_their_flow_values(threads):
+    recorder = Recorder(threads=threads)
+    program(recorder)["work"]([0.5, 2])
+    recorder.reward(1.0)
+    trace = recorder.finish()
+    assert trace.site.tolist() == [0, 1, 2, 0, 1, 2, 3]
+    assert trace.flow.tolist() == [0.5, 1.0, 0.0, 2.0, 4.0, 1.0, 4.0]
+    assert trace.thread is None
+
+
+def test_a_step_ends_with_its_reward_and_late_events_belong_to_the_last_one():
+    recorder = Recorder()
+    for step in range(3):
+        recorder.hook(0, float(step))
+        recorder.hook(1, float(step))
+        recorder.reward(10.0 * step, {"progress": step, "late": 1.0} if step == 1 else {"progress": step})
+    recorder.hook(2, 9.0)
+    trace = recorder.finish()
+    assert trace.event_step.tolist() == [0, 0, 1, 1, 2, 2, 2]
+    assert trace.reward.tolist() == [0.0, 10.0, 20.0]
+    assert {name: part.tolist() for name, part in trace.parts.items()} == {
+        "progress": [0.0, 1.0, 2.0],
+        "late": [0.0, 1.0, 0.0],
+    }
+
+
+def test_a_cell_holds_from_its_latch_to_the_next():
+    recorder = Recorder()
+    recorder.hook(0, 0.0)
+    recorder.latch((4, 1))
+    recorder.hook(1, 0.0)
+    recorder.reward(0.0)
+    recorder.hook(2, 0.0)
+    recorder.latch((2, 0))
+    recorder.latch((4, 1))
+    recorder.hook(3, 0.0)
+    recorder.reward(0.0)
+    recorder.latch(None)
+    recorder.hook(4, 0.0)
+    recorder.reward(0.0)
+    trace = recorder.finish()
+    assert trace.cells == ((4, 1), (2, 0))
+    assert trace.event_cell.tolist() == [-1, 0, 0, 0, -1]
+    assert trace.step_cell.tolist() == [0, 0, -1]
+
+
+def test_nothing_recorded_is_an_empty_trace():
+    trace = Recorder().finish()
+    assert trace.cells == ()
+    assert [len(column) for column in (trace.site, trace.flow, trace.event_cell, trace.event_step)] == [0] * 4
+    assert (trace.steps, trace.parts) == (0, {})
+
+
+def test_events_without_any_reward_are_kept():
+    recorder = Recorder()
+    recorder.hook(0, 1.0)
+    assert recorder.finish().event_step.tolist() == [0]
+
+
+VALUES = [
+    1.5,
+    -2.0,
+    math.nan,
+    -math.inf,
+    1e300,
+    7,
+    -7,
+    10**400,
+    True,
+    None,
+    "text",
+    [3.0, 4.0],
+    np.float32(2),
+    object(),
+]
+
+
+@pytest.mark.parametrize("value", VALUES, ids=repr)
+@pytest.mark.parametrize("threads", [False, True])
+def test_every_way_to_record_gives_the_same_flow_value_and_the_value_itself(value, threads):
+    recorder = Recorder(threads=threads)
+    space: dict[str, Any] = {"value": value}
+    recorder.bind(space)
+    source = "x = value\ny = [value][0]"
+    exec(compile(instrument(ast.parse(source), {(1, 0): 0, (2, 0): 1}, inline=True), "<p>", "exec"), space)
+    assert space["x"] is value
+    assert space["__tarl__"](2, value) is value
+    assert recorder.hook(3, value) is value
+    trace = recorder.finish()
+    assert trace.site.tolist() == [0, 1, 2, 3]
+    assert trace.flow.tolist() == [magnitude(value)] * 4
+
+
+def test_events_of_two_threads_stay_apart():
+    recorder = Recorder()
+    started, go_on = threading.Event(), threading.Event()
+
+    def pause(value):
+        if threading.current_thread() is not threading.main_thread():
+            started.set()
+            go_on.wait(5)
+        return value
+
+    space = program(recorder, note=pause)
+    space["work"]([1.0])
+    other = threading.Thread(target=space["work"], args=([5.0, 6.0],))
+    other.start()
+    started.wait(5)
+    space["work"]([2.0])
+    go_on.set()
+    other.join()
+    recorder.reward(0.0)
+    trace = recorder.finish()
+    assert trace.thread is not None
+    assert trace.flow[trace.thread == 0].tolist() == [1.0, 2.0, 0.0, 2.0, 4.0, 1.0, 4.0]
+    assert trace.flow[trace.thread == 1].tolist() == [5.0, 10.0, 1.0, 10.0, 6.0, 12.0, 1.0, 12.0]
+    assert np.all(np.diff(trace.thread) >= 0)
+
+
+def test_threads_are_put_into_the_steps_in_which_they_ran():
+    recorder = Recorder()
+    space = program(recorder)
+    for step in range(2):
+        space["work"]([1.0])
+        thread = threading.Thread(target=space["work"], args=([float(step)],))
+        recorder.latch((step,))
+        thread.start()
+        thread.join()
+        recorder.reward(float(step))
+    trace = recorder.finish()
+    assert trace.event_step.tolist() == sorted(trace.event_step.tolist())
+    assert trace.thread is not None
+    of_threads = trace.thread > 0
+    assert trace.event_step[of_threads].tolist() == [0, 0, 0, 1, 1, 1]
+    assert trace.event_cell[of_threads].tolist() == [0, 0, 0, 1, 1, 1]
+    assert trace.event_cell[~of_threads].tolist() == [-1, -1, -1, 0, 0, 0]
+
+
+def test_greenlets_share_the_sequence_of_their_thread():
+    recorder = Recorder()
+    main = greenlet.getcurrent()
+    space = program(recorder, note=lambda value: main.switch())
+    node = greenlet.greenlet(space["work"])
+    node.switch([3.0])
+    recorder.reward(1.0)
+    node.switch()
+    space["work"]([0.0])
+    trace = recorder.finish()
+    assert trace.site.tolist() == [0, 1, 2, 3, 0, 1, 2]
+    assert trace.thread is None
+
+
+def test_profilers_of_threads_come_back():
+    def profile(*_: object) -> None: ...
+
+    threading.setprofile(profile)
+    try:
+        recorder = Recorder()
+        program(recorder)
+        assert threading.getprofile() is not profile
+        recorder.finish()
+        assert threading.getprofile() is profile
+    finally:
+        threading.setprofile(None)  # type: ignore[arg-type]
+
+
+def test_a_recorder_that_nothing_is_bound_to_leaves_threading_alone():
+    before = threading.getprofile()
+    recorder = Recorder()
+    assert threading.getprofile() is before
+    recorder.finish()
+
+
+def test_a_half_event_is_dropped_and_the_others_keep_their_places():
+    site, flow, starts = paired([0, 1.0, 1, 2, 3.0, 3, 4.0, 4])
+    assert site.tolist() == [0, 2, 3]
+    assert flow.tolist() == [1.0, 3.0, 4.0]
+    assert starts.tolist() == [0, 3, 5]
+
+
+@given(st.lists(st.floats()))
+def test_sizes_of_floats_are_their_magnitudes(values):
+    assert sizes(np.array(values, np.float64)).tolist() == [magnitude(value) for value in values]
+    assert all(0.0 <= size <= LIMIT for size in sizes(np.array(values, np.float64)))
+
+
+@given(
+    st.lists(
+        st.one_of(
+            st.tuples(st.just("event"), st.floats(0, 9)),
+            st.tuples(st.just("latch"), st.integers(0, 2)),
+            st.tuples(st.just("reward"), st.floats(-5, 5)),
+        )
+    )
+)
+def test_columns_say_what_happened(story):
+    recorder = Recorder()
+    expected, rewards, cell, told = [], [], -1, []
+    for what, value in story:
+        if what == "event":
+            recorder.hook(len(expected), value)
+            expected.append((value, cell, len(rewards)))
+        elif what == "latch":
+            recorder.latch((value,))
+            told += [(value,)] if (value,) not in told else []
+            cell = told.index((value,))
+        else:
+            recorder.reward(value)
+            rewards.append((value, cell))
+    trace = recorder.finish()
+    last = max(0, len(rewards) - 1)
+    columns = zip(trace.flow.tolist(), trace.event_cell.tolist(), trace.event_step.tolist(), strict=True)
+    assert list(columns) == [(value, cell, min(step, last)) for value, cell, step in expected]
+    assert list(zip(trace.reward.tolist(), trace.step_cell.tolist(), strict=True)) == rewards
+    assert trace.site.tolist() == list(range(len(expected)))

@@ -1,0 +1,98 @@
+"""The comparison: quiet when nothing changed, loud and in the right place when something did."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.learning.drift import compare, max_statistic, paper_region, permuted_loss
+from pytest_tarl.learning.statistics import Sample, merge, sample
+from pytest_tarl.seeds import generator
+
+LENGTH = 8
+
+
+def mission(seed: int, *, slow_at: int | None = None, strange: bool = False) -> Sample:
+    """Walk from cell 0 to the last one; each step costs, a slow cell holds the robot back."""
+    draws = np.random.default_rng(seed)
+    path, place = [], 0
+    while place < LENGTH:
+        path.append(place)
+        stays = 0.85 if place == slow_at else 0.3
+        place += int(draws.random() > stays)
+    cells = tuple((place, int(strange and place == 3)) for place in range(LENGTH))
+    steps = len(path)
+    trace = Trace(
+        cells=cells,
+        site=np.zeros(steps, np.int32),
+        flow=np.ones(steps),
+        event_cell=np.array(path, np.int32),
+        event_step=np.arange(steps, dtype=np.int32),
+        step_cell=np.array(path, np.int32),
+        reward=np.append(np.full(steps - 1, -0.1), 10.0),
+        parts={},
+    )
+    return sample(trace, seed, True, ((0,),))
+
+
+def world(first: int, count: int, **drift: object) -> Sample:
+    return merge([mission(seed, **drift) for seed in range(first, first + count)])  # type: ignore[arg-type]
+
+
+def judged(offline: Sample, online: Sample, seed: int = 0):
+    return compare(offline, online, alpha=0.05, tolerance=0.2, generator=generator(seed, "compare"))
+
+
+def test_the_same_world_is_rarely_called_different() -> None:
+    offline = world(0, 60)
+    found = [judged(offline, world(1000 + 100 * i, 20), i).verdict for i in range(40)]
+    assert sum(verdict.p_drift < 0.05 for verdict in found) <= 6
+    assert sum(verdict.result == "degraded" for verdict in found) <= 4
+
+
+def test_a_slow_cell_is_degraded_and_found_where_it_is() -> None:
+    found = judged(world(0, 60), world(1000, 30, slow_at=4))
+    assert found.verdict.result == "degraded"
+    assert found.verdict.p_drift < 0.01
+    assert (4, 0) in found.region.cells
+    assert len(found.region.cells) <= 2
+    assert found.region.novel == ()
+
+
+def test_a_cell_never_seen_off_line_is_novel() -> None:
+    found = judged(world(0, 60), world(1000, 30, slow_at=3, strange=True))
+    assert found.region.novel == ((3, 1),)
+
+
+def test_a_change_without_loss_is_drifted() -> None:
+    found = judged(world(0, 60), world(1000, 30, strange=True))
+    assert found.verdict.result == "drifted"
+
+
+def test_the_tolerance_of_the_marker_holds_a_small_loss_back() -> None:
+    offline, online = world(0, 60), world(1000, 30, slow_at=4)
+    found = compare(offline, online, alpha=0.05, tolerance=50.0, generator=generator(0, "compare"))
+    assert found.verdict.result == "drifted"
+    assert found.verdict.detectable_loss >= 50.0
+
+
+def test_the_permutation_test_is_one_sided() -> None:
+    draws = np.random.default_rng(1)
+    low, high = draws.normal(0, 1, 30), draws.normal(3, 1, 20)
+    assert permuted_loss(high, low, generator(0, "a")) < 0.01
+    assert permuted_loss(low, high, generator(0, "a")) > 0.9
+
+
+def test_columns_that_do_not_vary_are_never_significant() -> None:
+    columns = np.zeros((20, 3))
+    columns[:10, 1] = 1.0
+    p_values = max_statistic(columns, 10, generator(0, "a"))
+    assert p_values[1] < 0.01
+    assert p_values[[0, 2]].tolist() == [1.0, 1.0]
+
+
+def test_the_papers_region_is_where_the_difference_is_at_least_half_the_largest() -> None:
+    offline = np.array([[0.0, 0.0], [1.0, 1.0], [5.0, np.nan], [1.0, 0.0]])
+    online = np.array([[-4.0, 0.0], [0.0, 0.0], [np.nan, 2.0], [1.0, 0.0]])
+    assert paper_region(offline, online).tolist() == [0, 1]
+    assert paper_region(offline, offline).tolist() == []

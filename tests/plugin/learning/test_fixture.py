@@ -1,0 +1,119 @@
+"""The fixture on disk: whole, the same bytes every time, never half-used."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pytest_tarl.errors import FixtureError
+from pytest_tarl.learning.fixture import Fixture, load, save
+from pytest_tarl.learning.statistics import merge
+from pytest_tarl.model import SitePlace, TaintList
+from pytest_tarl.sensors import Sensor
+from tests.plugin.learning.test_statistics import MEMBERS, random_sample, same
+
+
+def site(n: int) -> SitePlace:
+    return SitePlace(f"node:run:x{n} = «{n}»", "node.py", n + 1, f"x{n} = «{n}»", "data", "assign")
+
+
+def example() -> Fixture:
+    whole = merge([random_sample(seed) for seed in range(6)])
+    lists = tuple(
+        TaintList(f"/in{i}", "/out", tuple(map(site, members))) for i, members in enumerate(MEMBERS)
+    )
+    return Fixture(
+        test="test_node.py::test_it",
+        seed=3,
+        sensors=(Sensor("x", topic="/in0", field="data", low=0, high=1, bins=4), Sensor("terrain")),
+        lists=lists,
+        topics={"/in0": "std_msgs/msg/Float64"},
+        sample=whole,
+        sarsa=tuple(np.full((len(whole.cells), len(members)), np.nan) for members in MEMBERS),
+    )
+
+
+def test_what_is_saved_is_loaded(tmp_path: Path) -> None:
+    fixture, path = example(), tmp_path / "deep" / "a.npz"
+    save(fixture, path)
+    loaded = load(path)
+    assert same(loaded.sample, fixture.sample)
+    assert (loaded.test, loaded.seed, loaded.sensors, loaded.lists, loaded.topics) == (
+        fixture.test,
+        fixture.seed,
+        fixture.sensors,
+        fixture.lists,
+        fixture.topics,
+    )
+    assert [table.shape for table in loaded.sarsa] == [table.shape for table in fixture.sarsa]
+
+
+def test_the_same_episodes_give_the_same_bytes_and_nothing_is_left_beside_them(tmp_path: Path) -> None:
+    first, second = tmp_path / "a.npz", tmp_path / "b.npz"
+    save(example(), first)
+    save(example(), second)
+    assert first.read_bytes() == second.read_bytes()
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.npz", "b.npz"]
+
+
+@pytest.mark.parametrize("cut", [0, 1, 50, 500, -1, -40])
+def test_a_truncated_file_is_named_and_refused(tmp_path: Path, cut: int) -> None:
+    path = tmp_path / "a.npz"
+    save(example(), path)
+    path.write_bytes(path.read_bytes()[:cut])
+    with pytest.raises(FixtureError, match=r"a\.npz is damaged.*--tarl-record"):
+        load(path)
+
+
+def test_a_changed_column_is_noticed_by_the_digest(tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    save(example(), path)
+    with np.load(path) as archive:
+        columns = dict(archive)
+    columns["total"] = columns["total"] + 1
+    np.savez(path, **columns)
+    with pytest.raises(FixtureError, match="digest"):
+        load(path)
+
+
+def test_a_foreign_archive_and_a_pickle_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.npz"
+    np.savez(path, other=np.arange(3))
+    with pytest.raises(FixtureError, match="damaged or is not one"):
+        load(path)
+    np.savez(path, header=np.array([{}], dtype=object))
+    with pytest.raises(FixtureError, match="damaged or is not one"):
+        load(path)
+
+
+def test_another_format_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a.npz"
+    monkeypatch.setattr("pytest_tarl.learning.fixture.FORMAT_VERSION", 99)
+    save(example(), path)
+    monkeypatch.undo()
+    with pytest.raises(FixtureError, match="format 99"):
+        load(path)
+
+
+def test_a_missing_file_says_what_to_run(tmp_path: Path) -> None:
+    with pytest.raises(FixtureError, match=r"no utility fixture.*--tarl-record"):
+        load(tmp_path / "a.npz")
+
+
+def test_an_interrupted_write_leaves_the_old_fixture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "a.npz"
+    save(example(), path)
+    before = path.read_bytes()
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "replace", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        save(replace(example(), seed=4), path)
+    monkeypatch.undo()
+    assert path.read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["a.npz"]

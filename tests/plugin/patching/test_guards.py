@@ -1,0 +1,230 @@
+"""Guards as Python: what they say, what they ask, and that silence keeps the original code."""
+
+from __future__ import annotations
+
+import ast
+import math
+from textwrap import dedent
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pytest_tarl import Sensor
+from pytest_tarl.model import Conjunct, Guard
+from pytest_tarl.patching.document import document
+from pytest_tarl.patching.guards import Reading, condition, held
+from tests.plugin.patching.repairs import POSITION, TERRAIN, TOPICS
+
+GEAR = Sensor("gear", topic="/gear", field="data")
+MODE = Sensor("mode", topic="/mode", field="data", categories=("dry", "wet", 'so-"so"'))
+SEEN = {
+    "terrain": Reading("terrain", "terrain"),
+    "x": Reading("pos"),
+    "gear": Reading("gear"),
+    "mode": Reading("mode"),
+}
+SILENT = {name: Reading(name, name) for name in ("terrain", "x", "gear", "mode")}
+INF = math.inf
+
+
+def told(*conjuncts: Conjunct, readings: dict[str, Reading] = SEEN) -> str:
+    return condition(Guard(conjuncts), readings, TOPICS)
+
+
+@pytest.mark.parametrize(
+    ("conjunct", "expected"),
+    [
+        (Conjunct(TERRAIN, 1, 1), "terrain"),
+        (Conjunct(POSITION, 4.0, 7.0), "4.0 <= pos < 7.0"),
+        (Conjunct(POSITION, 4.0, 10.0), "4.0 <= pos <= 10.0"),
+        (Conjunct(POSITION, 10.0, INF), "pos > 10.0"),
+        (Conjunct(POSITION, 4.0, INF), "pos >= 4.0"),
+        (Conjunct(POSITION, -INF, 4.0), "pos < 4.0"),
+        (Conjunct(POSITION, -INF, 10.0), "pos <= 10.0"),
+        (Conjunct(POSITION, -INF, INF), ""),
+        (Conjunct(GEAR, 3, 3), "gear == 3"),
+        (Conjunct(GEAR, 1, 3), "1 <= gear <= 3"),
+        (Conjunct(GEAR, 2, INF), "gear >= 2"),
+        (Conjunct(MODE, 1, 1), 'mode == "wet"'),
+        (Conjunct(MODE, 0, 1), 'mode in ("dry", "wet")'),
+        (Conjunct(MODE, 1, INF), 'mode in ("wet", \'so-"so"\')'),
+    ],
+)
+def test_each_kind_of_sensor_has_its_condition(conjunct: Conjunct, expected: str) -> None:
+    assert told(conjunct) == expected
+
+
+@pytest.mark.parametrize(
+    ("conjunct", "expected"),
+    [
+        (Conjunct(TERRAIN, 1, 1), "terrain"),
+        (Conjunct(TERRAIN, 0, 0), "terrain is not None and not terrain"),
+        (Conjunct(POSITION, 4.0, 7.0), "x is not None and 4.0 <= x < 7.0"),
+        (Conjunct(GEAR, 0, 0), "gear == 0"),
+        (Conjunct(MODE, 0, 1), 'mode in ("dry", "wet")'),
+    ],
+)
+def test_a_sensor_that_was_silent_so_far_is_asked_for_none_only_where_needed(
+    conjunct: Conjunct, expected: str
+) -> None:
+    text = told(conjunct, readings=SILENT)
+    assert text == expected
+    assert not eval(text, {conjunct.sensor.name: None})
+
+
+def test_conditions_are_joined_in_order() -> None:
+    assert told(Conjunct(TERRAIN, 1, 1), Conjunct(POSITION, 4, 7)) == "terrain and 4.0 <= pos < 7.0"
+
+
+def test_no_condition_at_all_is_an_empty_guard() -> None:
+    assert told() == told(Conjunct(POSITION, -INF, INF)) == ""
+
+
+def test_limits_are_rounded_to_what_a_bin_can_tell() -> None:
+    fine = Sensor("x", topic="/odom", field="x", low=0, high=10, bins=24)
+    assert told(Conjunct(fine, *fine.interval(10, 16))) == "4.167 <= pos < 7.083"
+    wide = Sensor("x", topic="/odom", field="x", low=-5e4, high=5e4, bins=3)
+    assert told(Conjunct(wide, *wide.interval(1, 1))) == "-16700.0 <= pos < 16700.0"
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(
+    low=st.floats(-100, 100),
+    width=st.floats(0.01, 50),
+    bins=st.integers(1, 30),
+    ends=st.tuples(st.integers(-1, 30), st.integers(-1, 30)).map(sorted),
+    value=st.floats(-300, 300),
+)
+def test_the_condition_holds_exactly_in_the_bins_up_to_rounding(
+    low: float, width: float, bins: int, ends: list[int], value: float
+) -> None:
+    sensor = Sensor("x", topic="/odom", field="x", low=low, high=low + width * bins, bins=bins)
+    first, last = (min(end, bins) for end in ends)
+    text = told(Conjunct(sensor, *sensor.interval(first, last)))
+    position = (value - low) / width
+    if abs(position - round(position)) > 0.02:  # not within rounding of the end of a bin
+        index = sensor.bin(value)
+        assert index is not None
+        assert bool(eval(text or "True", {"pos": value})) is (first <= index <= last)
+
+
+@pytest.mark.parametrize("value", [0.0, 4.0, 7.0, 10.0, 10.5, -0.5])
+def test_the_ends_of_bins_belong_where_the_sensor_puts_them(value: float) -> None:
+    for first, last in ((-1, -1), (0, 3), (4, 6), (7, 9), (10, 10)):
+        text = told(Conjunct(POSITION, *POSITION.interval(first, last)))
+        index = POSITION.bin(value)
+        assert index is not None
+        assert eval(text, {"pos": value}) is (first <= index <= last)
+
+
+STRETCH = Conjunct(POSITION, 4.0, 7.0)
+START = Conjunct(POSITION, -INF, 4.0)
+MUDDY, FIRM = Conjunct(TERRAIN, 1, 1), Conjunct(TERRAIN, 0, 0)
+
+
+def choose(text: str, expressions: tuple[str, ...], conjunct: Conjunct = STRETCH) -> Reading | None:
+    """Ask which expression is used at the statement that holds `HERE`."""
+    source = document("node.py", dedent(text))
+    name = next(node for node in ast.walk(source.tree) if isinstance(node, ast.Name) and node.id == "HERE")
+    return held(source, source.statement(name), expressions, conjunct)
+
+
+def test_the_first_expression_that_is_safe_is_taken() -> None:
+    text = """
+        pos = 5.0
+        def cb(msg):
+            global pos
+            pos = msg.x
+            HERE = 1
+        """
+    assert choose(text, ("pos", "msg.x")) == Reading("msg.x")
+
+
+@pytest.mark.parametrize(
+    ("initial", "conjunct"), [("0.0", START), ("Pose()", START), ("False", FIRM), ("True", MUDDY)]
+)
+def test_a_variable_that_starts_out_inside_the_guard_is_not_trusted(initial: str, conjunct: Conjunct) -> None:
+    text = f"value = {initial}\ndef step(): HERE = 1\n"
+    assert choose(text, ("value",), conjunct) is None
+
+
+@pytest.mark.parametrize(("initial", "conjunct"), [("0.0", STRETCH), ("Pose()", STRETCH), ("False", MUDDY)])
+def test_a_variable_that_starts_out_outside_the_guard_is_used(initial: str, conjunct: Conjunct) -> None:
+    text = f"value = {initial}\ndef step(): HERE = 1\n"
+    assert choose(text, ("value",), conjunct) == Reading("value")
+
+
+@pytest.mark.parametrize(
+    ("text", "expression", "absent"),
+    [
+        ("pos = None\ndef step(): HERE = 1", "pos", "pos"),
+        ("pos, other = None, 1\ndef step(): HERE = 1", "pos.x", "pos"),
+        ("pos = None\ndef step():\n    if pos is None:\n        return\n    HERE = 1", "pos", ""),
+        ("pos = None\ndef step():\n    if pos is None or done:\n        return\n    HERE = 1", "pos", ""),
+        ("pos = None\ndef step():\n    if pos is None and done:\n        return\n    HERE = 1", "pos", "pos"),
+        ("pos = None\ndef step():\n    if not pos:\n        return\n    HERE = 1", "pos", ""),
+        ("pos = None\ndef step():\n    while pos is None:\n        wait()\n    HERE = 1", "pos", ""),
+        ("pos = None\ndef step():\n    while pos is None:\n        break\n    HERE = 1", "pos", "pos"),
+        ("pos = None\ndef step():\n    if pos is not None and go:\n        HERE = 1", "pos", ""),
+        ("pos = None\ndef step():\n    if pos is not None or go:\n        HERE = 1", "pos", "pos"),
+        ("pos = None\ndef step():\n    if pos is not None:\n        pass\n    else:\n        HERE = 1", "pos", "pos"),
+        ("pos = None\ndef step():\n    delta = goal - pos\n    HERE = 1", "pos", ""),
+        ("pos = None\ndef step():\n    HERE = goal - pos", "pos", ""),
+        ("pos = None\ndef step():\n    while goal - pos > HERE:\n        pass", "pos", "pos"),
+        ("pos = None\ndef step():\n    HERE = goal - pos if go else 0", "pos", "pos"),
+        ("pos = None\ndef step():\n    HERE = lambda: goal - pos", "pos", "pos"),
+        ("pos = None\ndef step():\n    delta = go and goal - pos\n    HERE = 1", "pos", "pos"),
+        ("pos = None\ndef step():\n    for i in y:\n        delta = goal - pos\n    HERE = 1", "pos", "pos"),
+        ("pos = None\ndef step():\n    delta = pos.x\n    while go:\n        HERE = 1", "pos.x", ""),
+        ("def step(pos):\n    HERE = 1\ndef other():\n    pos = None", "pos", ""),
+    ],
+)  # fmt: skip
+def test_none_is_asked_for_where_the_code_around_does_not_exclude_it(
+    text: str, expression: str, absent: str
+) -> None:
+    assert choose(text, (expression,)) == Reading(expression, absent)
+
+
+@pytest.mark.parametrize(
+    ("text", "bound"),
+    [
+        (
+            "class N:\n    def __init__(self):\n        self.p = None\n    def step(self):\n        HERE = 1",
+            True,
+        ),
+        ("class N:\n    p = None\n    def step(self):\n        HERE = 1", True),
+        (
+            "class N:\n    def cb(self, m):\n        self.p = m.x\n    def step(self):\n        HERE = 1",
+            False,
+        ),
+        (
+            "class N:\n    def cb(self, m):\n        self.p = m.x\n    def step(self):\n        HERE = self.p",
+            True,
+        ),
+    ],
+)
+def test_an_attribute_that_only_a_callback_sets_is_used_where_the_code_reads_it_anyway(
+    text: str, bound: bool
+) -> None:
+    assert (choose(text, ("self.p",)) is not None) is bound
+
+
+@pytest.mark.parametrize(
+    ("text", "bound"),
+    [
+        ("def cb(m):\n    global p\n    p = m.x\ndef step(): HERE = 1", False),
+        ("def cb(m):\n    global p\n    p = m.x\ndef step(): HERE = p + 1", True),
+        ("p = 0.0\ndef step(): HERE = 1", True),
+        ("def step(p): HERE = 1", True),
+    ],
+)
+def test_a_global_that_only_a_callback_sets_is_used_where_the_code_reads_it_anyway(
+    text: str, bound: bool
+) -> None:
+    assert (choose(text, ("p",)) is not None) is bound
+
+
+@pytest.mark.parametrize("expression", ["latest()", "a + b", "cache[key]", "cache['x']"])
+def test_expressions_that_may_fail_or_act_are_not_asked(expression: str) -> None:
+    assert choose("cache = {}\na = b = key = 1.0\ndef step(): HERE = 1", (expression,)) is None

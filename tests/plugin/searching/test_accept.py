@@ -1,0 +1,86 @@
+"""Acceptance: what holds is taken, what does not is not, however lucky a few episodes are."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from pytest_tarl.searching.accept import LOOKS, Outcome, Reference, accept, interval, student_quantile
+
+
+def world(mean: float, spread: float = 0.3, passing: float = 1.0, seed: int = 0):
+    def run(episode: int) -> Outcome:
+        draws = np.random.default_rng([seed, episode])
+        return Outcome(float(draws.normal(mean, spread)), bool(draws.random() < passing))
+
+    return run
+
+
+REFERENCE = Reference([world(10.0)(i).total for i in range(1000, 1200)], 1.0, 0.5)
+SEEDS = range(LOOKS[-1])
+
+
+def test_a_repair_as_good_as_designed_is_accepted_early() -> None:
+    found = accept(world(10.0), world(10.0, seed=1), SEEDS, REFERENCE, 0.025)
+    assert found.accepted
+    assert len(found.drifted) <= LOOKS[2]
+    assert len(found.nominal) <= LOOKS[2]
+
+
+def test_a_repair_that_gains_too_little_is_refused_without_asking_the_nominal_world() -> None:
+    found = accept(world(8.0), world(10.0), SEEDS, REFERENCE, 0.025)
+    assert (found.accepted, found.reason, found.nominal) == (False, "gain too small", ())
+
+
+def test_a_repair_that_breaks_the_nominal_world_is_refused() -> None:
+    found = accept(world(10.0), world(7.0), SEEDS, REFERENCE, 0.025)
+    assert (found.accepted, found.reason) == (False, "nominal gets worse")
+
+
+def test_no_nominal_episode_is_run_where_the_guard_never_fires() -> None:
+    found = accept(world(10.0), None, SEEDS, REFERENCE, 0.025)
+    assert found.accepted
+    assert found.nominal == ()
+
+
+def test_missions_that_fail_count_even_when_the_reward_is_right() -> None:
+    found = accept(world(10.0, passing=0.7), None, SEEDS, REFERENCE, 0.025)
+    assert not found.accepted
+
+
+def test_a_repair_just_below_the_margin_is_rarely_accepted() -> None:
+    borderline = REFERENCE.mean - REFERENCE.margin
+    accepted = [accept(world(borderline, seed=s), None, SEEDS, REFERENCE, 0.05).accepted for s in range(200)]
+    assert sum(accepted) <= 15
+
+
+@pytest.mark.parametrize(
+    ("probability", "degrees", "expected"),
+    [(0.95, 7, 1.8946), (0.975, 10, 2.2281), (0.99, 20, 2.5280), (0.995, 8, 3.3554), (0.95, 1e6, 1.6449)],
+)
+def test_students_quantile_agrees_with_the_tables(
+    probability: float, degrees: float, expected: float
+) -> None:
+    assert student_quantile(probability, degrees) == pytest.approx(expected, rel=2e-3)
+
+
+def test_the_interval_covers_the_true_difference_as_often_as_it_says() -> None:
+    covered = 0
+    for seed in range(400):
+        draws = np.random.default_rng(seed)
+        lower, upper = interval(draws.normal(1, 2, 8).tolist(), draws.normal(0, 1, 100).tolist(), 0.05)
+        covered += lower <= 1 <= upper
+    assert 0.86 <= covered / 400 <= 0.95
+
+
+def test_rewards_that_never_vary_give_a_point() -> None:
+    lower, upper = interval([3.0] * 8, [3.0] * 20, 0.01)
+    assert lower == upper == 0.0
+    assert not math.isnan(lower)
+
+
+def test_looks_are_increasing() -> None:
+    assert all(a < b for a, b in itertools.pairwise(LOOKS))

@@ -1,0 +1,133 @@
+"""Candidate guards: proposals from region and novelty, and how often each holds."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from pytest_tarl import Sensor
+from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.learning.statistics import Sample, merge, sample
+from pytest_tarl.model import Conjunct, Guard, Region
+from pytest_tarl.searching.candidates import (
+    ALWAYS,
+    Evidence,
+    candidate_guards,
+    firing_episodes,
+    holds,
+    share,
+    telling,
+)
+from pytest_tarl.sensors import Cell
+
+X = Sensor("x", topic="/odom", field="x", low=0, high=10, bins=10)
+WET = Sensor("wet", topic="/wet", field="data")
+SEEN = Sensor("seen")  # observed only: no guard can read it
+
+
+def world(seed: int, cells: list[Cell]) -> Sample:
+    distinct = tuple(dict.fromkeys(cells))
+    steps = len(cells)
+    trace = Trace(
+        cells=distinct,
+        site=np.zeros(0, np.int32),
+        flow=np.zeros(0),
+        event_cell=np.zeros(0, np.int32),
+        event_step=np.zeros(0, np.int32),
+        step_cell=np.array([distinct.index(cell) for cell in cells], np.int32),
+        reward=np.zeros(steps),
+        parts={},
+    )
+    return sample(trace, seed, True, ())
+
+
+def drive(seed: int, wet: range, sensors: int = 2) -> Sample:
+    return world(seed, [(x, int(x in wet), 0)[:sensors] for x in range(10)])
+
+
+OFFLINE = merge([drive(1, range(0)), drive(2, range(4, 7))])
+ONLINE = drive(3, range(4, 7))
+REGION = Region(tuple((x, 1) for x in (4, 5, 6)))
+
+
+CHANGES = {(4, 1): 2.0, (5, 1): 2.0, (6, 1): 2.0, (8, 0): 0.1}
+
+
+def evidence(
+    region: Region,
+    sensors: tuple[Sensor, ...] = (X, WET),
+    worlds: tuple[Sample, Sample] = (OFFLINE, ONLINE),
+    changes: dict[Cell, float] | None = None,
+) -> Evidence:
+    return Evidence(sensors, *worlds, region, changes or {})
+
+
+def test_single_sensors_come_before_pairs_and_narrow_before_wide() -> None:
+    guards = candidate_guards(evidence(REGION))
+    assert guards[0] == ALWAYS
+    assert guards[1] == Guard((Conjunct(WET, 1.0, 1.0),))
+    assert guards[2] == Guard((Conjunct(X, 4.0, 7.0),))
+    sizes = [len(guard.conjuncts) for guard in guards]
+    assert sizes == sorted(sizes)
+    assert max(sizes) == 2
+
+
+def test_guards_to_search_under_hold_where_much_changed_and_seldom_elsewhere() -> None:
+    mixed = merge([drive(3, range(4, 7)), drive(4, range(0))])
+    seen = evidence(REGION, worlds=(OFFLINE, mixed), changes=CHANGES)
+    assert telling(candidate_guards(seen), seen, most=2) == (Guard((Conjunct(WET, 1.0, 1.0),)), ALWAYS)
+
+
+def test_changes_propose_a_guard_where_the_region_spans_everything() -> None:
+    spread = Region((*REGION.cells, (0, 0), (9, 0)))
+    seen = evidence(spread, changes=CHANGES)
+    assert Guard((Conjunct(WET, 1.0, 1.0),)) in candidate_guards(seen)
+    assert Guard((Conjunct(X, 4.0, 7.0),)) in candidate_guards(seen)
+    assert candidate_guards(evidence(spread)) == (ALWAYS,)
+
+
+def test_without_a_telling_guard_the_search_runs_without_one() -> None:
+    seen = evidence(REGION, changes={})
+    assert telling(candidate_guards(seen), seen, most=3) == (ALWAYS,)
+    assert telling((), seen, most=3) == (ALWAYS,)
+
+
+def test_a_sensor_that_no_node_can_read_is_in_no_guard() -> None:
+    online = drive(3, range(4, 7), 3)
+    guards = candidate_guards(evidence(Region(((4, 1, 0),)), (X, WET, SEEN), (online, online)))
+    assert all(conjunct.sensor != SEEN for guard in guards for conjunct in guard.conjuncts)
+
+
+def test_a_region_that_is_everywhere_proposes_no_condition() -> None:
+    everywhere = Region(tuple(ONLINE.cells))
+    dry = drive(1, range(0))
+    guards = candidate_guards(evidence(everywhere, worlds=(dry, drive(4, range(10)))))
+    assert all(conjunct.sensor == WET for guard in guards for conjunct in guard.conjuncts)
+
+
+def test_an_interval_is_open_where_nothing_lies_beyond() -> None:
+    guards = candidate_guards(evidence(Region(((8, 0), (9, 0)))))
+    assert Guard((Conjunct(X, 8.0, math.inf),)) in guards
+
+
+def test_novel_cells_propose_their_own_value() -> None:
+    seen = evidence(Region(((2, 0), (3, 0)), ((5, 1),)), worlds=(drive(1, range(0)), ONLINE))
+    guards = candidate_guards(seen)
+    assert Guard((Conjunct(WET, 1.0, 1.0),)) in guards
+
+
+@pytest.mark.parametrize(
+    ("cell", "expected"), [((4, 1), True), ((6, 1), True), ((7, 1), False), ((4, 0), False)]
+)
+def test_a_guard_holds_in_the_cells_of_its_bins(cell: Cell, expected: bool) -> None:
+    guard = Guard((Conjunct(X, 4.0, 7.0), Conjunct(WET, 1.0, 1.0)))
+    assert holds(guard, cell, (X, WET)) is expected
+
+
+def test_share_and_firing_episodes_count_steps_and_seeds() -> None:
+    guard = Guard((Conjunct(WET, 1.0, 1.0),))
+    assert share(guard, OFFLINE, (X, WET)) == 3 / 20
+    assert firing_episodes(guard, OFFLINE, (X, WET)) == (2,)
+    assert firing_episodes(ALWAYS, OFFLINE, (X, WET)) == (1, 2)

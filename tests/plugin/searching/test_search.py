@@ -1,0 +1,137 @@
+"""Searches on a small made-up world: the drift makes one gain too weak; others do nothing or harm."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.mutate import Mutation, mutations
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
+from pytest_tarl.searching.search import BudgetSpentError, Candidate, Goal, Pair, Trials, label
+from pytest_tarl.searching.sweep import Sweep
+from pytest_tarl.seeds import generator
+from tarl_lint.model import Operand, SiteId, Span
+
+OFFLINE = 10.0
+NEEDED = 3.1  # by how much the gain has to grow in the drifted world
+
+
+def operand(line: int, code: str, value: float) -> Operand:
+    span = Span("node.py", line, 5, line, 5 + len(code))
+    return Operand(SiteId("node", "run", f"x = {code}"), span, code, value, span)
+
+
+GAIN, BIAS, LIMIT = operand(3, "2.0", 2.0), operand(4, "0.0", 0.0), operand(5, "40", 40)
+OPERANDS = (BIAS, LIMIT, GAIN)
+
+
+def reward(mutation: Mutation | None, seed: int) -> float:
+    noise = float(np.random.default_rng(seed).normal(0, 0.2))
+    factor = 1.0
+    if mutation is not None and mutation.operand == GAIN:
+        factor = float(mutation.value) / 2.0
+    elif mutation is not None and mutation.operand == BIAS:
+        return -5.0 + noise
+    return OFFLINE - 6.0 * abs(math.log(NEEDED / factor)) + noise
+
+
+def run(candidate: Candidate, seed: int) -> Outcome:
+    total = reward(candidate.mutations[0], seed)
+    return Outcome(total, total > 5)
+
+
+GOAL = Goal(
+    tuple(Pair(seed, reward(None, seed)) for seed in range(10)), near=OFFLINE - 1.2, enough=OFFLINE - 1.0
+)
+
+
+def sweep(trials: Trials) -> Sweep:
+    return Sweep(OPERANDS, mutations, (ALWAYS,), trials, GOAL)
+
+
+def test_the_sweep_confirms_the_right_gain_and_ranks_it_first() -> None:
+    trials = Trials(run, 300)
+    search = sweep(trials)
+    found = next(search.candidates())
+    assert found.mutations[0].operand == GAIN
+    assert float(found.mutations[0].value) / 2.0 == pytest.approx(NEEDED, rel=0.2)
+    assert trials.spent < 40
+    effects = search.effects()
+    best = max(effects, key=lambda site: effects[site][0].effect)
+    assert best == str(GAIN.site)
+
+
+def test_every_run_is_paired_with_the_unmutated_run_of_its_seed() -> None:
+    trials = Trials(run, 300)
+    search = sweep(trials)
+    next(search.candidates())
+    for effects in search.effects().values():
+        for effect in effects:
+            if effect.code == "40":
+                assert effect.effect == pytest.approx(
+                    0.0, abs=1e-12
+                )  # same seed, no influence, no noise left
+
+
+def test_epsilon_greedy_finds_it_too_and_spends_more() -> None:
+    trials = Trials(run, 300)
+    seeds = range(1000, 1000 + EpsilonGreedy.episodes(300))
+    search = EpsilonGreedy(
+        OPERANDS, mutations, (ALWAYS,), trials, GOAL, seeds, generator(0, "epsilon-greedy")
+    )
+    goal = Goal(GOAL.pairs, near=OFFLINE - 3.0, enough=OFFLINE - 3.0)  # it knows the seven factors only
+    search.goal = goal
+    found = next(search.candidates())
+    assert found.mutations[0].operand == GAIN
+    assert trials.spent > 150
+    assert len(trials.labels) == len(trials.totals) == trials.spent
+
+
+def test_the_same_generator_gives_the_same_search() -> None:
+    def totals() -> list[float]:
+        trials = Trials(run, 120)
+        seeds = range(EpsilonGreedy.episodes(120))
+        search = EpsilonGreedy(
+            OPERANDS, mutations, (ALWAYS,), trials, GOAL, seeds, generator(5, "epsilon-greedy")
+        )
+        list(search.candidates())
+        return trials.totals
+
+    assert totals() == totals()
+
+
+def test_a_spent_budget_ends_the_search() -> None:
+    search = sweep(Trials(run, 4))
+    with pytest.raises(BudgetSpentError):
+        list(search.candidates())
+
+
+def test_an_episode_is_run_once_for_a_candidate_and_seed() -> None:
+    trials = Trials(run, 10)
+    mutation = mutations(GAIN, 2.2)
+    assert mutation is not None
+    candidate = Candidate((mutation,), ALWAYS)
+    assert trials(candidate, 1) == trials(candidate, 1)
+    assert trials.spent == 1
+
+
+def test_an_operand_that_cannot_be_written_is_passed_over() -> None:
+    def refusing(candidate: Candidate, seed: int) -> Outcome:
+        if candidate.mutations[0].operand == LIMIT:
+            raise RepairError("no way")
+        return run(candidate, seed)
+
+    search = sweep(Trials(refusing, 300))
+    assert next(search.candidates()).mutations[0].operand == GAIN
+    assert str(LIMIT.site) not in search.effects()
+
+
+def test_a_candidate_is_named_by_line_and_change() -> None:
+    mutation = mutations(GAIN, 2.2)
+    assert mutation is not None
+    assert label(Candidate((mutation,), ALWAYS)) == "line 3: 2.0 → 4.4"
