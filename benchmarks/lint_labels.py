@@ -84,7 +84,9 @@ def _compare(result: Score, pair: Pair, label: Mapping[str, Any], flow: Flow | N
     if data - allowed:
         result.remarks.append(f"{_shown(pair)} has data steps not labelled: {_lines(data - allowed)}")
     if steps - data - allowed:
-        result.remarks.append(f"{_shown(pair)} has control steps not labelled: {_lines(steps - data - allowed)}")
+        result.remarks.append(
+            f"{_shown(pair)} has control steps not labelled: {_lines(steps - data - allowed)}"
+        )
 
 
 def _shown(pair: Pair) -> str:
@@ -111,7 +113,9 @@ def read_labels(path: Path) -> list[Mapping[str, Any]]:
     except ValueError as error:
         sys.exit(f"{path} is not JSON ({error}): name a labels file.")
     wanted = ("repo", "path", "flows", "sinks_without_flow")
-    if not isinstance(nodes, list) or any(not isinstance(n, dict) or any(k not in n for k in wanted) for n in nodes):
+    if not isinstance(nodes, list) or any(
+        not isinstance(n, dict) or any(k not in n for k in wanted) for n in nodes
+    ):
         sys.exit(f"{path} is not a labels file: it must be a list of objects with {', '.join(wanted)}.")
     return nodes
 
@@ -134,7 +138,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
             left_out += 1
             continue
         analysis = analyses.setdefault(home, analyse([home]))
-        flows = [f for f in analysis.flows if _same(f.sink.span.path, file) and _same(f.source.span.path, file)]
+        flows = [
+            f for f in analysis.flows if _same(f.sink.span.path, file) and _same(f.source.span.path, file)
+        ]
         one = score(node, flows)
         print(f"{node['repo']} {node['path']}: {len(flows)} flows, {len(node['flows'])} labelled")
         for remark in one.remarks:

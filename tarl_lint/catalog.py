@@ -19,6 +19,8 @@ class Fact:
     extra: tuple[int, str] = (-1, "")
 
 
+NO_FACT: Final = Fact("", "")
+
 ROSPY_SUBSCRIBER = Fact(
     "subscribe", "rospy.Subscriber", (0, "name"), (1, "data_class"), (2, "callback"), (3, "callback_args")
 )
@@ -98,7 +100,11 @@ PARAMETER_VALUES: Final = frozenset(
     ["value", "double_value", "integer_value", "bool_value", "string_value", "get_parameter_value"]
 )
 
-SOURCE_WORDS: Final = ("Subscriber", "create_subscription", "wait_for_message")  # a file without them has no source
+SOURCE_WORDS: Final = (
+    "Subscriber",
+    "create_subscription",
+    "wait_for_message",
+)  # a file without them has no source
 SINK_WORDS: Final = ("publish",)
 
 WAITS: Final = frozenset(

@@ -138,7 +138,9 @@ class Holding:
                 if self._intact(name, rest, obj, origins, topic):
                     found.append((name + _spelled(rest), self.fresh[name]))
                 break
-        new = [text for text, fresh in found if fresh]  # beside a new message, what an earlier one left is stale
+        new = [
+            text for text, fresh in found if fresh
+        ]  # beside a new message, what an earlier one left is stale
         texts = new or [text for text, _ in found]
         return tuple(sorted(texts, key=lambda text: (text.count("."), len(text), text)))
 

@@ -18,7 +18,19 @@ NOT_BEHAVIOUR: Final = frozenset(
 )  # fmt: skip
 PARAMETER_CALLS: Final = frozenset(["get_param"])
 LOGGING: Final = frozenset(
-    ["info", "debug", "warn", "warning", "error", "fatal", "loginfo", "logdebug", "logwarn", "logerr", "print"]
+    [
+        "info",
+        "debug",
+        "warn",
+        "warning",
+        "error",
+        "fatal",
+        "loginfo",
+        "logdebug",
+        "logwarn",
+        "logerr",
+        "print",
+    ]
 )
 
 
@@ -93,9 +105,9 @@ def _parts(expr: ir.Expr) -> Sequence[ir.Expr]:
         return () if expr.operator == "text" else expr.parts
     if isinstance(expr, ir.Choice):
         return (expr.test, expr.then, expr.other)
-    if isinstance(expr, ir.Sequence_):
+    if isinstance(expr, ir.SequenceDisplay):
         return expr.items
-    if isinstance(expr, ir.Mapping_):
+    if isinstance(expr, ir.MappingDisplay):
         return [value for _, value in expr.items]
     if isinstance(expr, ir.Comprehension):
         return [expr.element, *(c for _, _, conditions in expr.loops for c in conditions)]

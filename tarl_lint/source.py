@@ -48,7 +48,9 @@ def parse(path: str, data: bytes, name: str) -> Module | SourceError:
         return decoded
     if "\0" in decoded:
         line = decoded.count("\n", 0, decoded.index("\0")) + 1
-        return SourceError(path, line, "The file holds a null byte, so it is not Python source: leave it out.")
+        return SourceError(
+            path, line, "The file holds a null byte, so it is not Python source: leave it out."
+        )
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # invalid escapes and the like are another linter's business
@@ -63,7 +65,7 @@ def parse(path: str, data: bytes, name: str) -> Module | SourceError:
 
 
 def _decode(path: str, data: bytes) -> str | SourceError:
-    """Return the text with `\\n` line ends and without byte order mark."""
+    """Return the text with line feeds at the ends of lines and without byte order mark."""
     try:
         encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
         text = data.decode(encoding)
@@ -72,7 +74,9 @@ def _decode(path: str, data: bytes) -> str | SourceError:
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         return SourceError(
-            path, line, f"The bytes are not valid {error.encoding}: name the encoding in the first line or save as UTF-8."
+            path,
+            line,
+            f"The bytes are not valid {error.encoding}: name the encoding in the first line or save as UTF-8.",
         )
     except LookupError as error:
         return SourceError(path, 1, f"The encoding is not known: {error}. Save the file as UTF-8.")

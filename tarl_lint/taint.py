@@ -11,7 +11,7 @@ from tarl_lint.valueflow.context import Surroundings
 from tarl_lint.valueflow.graph import Place
 from tarl_lint.valueflow.link import Linker
 from tarl_lint.valueflow.machine import SinkRecord, SourceRecord
-from tarl_lint.valueflow.sites import Text, Texts, Written
+from tarl_lint.valueflow.sites import Texts, Written
 
 ROLES: Mapping[str, Role] = {
     "Return": "return",

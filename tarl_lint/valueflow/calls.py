@@ -2,33 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
-
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.evaluate import Evaluation
-from tarl_lint.valueflow.heap import BORN, item_field
-from tarl_lint.valueflow.machine import MAX_CALLS, MAX_FRAMES, MAX_STATEMENTS, Arguments
-from tarl_lint.valueflow.store import Delta
+from tarl_lint.valueflow.activations import CALLABLE, Activations
+from tarl_lint.valueflow.heap import item_field
+from tarl_lint.valueflow.machine import Arguments
 from tarl_lint.valueflow.values import (
-    ABSENT,
     BOTTOM,
-    NONE,
-    UNKNOWN,
-    ClassInfo,
     Frame,
-    Nodes,
     Obj,
     Value,
     join,
-    lineage,
     pointer,
 )
 
-CALLABLE = frozenset(["closure", "bound", "class", "ext", "partial", "method"])
-ROOT_CALL = ir.Call(ir.Const(None, (0, 0, 0, 0)), (), (), (0, 0, 0, 0), 0)
 
-
-class Calls(Evaluation):
+class Calls(Activations):
     """Resolves and performs calls."""
 
     def call(self, expr: ir.Call, frame: Frame) -> Value:
@@ -153,217 +141,12 @@ class Calls(Evaluation):
                 return self.call_value(member, arguments, frame, call)
         return self.call_method(pointer(target), target, "__call__", arguments, frame, call)
 
-    def all_used(self, arguments: Arguments) -> Nodes:
-        """Return the nodes of all data among the arguments."""
-        plain, named = arguments
-        deps = NONE
-        for value in (*plain, *named.values()):
-            deps |= self.use(value)
-        return deps
-
     # --- functions of ours --------------------------------------------------------------------------------
-
-    def make_frame(
-        self, closure: Obj, caller: Frame, call: ir.Call, receiver: Hashable, owner: Obj | None
-    ) -> Frame | None:
-        """Return the activation for this call, None when it would be one too many."""
-        if not isinstance(closure.info, tuple):
-            return None
-        function, outer, program, cls = closure.info
-        if self.spent > MAX_STATEMENTS or len(self.stack) > MAX_CALLS or sum(f.function is function for f in self.stack) > 1:
-            return None
-        statement = caller.statement.id if caller.statement is not None else -1
-        key = (caller.id, statement, call.slot, closure.key, receiver)
-        frame = self.frames.get(key)
-        if frame is None:
-            if len(self.frames) > MAX_FRAMES:
-                return None
-            frame = Frame(key, len(self.frames) + 1, function, program, self.module_objects[program.name])
-            self.frames[key] = frame
-            frame.caller, frame.call, frame.slot, frame.outer = caller, caller.statement, call.slot, outer
-            frame.base = self.branches(caller, caller.statement)
-            frame.call_pos = call.pos
-            frame.owner = owner or cls
-        return frame
-
-    def invoke(
-        self, closure: Obj, arguments: Arguments, caller: Frame, call: ir.Call, owner: Obj | None = None
-    ) -> Value:
-        """Run a function on arguments."""
-        receiver = arguments[0][0].pts if owner is not None and arguments[0] else None
-        frame = self.make_frame(closure, caller, call, receiver, owner)
-        if frame is None:
-            return self._again(closure, arguments)
-        self.called.add((frame.function.module, frame.function.pos[0]))
-        passed = self.pass_arguments(arguments, caller, call)
-        self.store.push()
-        depth = len(self.store.layers) - 1
-        frame.depth_of_layers = depth
-        frame.root_waits = caller.root_waits
-        frame.jumps, frame.tries = [], []
-        self.bind_parameters(frame, closure, passed)
-        self.stack.append(frame)
-        result = self.run(frame)
-        self.stack.pop()
-        del self.store.layers[depth:]
-        self.merge([d for d, _ in frame.returns] or [{}])
-        if frame.function.generator:
-            collected = self.allocate("sequence", caller, ("generator", call.slot))
-            self.add_element(pointer(collected), frame.yielded)
-            return pointer(collected)
-        return result
-
-    def _again(self, closure: Obj, arguments: Arguments) -> Value:
-        """Return the result of a recursive call: what is known by now, and data of the arguments."""
-        known = BOTTOM
-        for frame in self.stack:
-            if frame.key[3] == closure.key if isinstance(frame.key, tuple) and len(frame.key) > 3 else False:
-                known = join(known, frame.result)
-        return join(known, Value(self.all_used(arguments)))
-
-    def pass_arguments(self, arguments: Arguments, caller: Frame, call: ir.Call) -> Arguments:
-        """Let each argument pass through the calling statement."""
-        plain, named = arguments
-        shift = len(plain) - len(call.arguments)
-        passed: list[Value] = []
-        for number, value in enumerate(plain):
-            if _receiver(value) or caller.statement is None:
-                passed.append(value)
-                continue
-            node = self.node(caller, ("argument", call.slot, number), "call")
-            if 0 <= number - shift < len(call.arguments):
-                self.mark(node, call.arguments[number - shift], value, caller)
-            passed.append(self.carry(value, node))
-        keywords = dict(call.keywords)
-        renamed: dict[str, Value] = {}
-        for name, value in named.items():
-            if caller.statement is None:
-                renamed[name] = value
-                continue
-            node = self.node(caller, ("argument", call.slot, name), "call")
-            if name in keywords:
-                self.mark(node, keywords[name], value, caller)
-            renamed[name] = self.carry(value, node)
-        return passed, renamed
-
-    def bind_parameters(self, frame: Frame, closure: Obj, arguments: Arguments) -> None:
-        """Store arguments under the parameters' names."""
-        plain, named = list(arguments[0]), dict(arguments[1])
-        rest, mapping = named.pop("*", None), named.pop("**", None)
-        frame.arguments = [*plain, *named.values()]
-        for parameter in frame.function.parameters:
-            if parameter.kind == "star":
-                obj = self.allocate("sequence", frame, ("rest", parameter.name))
-                for number, value in enumerate(plain):
-                    self.store.put((obj, item_field(number)), value)
-                if rest is not None:
-                    self.add_element(pointer(obj), rest)
-                value, plain = pointer(obj), []
-            elif parameter.kind == "mapping":
-                obj = self.allocate("mapping", frame, ("rest", parameter.name))
-                for name, value in named.items():
-                    self.store.put((obj, item_field(name)), value)
-                if mapping is not None:
-                    self.absorb(obj, mapping)
-                value, named = pointer(obj), {}
-            elif parameter.kind == "plain" and plain:
-                value = plain.pop(0)
-            elif parameter.name in named:
-                value = named.pop(parameter.name)
-            else:
-                value = self._missing(parameter, closure, rest, mapping)
-            self.store.put((frame, parameter.name), value)
-
-    def _missing(
-        self, parameter: ir.Parameter, closure: Obj, rest: Value | None, mapping: Value | None
-    ) -> Value:
-        """Return what a parameter is that no argument names."""
-        value = self.store.get((closure, parameter.name)) if parameter.default is not None else None
-        result = BOTTOM if value is None else value
-        if rest is not None and parameter.kind == "plain":
-            result = join(result, rest)
-        if mapping is not None:
-            for obj in mapping.pts:
-                stored = self.store.get((obj, item_field(parameter.name)))
-                result = join(result, self.arrive(stored or self.content(obj), mapping.deps))
-        return result if result is not BOTTOM else UNKNOWN
 
     # --- classes of ours ----------------------------------------------------------------------------------
 
-    def instantiate(self, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-        """Make an instance and run its `__init__`."""
-        statement = frame.statement.id if frame.statement is not None else -1
-        obj = self.intern("instance", (frame.id, statement, call.slot, cls.key), cls.name)
-        obj.info = cls
-        self.store.put((obj, BORN), BOTTOM)
-        self.made.add(cls.key)
-        for owner in lineage(cls):
-            init = self.store.get((owner, "__init__"))
-            if init is not None:
-                self.call_value(self.bind(init, obj, owner), arguments, frame, call)
-                break
-        else:
-            self._fill(obj, cls, arguments, frame, call)
-        self.instance_made(obj, cls, frame)
-        return pointer(obj)
-
-    def _fill(self, obj: Obj, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-        """Store the arguments as a dataclass or named tuple does."""
-        plain, named = self.pass_arguments(arguments, frame, call)
-        info = cls.info
-        names = info.fields if isinstance(info, ClassInfo) else ()
-        for name, value in zip(names, plain, strict=False):
-            self.store.put((obj, name), value)
-        for name, value in named.items():
-            self.store.put((obj, name), value)
-
-    def instance_made(self, obj: Obj, cls: Obj, frame: Frame) -> None:
-        """Tell who runs methods of such objects on their own (threads)."""
-
     # --- joining states -----------------------------------------------------------------------------------
-
-    def merge(self, deltas: Sequence[Delta]) -> None:
-        """Let the state be what it is after any of several continuations of it."""
-        for key, value in self.joined(deltas).items():
-            self.store.put(key, value)
-
-    def joined(self, deltas: Sequence[Delta]) -> Delta:
-        """Return the join of continuations of the present state."""
-        if len(deltas) == 1:
-            return deltas[0]
-        keys: dict[tuple[Obj, str], None] = {}
-        for delta in deltas:
-            keys.update(dict.fromkeys(delta))
-        result: Delta = {}
-        for key in keys:
-            value: Value | None = None
-            for delta in deltas:
-                here = delta.get(key)
-                if here is None or here is ABSENT:
-                    here = self._former(key) if here is None else self.default(*key)
-                if here is not None:
-                    value = here if value is None else join(value, here)
-            if value is not None:
-                result[key] = value
-        return result
-
-    def _former(self, key: tuple[Obj, str]) -> Value | None:
-        """Return what a continuation that does not store leaves."""
-        value = self.store.get(key)
-        if value is not None:
-            return value
-        owner, name = key
-        if owner.kind in ("frame", "module", "class", "closure"):
-            return None
-        if owner.kind != "message" and self.store.get((owner.root(), BORN)) is None:
-            return None  # the object does not exist there
-        return self.content(owner) if name == "*" else self.default(owner, name)
 
 
 def _order(obj: Obj) -> str:
     return f"{obj.kind}{obj.key}"
-
-
-def _receiver(value: Value) -> bool:
-    """Tell whether an argument is an object of ours, which needs no node to be followed."""
-    return bool(value.pts) and not value.deps and all(o.kind in ("instance", "class") for o in value.pts)

@@ -60,5 +60,3 @@ class Surroundings:
                     edges[id(around), id(inner)] = None
                 inner = around
             around = around.around
-
-

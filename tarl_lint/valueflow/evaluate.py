@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import builtins
-import operator
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from tarl_lint.catalog import fact
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.heap import ANY, Heap, item_field
+from tarl_lint.valueflow.displays import Displays
+from tarl_lint.valueflow.heap import item_field
 from tarl_lint.valueflow.values import (
     BOTTOM,
     NONE,
     UNKNOWN,
-    ClassInfo,
     Frame,
-    Nodes,
     Obj,
     Value,
     const,
@@ -24,28 +22,10 @@ from tarl_lint.valueflow.values import (
     pointer,
 )
 
-FOLDED: Mapping[str, Callable[..., object]] = {
-    "+": operator.add,
-    "-": operator.sub,
-    "*": operator.mul,
-    "/": operator.truediv,
-    "%": operator.mod,
-    "neg": operator.neg,
-    "not": operator.not_,
-    "==": operator.eq,
-    "!=": operator.ne,
-    "is": lambda a, b: a is b or a == b,
-    "is not": lambda a, b: not (a is b or a == b),
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-}
 BUILTINS = frozenset(dir(builtins))
-MAX_TEXT = 300
 
 
-class Evaluation(Heap):
+class Evaluation(Displays):
     """Evaluates expressions."""
 
     def evaluate(self, expr: ir.Expr, frame: Frame) -> Value:
@@ -55,10 +35,10 @@ class Evaluation(Heap):
             self.probe(self, frame, frame.statement, expr, value)
         return value
 
-    def constant(self, expr: ir.Const, frame: Frame) -> Value:  # noqa: ARG002 - one signature for all
+    def _constant(self, expr: ir.Const, frame: Frame) -> Value:  # noqa: ARG002 - one signature for all
         return const(expr.value)
 
-    def name(self, expr: ir.Name, frame: Frame) -> Value:
+    def _name(self, expr: ir.Name, frame: Frame) -> Value:
         value = self.store.get((self.holder(expr, frame), expr.name))
         if value is not None:
             return value
@@ -96,7 +76,7 @@ class Evaluation(Heap):
         """Return a library's function, class or module."""
         return pointer(self.intern("ext", qualified, qualified))
 
-    def attribute(self, expr: ir.Attribute, frame: Frame) -> Value:
+    def _attribute(self, expr: ir.Attribute, frame: Frame) -> Value:
         base = self.evaluate(expr.base, frame)
         value = self.read(base, expr.name)
         for obj in value.pts:
@@ -115,7 +95,7 @@ class Evaluation(Heap):
             for d in function.decorators
         )
 
-    def item(self, expr: ir.Item, frame: Frame) -> Value:
+    def _item(self, expr: ir.Item, frame: Frame) -> Value:
         base = self.evaluate(expr.base, frame)
         index = self.evaluate(expr.index, frame)
         return self.read_item(base, index)
@@ -143,79 +123,13 @@ class Evaluation(Heap):
             return BOTTOM
         return self.read_field(obj, name)
 
-    def slice(self, expr: ir.Slice, frame: Frame) -> Value:
+    def _slice(self, expr: ir.Slice, frame: Frame) -> Value:
         deps = NONE
         for part in expr.parts:
             deps |= self.use(self.evaluate(part, frame))
         return Value(deps)
 
-    def operation(self, expr: ir.Operation, frame: Frame) -> Value:
-        values = [self.evaluate(p, frame) for p in expr.parts]
-        if expr.operator in ("or", "and"):
-            return self.boolean(expr.operator, values)
-        if expr.operator == "+=" and values[0].pts:
-            self.add_element(values[0], self.elements(values[1]))
-            return Value(values[0].deps | values[1].deps, values[0].pts)
-        deps = NONE
-        for value in values:
-            deps |= self.tested(expr.operator, value)
-        return Value(deps, consts=self.fold(expr.operator, values))
-
-    def tested(self, name: str, value: Value) -> Nodes:
-        """Return the nodes whose data an operator uses. Whether a message is there at all is not data of it."""
-        if name in ("is", "is not"):
-            return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind != "message")))
-        return self.truth(value) if name == "not" else self.use(value)
-
-    def truth(self, value: Value) -> Nodes:
-        """Return the nodes that decide whether a value counts as true: a whole message always does."""
-        kept = frozenset(o for o in value.pts if o.kind != "message" or o.parent is not None)
-        return self.use(value if len(kept) == len(value.pts) else Value(value.deps, kept))
-
-    def boolean(self, name: str, values: list[Value]) -> Value:
-        """Return what `a or b` may be: one of them, decided by the former."""
-        result, deps = BOTTOM, NONE
-        for value in values:
-            known, constant = value.constant()
-            decided = known and not value.deps and bool(constant) is (name == "or")
-            passed = known and not value.deps and not decided and value is not values[-1]
-            deps |= self.truth(value)
-            if not passed:
-                result = join(result, value)
-            if decided:
-                break
-        return Value(result.deps | deps, result.pts, result.consts)
-
-    def fold(self, name: str, values: list[Value]) -> frozenset[object] | None:
-        """Return the constants that an operator makes of constants."""
-        if name == "text":
-            return self._fold_text(values)
-        function = FOLDED.get(name)
-        if function is None or any(v.pts for v in values):
-            return None if any(v.pts or v.consts is None for v in values) or function is None else frozenset()
-        constants: list[Any] = []
-        for value in values:
-            known, constant = value.constant()
-            if not known:
-                return None
-            constants.append(constant)
-        try:
-            result = function(*constants)
-        except Exception:  # noqa: BLE001 - whatever the operands do, the result is then not known
-            return None
-        return None if isinstance(result, (str, bytes)) and len(result) > MAX_TEXT else frozenset([result])
-
-    def _fold_text(self, values: list[Value]) -> frozenset[object] | None:
-        texts = [""]
-        for value in values:
-            if not value.consts or value.pts:
-                return None
-            texts = [t + str(c) for t in texts for c in sorted(value.consts, key=str)]
-            if len(texts) > 4 or len(texts[0]) > MAX_TEXT:
-                return None
-        return frozenset(texts)
-
-    def choice(self, expr: ir.Choice, frame: Frame) -> Value:
+    def _choice(self, expr: ir.Choice, frame: Frame) -> Value:
         test = self.evaluate(expr.test, frame)
         known, constant = test.constant()
         if known and not test.deps:
@@ -226,97 +140,16 @@ class Evaluation(Heap):
         both = join(then, other)
         return Value(both.deps | {node}, both.pts, both.consts)
 
-    def sequence(self, expr: ir.Sequence_, frame: Frame) -> Value:
-        obj = self.allocate("sequence", frame, ("display", expr.slot))
-        items = [(i, self.evaluate(i.value if isinstance(i, ir.Starred) else i, frame)) for i in expr.items]
-        where = pointer(obj)
-        exact = True
-        for number, (item, value) in enumerate(items):
-            value = self.entry(item, value, frame, (expr.slot, number))
-            if isinstance(item, ir.Starred):
-                exact = False
-                self.add_element(where, self.elements(value))
-            elif exact:
-                self.store.put((obj, item_field(number)), value)
-            else:
-                self.add_element(where, value)
-        return where
-
-    def mapping(self, expr: ir.Mapping_, frame: Frame) -> Value:
-        obj = self.allocate("mapping", frame, ("display", expr.slot))
-        where = pointer(obj)
-        for key, item in expr.items:
-            value = self.entry(item, self.evaluate(item, frame), frame, (expr.slot, item.pos))
-            if key is None:
-                self.absorb(obj, value)
-            else:
-                self.write_item(where, self.evaluate(key, frame), value)
-        return where
-
-    def entry(self, expr: ir.Expr, value: Value, frame: Frame, slot: object) -> Value:
-        """Return an element of a display; numbers get a node of their own, so that they are found again."""
-        if not isinstance(expr, ir.Const) or not isinstance(expr.value, (int, float)):
-            return value
-        node = self.node(frame, ("entry", slot), "assign")
-        self.mark(node, expr, value, frame)
-        return self.carry(value, node)
-
-    def absorb(self, obj: Obj, value: Value) -> None:
-        """Copy the elements of what a value may be into an object."""
-        for source in value.pts:
-            for name in list(source.fields):
-                stored = self.store.get((source, name))
-                if stored is not None and (name.startswith("[") or name == ANY):
-                    self.weaken(obj, name, self.arrive(stored, value.deps))
-            content = self.content(source)
-            if content.deps and self.store.get((source, ANY)) is None:
-                self.add_element(pointer(obj), content)
-        if not value.pts and value.deps:
-            self.add_element(pointer(obj), Value(value.deps))
-
-    def elements(self, value: Value) -> Value:
-        """Return what iterating over a value gives."""
-        if not value.pts:
-            return Value(value.deps)
-        result = Value(value.deps, consts=frozenset())
-        for obj in value.pts:
-            if obj.kind == "instance":
-                result = join(result, Value(self.deep(frozenset([obj]))))
-            elif obj.kind == "mapping":
-                result = join(result, UNKNOWN)  # its keys
-            else:
-                result = join(result, self.arrive(self.read_any(obj), value.deps))
-        return result
-
-    def comprehension(self, expr: ir.Comprehension, frame: Frame) -> Value:
-        kind = "mapping" if expr.key is not None else "sequence"
-        obj = self.allocate(kind, frame, ("display", expr.slot))
-        deps = NONE
-        for target, source, conditions in expr.loops:
-            self.assign(target, self.elements(self.evaluate(source, frame)), frame)
-            for condition in conditions:
-                deps |= self.use(self.evaluate(condition, frame))
-        element = self.evaluate(expr.element, frame)
-        if deps:
-            node = self.node(frame, ("filter", expr.slot), "condition")
-            self.graph.control[node].update(deps)
-            element = Value(element.deps | {node}, element.pts, element.consts)
-        if expr.key is not None:
-            self.write_item(pointer(obj), self.evaluate(expr.key, frame), element)
-        else:
-            self.add_element(pointer(obj), element)
-        return pointer(obj)
-
-    def starred(self, expr: ir.Starred, frame: Frame) -> Value:
+    def _starred(self, expr: ir.Starred, frame: Frame) -> Value:
         return self.evaluate(expr.value, frame)
 
-    def walrus(self, expr: ir.Walrus, frame: Frame) -> Value:
+    def _walrus(self, expr: ir.Walrus, frame: Frame) -> Value:
         node = self.node(frame, ("walrus", expr.slot), "assign")
         value = self.carry(self.evaluate(expr.value, frame), node)
         self.assign(expr.target, value, frame)
         return value
 
-    def yield_(self, expr: ir.Yield, frame: Frame) -> Value:
+    def _yield(self, expr: ir.Yield, frame: Frame) -> Value:
         value = self.evaluate(expr.value, frame)
         if expr.kind == "await":
             self.wait(frame)
@@ -324,7 +157,7 @@ class Evaluation(Heap):
         frame.yielded = join(frame.yielded, self.elements(value) if expr.kind == "from" else value)
         return UNKNOWN
 
-    def lambda_(self, expr: ir.Lambda, frame: Frame) -> Value:
+    def _lambda(self, expr: ir.Lambda, frame: Frame) -> Value:
         return self.closure(expr.function, frame, expr.slot)
 
     def closure(self, function: ir.Function, frame: Frame, slot: object) -> Value:
@@ -350,40 +183,21 @@ class Evaluation(Heap):
         self.mark(node, parameter.default, value, frame)
         return self.carry(value, node)
 
-    def mark(self, node: int, expr: ir.Expr, value: Value, frame: Frame) -> None:
-        """Note that a node is a constant, or passes on another unchanged."""
-        known, constant = value.constant()
-        if isinstance(expr, (ir.Name, ir.Attribute, ir.Item)) or _conversion(expr):
-            self.graph.copies.add(node)
-        elif known and isinstance(constant, (bool, int, float)):
-            self.graph.literals[node] = (constant, expr.pos, frame.program.path)
-
-    def class_of(self, obj: Obj) -> ClassInfo | None:
-        """Return the class of an instance or class object."""
-        cls = obj.info if obj.kind == "instance" else obj
-        info = cls.info if isinstance(cls, Obj) else None
-        return info if isinstance(info, ClassInfo) else None
-
-
-def _conversion(expr: ir.Expr) -> bool:
-    """Tell whether an expression is `float(x)`, which leaves the number what it is."""
-    return isinstance(expr, ir.Call) and isinstance(expr.function, ir.Name) and expr.function.name == "float"
-
 
 EVALUATE: Mapping[type, Callable[[Any, Any, Frame], Value]] = {
-    ir.Const: Evaluation.constant,
-    ir.Name: Evaluation.name,
-    ir.Attribute: Evaluation.attribute,
-    ir.Item: Evaluation.item,
-    ir.Slice: Evaluation.slice,
+    ir.Const: Evaluation._constant,
+    ir.Name: Evaluation._name,
+    ir.Attribute: Evaluation._attribute,
+    ir.Item: Evaluation._item,
+    ir.Slice: Evaluation._slice,
     ir.Call: lambda machine, expr, frame: machine.call(expr, frame),
-    ir.Operation: Evaluation.operation,
-    ir.Choice: Evaluation.choice,
-    ir.Sequence_: Evaluation.sequence,
-    ir.Mapping_: Evaluation.mapping,
-    ir.Comprehension: Evaluation.comprehension,
-    ir.Starred: Evaluation.starred,
-    ir.Walrus: Evaluation.walrus,
-    ir.Yield: Evaluation.yield_,
-    ir.Lambda: Evaluation.lambda_,
+    ir.Operation: Evaluation._operation,
+    ir.Choice: Evaluation._choice,
+    ir.SequenceDisplay: Evaluation._sequence,
+    ir.MappingDisplay: Evaluation._mapping,
+    ir.Comprehension: Evaluation._comprehension,
+    ir.Starred: Evaluation._starred,
+    ir.Walrus: Evaluation._walrus,
+    ir.Yield: Evaluation._yield,
+    ir.Lambda: Evaluation._lambda,
 }

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.branches import Branches
 from tarl_lint.valueflow.control import control_dependence
 from tarl_lint.valueflow.lower import lower_body
-from tarl_lint.valueflow.ros import Ros
-from tarl_lint.valueflow.store import Delta
 from tarl_lint.valueflow.values import (
     BOTTOM,
     UNKNOWN,
@@ -22,10 +21,8 @@ from tarl_lint.valueflow.values import (
     pointer,
 )
 
-MAX_PASSES = 12  # over a loop's body; a safety net, since the values that can arise are finite
 
-
-class Execution(Ros):
+class Execution(Branches):
     """Executes statements. A block tells whether execution can go on after it."""
 
     def run(self, frame: Frame) -> Value:
@@ -53,7 +50,7 @@ class Execution(Ros):
 
     # --- simple statements --------------------------------------------------------------------------------
 
-    def assignment(self, s: ir.Assign, frame: Frame) -> bool:
+    def _assignment(self, s: ir.Assign, frame: Frame) -> bool:
         value = self.evaluate(s.value, frame)
         frame.statement = s
         for number, target in enumerate(s.targets):
@@ -62,7 +59,7 @@ class Execution(Ros):
 
     def bind_target(self, target: ir.Expr, value: Value, frame: Frame, slot: str, source: ir.Expr) -> None:
         """Let a value pass through the statement into a target, element by element."""
-        if isinstance(target, ir.Sequence_):
+        if isinstance(target, ir.SequenceDisplay):
             self.unpack(target, value, frame, slot, source)
             return
         if isinstance(target, ir.Starred):
@@ -71,7 +68,9 @@ class Execution(Ros):
         self.mark(node, source, value, frame)
         self.assign(target, self.carry(value, node), frame)
 
-    def unpack(self, target: ir.Sequence_, value: Value, frame: Frame, slot: str, source: ir.Expr) -> None:
+    def unpack(
+        self, target: ir.SequenceDisplay, value: Value, frame: Frame, slot: str, source: ir.Expr
+    ) -> None:
         """Take a value apart."""
         starred = next((n for n, t in enumerate(target.items) if isinstance(t, ir.Starred)), None)
         for number, item in enumerate(target.items):
@@ -84,7 +83,7 @@ class Execution(Ros):
             else:
                 part = self.read_item(value, const(number))
             expr = source
-            if isinstance(source, ir.Sequence_) and number < len(source.items) and starred is None:
+            if isinstance(source, ir.SequenceDisplay) and number < len(source.items) and starred is None:
                 expr = source.items[number]
             self.bind_target(item, part, frame, f"{slot}.{number}", expr)
 
@@ -105,7 +104,7 @@ class Execution(Ros):
                 self.write_item(base, index, value)
             else:
                 self.assign_fallback(target.base, value, frame)
-        elif isinstance(target, ir.Sequence_):
+        elif isinstance(target, ir.SequenceDisplay):
             for number, item in enumerate(target.items):
                 self.assign(item, self.read_item(value, const(number)), frame)
         elif isinstance(target, ir.Starred):
@@ -135,11 +134,11 @@ class Execution(Ros):
             before = self.evaluate(expr, frame)
             self.assign(expr, Value(before.deps | self.use(value), before.pts), frame)
 
-    def expression(self, s: ir.Evaluate, frame: Frame) -> bool:
+    def _expression(self, s: ir.Evaluate, frame: Frame) -> bool:
         self.evaluate(s.value, frame)
         return True
 
-    def returned(self, s: ir.Return, frame: Frame) -> bool:
+    def _returned(self, s: ir.Return, frame: Frame) -> bool:
         value = self.evaluate(s.value, frame) if s.value is not None else const(None)
         frame.statement = s
         if s.value is not None:
@@ -153,7 +152,7 @@ class Execution(Ros):
         """Return the number of layers below a frame's own."""
         return frame.depth_of_layers
 
-    def raised(self, s: ir.Raise, frame: Frame) -> bool:
+    def _raised(self, s: ir.Raise, frame: Frame) -> bool:
         if s.value is not None:
             self.evaluate(s.value, frame)
         if frame.tries:
@@ -161,13 +160,13 @@ class Execution(Ros):
             states.append(self.store.since(depth))
         return False
 
-    def jump(self, s: ir.Jump, frame: Frame) -> bool:
+    def _jump(self, s: ir.Jump, frame: Frame) -> bool:
         if frame.jumps:
             depth, table = frame.jumps[-1]
             table[s.kind].append(self.store.since(depth))
         return False
 
-    def delete(self, s: ir.Delete, frame: Frame) -> bool:
+    def _delete(self, s: ir.Delete, frame: Frame) -> bool:
         for target in s.targets:
             if isinstance(target, ir.Name):
                 self.store.put((self.holder(target, frame), target.name), UNKNOWN)
@@ -175,137 +174,9 @@ class Execution(Ros):
 
     # --- branches -----------------------------------------------------------------------------------------
 
-    def decide(self, test: ir.Expr, s: ir.Stmt, frame: Frame) -> bool | None:
-        """Evaluate a condition; return which way it goes when a constant tells."""
-        node = self.condition(frame, s)
-        value = self.evaluate(test, frame)
-        frame.statement = s
-        self.graph.flow(self.truth(value), node)
-        known, constant = value.constant()
-        if value.consts and not value.pts and not known:
-            ways = {bool(c) for c in value.consts}
-            return ways.pop() if len(ways) == 1 else None
-        return bool(constant) if known else None
-
-    def if_(self, s: ir.If, frame: Frame) -> bool:
-        way = self.decide(s.test, s, frame)
-        if way is not None:
-            return self.block(s.body if way else s.orelse, frame)
-        goes_on: list[Delta] = []
-        for body in (s.body, s.orelse):
-            self.store.push()
-            if self.block(body, frame):
-                goes_on.append(self.store.pop())
-            else:
-                self.store.pop()
-        if goes_on:
-            self.merge(goes_on)
-        return bool(goes_on)
-
-    def loop(self, s: ir.Loop, frame: Frame) -> bool:
-        """Repeat the body until the state at its head changes no more."""
-        source = self.evaluate(s.source, frame) if s.target is not None else BOTTOM
-        depth = len(self.store.layers)
-        head: Delta = {}
-        for _ in range(MAX_PASSES):
-            self.store.push(head)
-            table: dict[str, list[Delta]] = {"break": [], "continue": []}
-            frame.jumps.append((depth, table))
-            enters, leaves = self._loop_head(s, source, frame)
-            done = [self.store.since(depth)] if leaves else []
-            backs: list[Delta] = []
-            if enters:
-                if self.block(s.body, frame):
-                    backs.append(self.store.since(depth))
-                backs += table["continue"]
-            frame.jumps.pop()
-            del self.store.layers[depth:]
-            again = self.joined([head, *backs]) if backs else head
-            if again == head:
-                break
-            head = again
-        return self._loop_end(s, done, table["break"], frame)
-
-    def _loop_head(self, s: ir.Loop, source: Value, frame: Frame) -> tuple[bool, bool]:
-        """Evaluate the condition or bind the next element; tell whether the body and the end are reached."""
-        frame.statement = s
-        if self.watch is not None:
-            self.watch(frame, s)
-        if frame.root_waits and s.target is None:
-            self.wait(frame)
-        if s.target is None:
-            way = self.decide(s.source, s, frame)
-            return way is not False, way is not True and not s.endless
-        node = self.condition(frame, s)
-        self.graph.flow(self.use(source), node)
-        element = self.elements(source)
-        self.bind_target(s.target, element, frame, "element", s.source)
-        return True, True
-
-    def _loop_end(self, s: ir.Loop, done: list[Delta], broken: list[Delta], frame: Frame) -> bool:
-        if done and s.orelse:
-            self.store.push(done[0])
-            depth = len(self.store.layers) - 1
-            done = [self.store.since(depth)] if self.block(s.orelse, frame) else []
-            del self.store.layers[depth:]
-        if not done and not broken:
-            return False
-        self.merge([*done, *broken])
-        return True
-
-    def try_(self, s: ir.Try, frame: Frame) -> bool:
-        """A handler can be entered from before and after every statement of the body."""
-        depth = len(self.store.layers)
-        self.condition(frame, s)
-        self.store.push()
-        states: list[Delta] = [{}]
-        frame.tries.append((depth, states))
-        goes_on = True
-        for statement in s.body:
-            goes_on = self.block([statement], frame)
-            states.append(self.store.since(depth)) if s.handlers and goes_on else None
-            if not goes_on:
-                break
-        frame.tries.pop()
-        ends: list[Delta] = []
-        if goes_on and self.block(s.orelse, frame):
-            ends.append(self.store.since(depth))
-        del self.store.layers[depth:]
-        if s.handlers:
-            ends += self._handlers(s, states, frame)
-        if not ends:
-            if s.final:
-                self.store.push(self.joined(states))
-                self.block(s.final, frame)
-                del self.store.layers[depth:]
-            return False
-        self.merge(ends)
-        return self.block(s.final, frame)
-
-    def _handlers(self, s: ir.Try, states: list[Delta], frame: Frame) -> list[Delta]:
-        depth = len(self.store.layers)
-        start = self.joined(states)
-        ends: list[Delta] = []
-        for _, name, body in s.handlers:
-            self.store.push(start)
-            if name is not None:
-                self.assign(name, UNKNOWN, frame)
-            if self.block(body, frame):
-                ends.append(self.store.since(depth))
-            del self.store.layers[depth:]
-        return ends
-
-    def with_(self, s: ir.With, frame: Frame) -> bool:
-        for number, (context, target) in enumerate(s.items):
-            value = self.evaluate(context, frame)
-            frame.statement = s
-            if target is not None:
-                self.bind_target(target, value, frame, f"with{number}", context)
-        return self.block(s.body, frame)
-
     # --- definitions --------------------------------------------------------------------------------------
 
-    def define(self, s: ir.Define, frame: Frame) -> bool:
+    def _define(self, s: ir.Define, frame: Frame) -> bool:
         value = self.closure(s.function, frame, "def")
         for decorator in reversed(s.function.decorators):
             if (
@@ -323,7 +194,7 @@ class Execution(Ros):
         self.assign(s.target, value, frame)
         return True
 
-    def class_(self, s: ir.Class, frame: Frame) -> bool:
+    def _class(self, s: ir.Class, frame: Frame) -> bool:
         self.run_class(s, frame)
         return True
 
@@ -362,7 +233,7 @@ class Execution(Ros):
         """Return a frame's number, the same at every run."""
         return self.frame_numbers.setdefault(key, -2 - len(self.frame_numbers))
 
-    def import_(self, s: ir.Import, frame: Frame) -> bool:
+    def _import(self, s: ir.Import, frame: Frame) -> bool:
         importer = self.modules[frame.program.path]
         for target, module, member in s.bindings:
             if member == "*":
@@ -380,17 +251,17 @@ class Execution(Ros):
 
 
 EXECUTE: Mapping[type, Callable[..., bool]] = {
-    ir.Assign: Execution.assignment,
-    ir.Evaluate: Execution.expression,
-    ir.If: Execution.if_,
+    ir.Assign: Execution._assignment,
+    ir.Evaluate: Execution._expression,
+    ir.If: Execution._if,
     ir.Loop: Execution.loop,
-    ir.Try: Execution.try_,
-    ir.With: Execution.with_,
-    ir.Return: Execution.returned,
-    ir.Raise: Execution.raised,
-    ir.Jump: Execution.jump,
-    ir.Define: Execution.define,
-    ir.Class: Execution.class_,
-    ir.Import: Execution.import_,
-    ir.Delete: Execution.delete,
+    ir.Try: Execution._try,
+    ir.With: Execution._with,
+    ir.Return: Execution._returned,
+    ir.Raise: Execution._raised,
+    ir.Jump: Execution._jump,
+    ir.Define: Execution._define,
+    ir.Class: Execution._class,
+    ir.Import: Execution._import,
+    ir.Delete: Execution._delete,
 }

@@ -40,7 +40,9 @@ class Graph:
     carried: dict[int, tuple[int, int]] = field(
         default_factory=dict
     )  # node → who passed on what inside an object
-    arriving: dict[tuple[int, int], None] = field(default_factory=dict)  # (node of a carrier, what it carries)
+    arriving: dict[tuple[int, int], None] = field(
+        default_factory=dict
+    )  # (node of a carrier, what it carries)
     asking: set[tuple[int, int]] = field(default_factory=set)  # questions that are being answered
 
     def node(self, key: Hashable, place: Place, branches: Branches) -> int:

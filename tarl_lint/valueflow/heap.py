@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-
-from tarl_lint.valueflow.machine import Machine
+from tarl_lint.valueflow.allocation import MAX_NESTING, Allocation
 from tarl_lint.valueflow.values import (
-    ABSENT,
     BOTTOM,
     NONE,
+    UNKNOWN,
     ClassInfo,
     Frame,
     Nodes,
@@ -20,11 +18,9 @@ from tarl_lint.valueflow.values import (
 )
 
 ANY = "*"  # the field that stands for all elements
-BORN = "<born>"  # the field that every object has which exists
 HOLLOW = frozenset(
     ["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super"]
 )
-MAX_NESTING = 7
 
 
 def item_field(constant: object) -> str:
@@ -32,67 +28,8 @@ def item_field(constant: object) -> str:
     return f"[{constant!r}]"
 
 
-class Heap(Machine):
+class Heap(Allocation):
     """Reads and writes fields."""
-
-    def intern(self, kind: str, key: Hashable, name: str = "") -> Obj:
-        """Return the object with this key, made at the first time."""
-        found = self.objects.get((kind, key))
-        if found is None:
-            found = self.objects[kind, key] = Obj(kind, key, name)
-        return found
-
-    def allocate(self, kind: str, frame: Frame, slot: Hashable) -> Obj:
-        """Return the newest object of an allocation site; what it stood for until now becomes the older ones."""
-        statement = frame.statement
-        key = (frame.id, statement.id if statement is not None else -1, slot)
-        obj = self.objects.get((kind, key))
-        if obj is None:
-            obj = self.objects[kind, key] = Obj(kind, key)
-            self.store.put((obj, BORN), BOTTOM)
-            return obj
-        if kind == "lib" and obj.fields:
-            self._age(obj)
-        self._clear(obj)
-        self.store.put((obj, BORN), BOTTOM)
-        return obj
-
-    def _age(self, obj: Obj) -> None:
-        """Where the former object is still held, let it be one of the older ones."""
-        holders = [k for k in obj.holders if k[0] is not obj and self._holds(k, obj)]
-        if not holders:
-            return
-        older = self.objects.get(("lib", (obj.key, "older")))
-        if older is None:
-            older = self.objects["lib", (obj.key, "older")] = Obj("lib", (obj.key, "older"))
-            older.many = True
-        self._copy_fields(obj, older)
-        for key in holders:
-            value = self.store.get(key)
-            if value is not None:
-                self.store.put(key, Value(value.deps, (value.pts - {obj}) | {older}, value.consts))
-
-    def _holds(self, key: tuple[Obj, str], obj: Obj) -> bool:
-        value = self.store.get(key)
-        return value is not None and obj in value.pts
-
-    def _copy_fields(self, obj: Obj, older: Obj, depth: int = 0) -> None:
-        for name in list(obj.fields):
-            value = self.store.get((obj, name))
-            if value is not None:
-                before = self.store.get((older, name))
-                self.store.put((older, name), value if before is None else join(before, value))
-        if depth < MAX_NESTING:
-            for name, sub in list(obj.subs.items()):
-                self._copy_fields(sub, older.sub(name), depth + 1)
-
-    def _clear(self, obj: Obj, depth: int = 0) -> None:
-        for name in list(obj.fields):
-            self.store.put((obj, name), ABSENT)
-        if depth < MAX_NESTING:
-            for sub in list(obj.subs.values()):
-                if sub is not obj:
-                    self._clear(sub, depth + 1)
 
     # --- reading ------------------------------------------------------------------------------------------
 
@@ -207,6 +144,20 @@ class Heap(Machine):
             value = self.read_field(obj, name)
             result = join(result, self.arrive(value, base.deps))
         return result if base.pts else Value(base.deps)
+
+    def elements(self, value: Value) -> Value:
+        """Return what iterating over a value gives."""
+        if not value.pts:
+            return Value(value.deps)
+        result = Value(value.deps, consts=frozenset())
+        for obj in value.pts:
+            if obj.kind == "instance":
+                result = join(result, Value(self.deep(frozenset([obj]))))
+            elif obj.kind == "mapping":
+                result = join(result, UNKNOWN)  # its keys
+            else:
+                result = join(result, self.arrive(self.read_any(obj), value.deps))
+        return result
 
     def arrive(self, value: Value, carriers: Nodes) -> Value:
         """Return a field's value with the carriers of the pointer it was read through."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Literal, Union
+from typing import Literal
 
 Pos = tuple[int, int, int, int]  # line, column, end line, end column as `ast` counts them
 Scope = Literal["local", "free", "global"]
-FunctionNode = Union[ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda]
+FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
 
 @dataclass(slots=True, eq=False)
@@ -89,7 +89,7 @@ class Choice:
 
 
 @dataclass(slots=True, eq=False)
-class Sequence_:
+class SequenceDisplay:
     """A tuple, list or set display."""
 
     items: Sequence[Expr]
@@ -98,7 +98,7 @@ class Sequence_:
 
 
 @dataclass(slots=True, eq=False)
-class Mapping_:
+class MappingDisplay:
     """A dict display; key None stands for `**`."""
 
     items: Sequence[tuple[Expr | None, Expr]]
@@ -179,23 +179,23 @@ class Lambda:
     slot: int
 
 
-Expr = Union[
-    Const,
-    Name,
-    Attribute,
-    Item,
-    Slice,
-    Call,
-    Operation,
-    Choice,
-    Sequence_,
-    Mapping_,
-    Comprehension,
-    Starred,
-    Walrus,
-    Yield,
-    Lambda,
-]
+Expr = (
+    Const
+    | Name
+    | Attribute
+    | Item
+    | Slice
+    | Call
+    | Operation
+    | Choice
+    | SequenceDisplay
+    | MappingDisplay
+    | Comprehension
+    | Starred
+    | Walrus
+    | Yield
+    | Lambda
+)
 
 
 @dataclass(slots=True, eq=False)

@@ -9,7 +9,7 @@ from tarl_lint import catalog
 from tarl_lint.config import Config
 from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.calls import ROOT_CALL
+from tarl_lint.valueflow.activations import ROOT_CALL
 from tarl_lint.valueflow.execute import Execution
 from tarl_lint.valueflow.lower import lower_module
 from tarl_lint.valueflow.store import Root, Store
@@ -97,7 +97,7 @@ class Linker(Execution):
                 return value
         return None
 
-    def wait(self, frame: Frame) -> None:
+    def wait(self, frame: Frame) -> None:  # noqa: ARG002 - who waits may matter to a lock
         """Let other roots see what was stored, and store what they may."""
         root = self.store.root
         for key in list(self.store.own()):
@@ -136,7 +136,7 @@ class Linker(Execution):
     def _module_root(self, program: ir.Program) -> None:
         root = Root(("module", program.path), "module", program.name, once=True)
 
-        def run(root: Root) -> None:
+        def run(root: Root) -> None:  # noqa: ARG001 - one signature for all
             key = ("module", program.path)
             frame = self.frames.get(key)
             if frame is None:

@@ -56,17 +56,17 @@ class Lowering(Expressions):
                 lowered.extend(method(self, node, scope))
         return lowered
 
-    def assign(self, node: ast.Assign, scope: Scope) -> list[ir.Stmt]:
+    def _assign(self, node: ast.Assign, scope: Scope) -> list[ir.Stmt]:
         value = self.expr(node.value, scope)
         return [ir.Assign(scope.next(), position(node), self.all(node.targets, scope), value)]
 
-    def annotated(self, node: ast.AnnAssign, scope: Scope) -> list[ir.Stmt]:
+    def _annotated(self, node: ast.AnnAssign, scope: Scope) -> list[ir.Stmt]:
         if node.value is None:
             return []
         value = self.expr(node.value, scope)
         return [ir.Assign(scope.next(), position(node), [self.expr(node.target, scope)], value)]
 
-    def augmented(self, node: ast.AugAssign, scope: Scope) -> list[ir.Stmt]:
+    def _augmented(self, node: ast.AugAssign, scope: Scope) -> list[ir.Stmt]:
         target = self.expr(node.target, scope)
         operator = OPERATORS.get(type(node.op), "")
         value = ir.Operation(
@@ -74,33 +74,33 @@ class Lowering(Expressions):
         )
         return [ir.Assign(scope.next(), position(node), [target], value, augmented=True)]
 
-    def evaluate(self, node: ast.Expr, scope: Scope) -> list[ir.Stmt]:
+    def _evaluate(self, node: ast.Expr, scope: Scope) -> list[ir.Stmt]:
         if isinstance(node.value, ast.Constant):
             return []
         return [ir.Evaluate(scope.next(), position(node), self.expr(node.value, scope))]
 
-    def if_(self, node: ast.If, scope: Scope) -> list[ir.Stmt]:
+    def _if(self, node: ast.If, scope: Scope) -> list[ir.Stmt]:
         test, number = self.expr(node.test, scope), scope.next()
         return [
             ir.If(number, position(node), test, self.block(node.body, scope), self.block(node.orelse, scope))
         ]
 
-    def assert_(self, node: ast.Assert, scope: Scope) -> list[ir.Stmt]:
+    def _assert(self, node: ast.Assert, scope: Scope) -> list[ir.Stmt]:
         failed = ir.Raise(scope.next(), position(node), None)
         return [ir.If(scope.next(), position(node), self.expr(node.test, scope), [], [failed])]
 
-    def while_(self, node: ast.While, scope: Scope) -> list[ir.Stmt]:
+    def _while(self, node: ast.While, scope: Scope) -> list[ir.Stmt]:
         test, number = self.expr(node.test, scope), scope.next()
         endless = isinstance(test, ir.Const) and bool(test.value)
         body, orelse = self.block(node.body, scope), self.block(node.orelse, scope)
         return [ir.Loop(number, position(node), test, None, body, orelse, endless)]
 
-    def for_(self, node: ast.For | ast.AsyncFor, scope: Scope) -> list[ir.Stmt]:
+    def _for(self, node: ast.For | ast.AsyncFor, scope: Scope) -> list[ir.Stmt]:
         source, target, number = self.expr(node.iter, scope), self.expr(node.target, scope), scope.next()
         body, orelse = self.block(node.body, scope), self.block(node.orelse, scope)
         return [ir.Loop(number, position(node), source, target, body, orelse)]
 
-    def try_(self, node: ast.Try, scope: Scope) -> list[ir.Stmt]:
+    def _try(self, node: ast.Try, scope: Scope) -> list[ir.Stmt]:
         number = scope.next()
         handlers: list[tuple[ir.Expr | None, ir.Name | None, Sequence[ir.Stmt]]] = []
         for handler in node.handlers:
@@ -110,30 +110,30 @@ class Lowering(Expressions):
         parts = [self.block(b, scope) for b in (node.body, node.orelse, node.finalbody)]
         return [ir.Try(number, position(node), parts[0], handlers, parts[1], parts[2])]
 
-    def with_(self, node: ast.With | ast.AsyncWith, scope: Scope) -> list[ir.Stmt]:
+    def _with(self, node: ast.With | ast.AsyncWith, scope: Scope) -> list[ir.Stmt]:
         items = [
             (self.expr(i.context_expr, scope), self.expr(i.optional_vars, scope) if i.optional_vars else None)
             for i in node.items
         ]
         return [ir.With(scope.next(), position(node), items, self.block(node.body, scope))]
 
-    def return_(self, node: ast.Return, scope: Scope) -> list[ir.Stmt]:
+    def _return(self, node: ast.Return, scope: Scope) -> list[ir.Stmt]:
         value = self.expr(node.value, scope) if node.value is not None else None
         return [ir.Return(scope.next(), position(node), value)]
 
-    def raise_(self, node: ast.Raise, scope: Scope) -> list[ir.Stmt]:
+    def _raise(self, node: ast.Raise, scope: Scope) -> list[ir.Stmt]:
         value = self.expr(node.exc, scope) if node.exc is not None else None
         return [ir.Raise(scope.next(), position(node), value)]
 
-    def jump(self, node: ast.Break | ast.Continue, scope: Scope) -> list[ir.Stmt]:
+    def _jump(self, node: ast.Break | ast.Continue, scope: Scope) -> list[ir.Stmt]:
         kind = "break" if isinstance(node, ast.Break) else "continue"
         return [ir.Jump(scope.next(), position(node), "break" if kind == "break" else "continue")]
 
-    def define(self, node: ast.FunctionDef | ast.AsyncFunctionDef, scope: Scope) -> list[ir.Stmt]:
+    def _define(self, node: ast.FunctionDef | ast.AsyncFunctionDef, scope: Scope) -> list[ir.Stmt]:
         target = ir.Name(*scope.resolve(node.name), position(node))
         return [ir.Define(scope.next(), position(node), target, self.function(node, scope))]
 
-    def class_(self, node: ast.ClassDef, scope: Scope) -> list[ir.Stmt]:
+    def _class(self, node: ast.ClassDef, scope: Scope) -> list[ir.Stmt]:
         inner = Scope("class", scope.child(node.name), scope)
         collect(inner, node.body)
         target = ir.Name(*scope.resolve(node.name), position(node))
@@ -156,7 +156,7 @@ class Lowering(Expressions):
             )
         ]
 
-    def import_(self, node: ast.Import, scope: Scope) -> list[ir.Stmt]:
+    def _import(self, node: ast.Import, scope: Scope) -> list[ir.Stmt]:
         bindings: list[tuple[ir.Expr | None, str, str | None]] = []
         for alias in node.names:
             bound = alias.asname or alias.name.partition(".")[0]
@@ -164,7 +164,7 @@ class Lowering(Expressions):
             bindings.append((ir.Name(*scope.resolve(bound), position(node)), module, None))
         return [ir.Import(scope.next(), position(node), bindings)]
 
-    def import_from(self, node: ast.ImportFrom, scope: Scope) -> list[ir.Stmt]:
+    def _import_from(self, node: ast.ImportFrom, scope: Scope) -> list[ir.Stmt]:
         module = node.module or ""
         if node.level:
             parts = self.package.split(".") if self.package else []
@@ -180,7 +180,7 @@ class Lowering(Expressions):
             bindings.append((bound, module, alias.name))
         return [ir.Import(scope.next(), position(node), bindings)]
 
-    def delete(self, node: ast.Delete, scope: Scope) -> list[ir.Stmt]:
+    def _delete(self, node: ast.Delete, scope: Scope) -> list[ir.Stmt]:
         return [ir.Delete(scope.next(), position(node), self.all(node.targets, scope))]
 
     def match(self, node: ast.Match, scope: Scope) -> list[ir.Stmt]:
@@ -226,29 +226,29 @@ def _case_position(case: ast.match_case) -> ir.Pos:
 
 
 STATEMENTS: dict[type[ast.AST], Callable[..., list[ir.Stmt]]] = {
-    ast.Assign: Lowering.assign,
-    ast.AnnAssign: Lowering.annotated,
-    ast.AugAssign: Lowering.augmented,
-    ast.Expr: Lowering.evaluate,
-    ast.If: Lowering.if_,
-    ast.Assert: Lowering.assert_,
-    ast.While: Lowering.while_,
-    ast.For: Lowering.for_,
-    ast.AsyncFor: Lowering.for_,
-    ast.Try: Lowering.try_,
-    ast.With: Lowering.with_,
-    ast.AsyncWith: Lowering.with_,
-    ast.Return: Lowering.return_,
-    ast.Raise: Lowering.raise_,
-    ast.Break: Lowering.jump,
-    ast.Continue: Lowering.jump,
-    ast.FunctionDef: Lowering.define,
-    ast.AsyncFunctionDef: Lowering.define,
-    ast.ClassDef: Lowering.class_,
-    ast.Import: Lowering.import_,
-    ast.ImportFrom: Lowering.import_from,
-    ast.Delete: Lowering.delete,
+    ast.Assign: Lowering._assign,
+    ast.AnnAssign: Lowering._annotated,
+    ast.AugAssign: Lowering._augmented,
+    ast.Expr: Lowering._evaluate,
+    ast.If: Lowering._if,
+    ast.Assert: Lowering._assert,
+    ast.While: Lowering._while,
+    ast.For: Lowering._for,
+    ast.AsyncFor: Lowering._for,
+    ast.Try: Lowering._try,
+    ast.With: Lowering._with,
+    ast.AsyncWith: Lowering._with,
+    ast.Return: Lowering._return,
+    ast.Raise: Lowering._raise,
+    ast.Break: Lowering._jump,
+    ast.Continue: Lowering._jump,
+    ast.FunctionDef: Lowering._define,
+    ast.AsyncFunctionDef: Lowering._define,
+    ast.ClassDef: Lowering._class,
+    ast.Import: Lowering._import,
+    ast.ImportFrom: Lowering._import_from,
+    ast.Delete: Lowering._delete,
     ast.Match: Lowering.match,
 }
 if hasattr(ast, "TryStar"):
-    STATEMENTS[ast.TryStar] = Lowering.try_
+    STATEMENTS[ast.TryStar] = Lowering._try

@@ -57,32 +57,32 @@ class Expressions:
         """Lower several."""
         return [self.expr(n, scope) for n in nodes]
 
-    def constant(self, node: ast.Constant, scope: Scope) -> ir.Expr:  # noqa: ARG002 - one signature for all
+    def _constant(self, node: ast.Constant, scope: Scope) -> ir.Expr:  # noqa: ARG002 - one signature for all
         return ir.Const(node.value, position(node))
 
-    def name(self, node: ast.Name, scope: Scope) -> ir.Name:
+    def _name(self, node: ast.Name, scope: Scope) -> ir.Name:
         return ir.Name(*scope.resolve(node.id), position(node))
 
-    def attribute(self, node: ast.Attribute, scope: Scope) -> ir.Expr:
+    def _attribute(self, node: ast.Attribute, scope: Scope) -> ir.Expr:
         return ir.Attribute(self.expr(node.value, scope), node.attr, position(node), scope.next())
 
-    def subscript(self, node: ast.Subscript, scope: Scope) -> ir.Expr:
+    def _subscript(self, node: ast.Subscript, scope: Scope) -> ir.Expr:
         return ir.Item(self.expr(node.value, scope), self.expr(node.slice, scope), position(node))
 
-    def slice(self, node: ast.Slice, scope: Scope) -> ir.Expr:
+    def _slice(self, node: ast.Slice, scope: Scope) -> ir.Expr:
         parts = [self.expr(n, scope) for n in (node.lower, node.upper, node.step) if n is not None]
         return ir.Slice(parts, position(node))
 
-    def call(self, node: ast.Call, scope: Scope) -> ir.Expr:
+    def _call(self, node: ast.Call, scope: Scope) -> ir.Expr:
         function = self.expr(node.func, scope)
         keywords = [(k.arg, self.expr(k.value, scope)) for k in node.keywords]
         return ir.Call(function, self.all(node.args, scope), keywords, position(node), scope.next())
 
-    def binary(self, node: ast.BinOp, scope: Scope) -> ir.Expr:
+    def _binary(self, node: ast.BinOp, scope: Scope) -> ir.Expr:
         parts = [self.expr(node.left, scope), self.expr(node.right, scope)]
         return ir.Operation(OPERATORS.get(type(node.op), ""), parts, position(node))
 
-    def unary(self, node: ast.UnaryOp, scope: Scope) -> ir.Expr:
+    def _unary(self, node: ast.UnaryOp, scope: Scope) -> ir.Expr:
         if isinstance(node.operand, ast.Constant) and isinstance(node.operand.value, (int, float)):
             if isinstance(node.op, ast.USub):
                 return ir.Const(-node.operand.value, position(node))
@@ -92,31 +92,31 @@ class Expressions:
             OPERATORS.get(type(node.op), ""), [self.expr(node.operand, scope)], position(node)
         )
 
-    def boolean(self, node: ast.BoolOp, scope: Scope) -> ir.Expr:
+    def _boolean(self, node: ast.BoolOp, scope: Scope) -> ir.Expr:
         return ir.Operation(OPERATORS[type(node.op)], self.all(node.values, scope), position(node))
 
-    def compare(self, node: ast.Compare, scope: Scope) -> ir.Expr:
+    def _compare(self, node: ast.Compare, scope: Scope) -> ir.Expr:
         operator = OPERATORS.get(type(node.ops[0]), "") if len(node.ops) == 1 else ""
         return ir.Operation(operator, self.all([node.left, *node.comparators], scope), position(node))
 
-    def choice(self, node: ast.IfExp, scope: Scope) -> ir.Expr:
+    def _choice(self, node: ast.IfExp, scope: Scope) -> ir.Expr:
         test, then, other = self.all([node.test, node.body, node.orelse], scope)
         return ir.Choice(test, then, other, position(node), scope.next())
 
-    def sequence(self, node: ast.Tuple | ast.List | ast.Set, scope: Scope) -> ir.Expr:
-        return ir.Sequence_(self.all(node.elts, scope), position(node), scope.next())
+    def _sequence(self, node: ast.Tuple | ast.List | ast.Set, scope: Scope) -> ir.Expr:
+        return ir.SequenceDisplay(self.all(node.elts, scope), position(node), scope.next())
 
-    def mapping(self, node: ast.Dict, scope: Scope) -> ir.Expr:
+    def _mapping(self, node: ast.Dict, scope: Scope) -> ir.Expr:
         items = [
             (self.expr(k, scope) if k is not None else None, self.expr(v, scope))
             for k, v in zip(node.keys, node.values, strict=True)
         ]
-        return ir.Mapping_(items, position(node), scope.next())
+        return ir.MappingDisplay(items, position(node), scope.next())
 
-    def text(self, node: ast.JoinedStr, scope: Scope) -> ir.Expr:
+    def _text(self, node: ast.JoinedStr, scope: Scope) -> ir.Expr:
         return ir.Operation("text", self.all(node.values, scope), position(node))
 
-    def comprehension(
+    def _comprehension(
         self, node: ast.ListComp | ast.SetComp | ast.GeneratorExp | ast.DictComp, scope: Scope
     ) -> ir.Expr:
         """Lower in place: its targets become locals of the function under names of their own."""
@@ -134,21 +134,21 @@ class Expressions:
         scope.renamed = before
         return ir.Comprehension(loops, key, element, position(node), slot)
 
-    def starred(self, node: ast.Starred, scope: Scope) -> ir.Expr:
+    def _starred(self, node: ast.Starred, scope: Scope) -> ir.Expr:
         return ir.Starred(self.expr(node.value, scope), position(node))
 
-    def walrus(self, node: ast.NamedExpr, scope: Scope) -> ir.Expr:
+    def _walrus(self, node: ast.NamedExpr, scope: Scope) -> ir.Expr:
         target, value = self.all([node.target, node.value], scope)
         return ir.Walrus(target, value, position(node), scope.next())
 
-    def await_(self, node: ast.Await, scope: Scope) -> ir.Expr:
+    def _await(self, node: ast.Await, scope: Scope) -> ir.Expr:
         return ir.Yield(self.expr(node.value, scope), "await", position(node))
 
-    def yield_(self, node: ast.Yield | ast.YieldFrom, scope: Scope) -> ir.Expr:
+    def _yield(self, node: ast.Yield | ast.YieldFrom, scope: Scope) -> ir.Expr:
         value = self.expr(node.value, scope) if node.value is not None else ir.Const(None, position(node))
         return ir.Yield(value, "from" if isinstance(node, ast.YieldFrom) else "yield", position(node))
 
-    def lambda_(self, node: ast.Lambda, scope: Scope) -> ir.Expr:
+    def _lambda(self, node: ast.Lambda, scope: Scope) -> ir.Expr:
         return ir.Lambda(self.function(node, scope), position(node), scope.next())
 
     def function(self, node: ir.FunctionNode, scope: Scope) -> ir.Function:
@@ -191,30 +191,30 @@ def _arguments(arguments: ast.arguments) -> list[ast.arg]:
 
 
 LOWER: dict[type[ast.AST], Callable[..., ir.Expr]] = {
-    ast.Constant: Expressions.constant,
-    ast.Name: Expressions.name,
-    ast.Attribute: Expressions.attribute,
-    ast.Subscript: Expressions.subscript,
-    ast.Slice: Expressions.slice,
-    ast.Call: Expressions.call,
-    ast.BinOp: Expressions.binary,
-    ast.UnaryOp: Expressions.unary,
-    ast.BoolOp: Expressions.boolean,
-    ast.Compare: Expressions.compare,
-    ast.IfExp: Expressions.choice,
-    ast.Tuple: Expressions.sequence,
-    ast.List: Expressions.sequence,
-    ast.Set: Expressions.sequence,
-    ast.Dict: Expressions.mapping,
-    ast.JoinedStr: Expressions.text,
-    ast.ListComp: Expressions.comprehension,
-    ast.SetComp: Expressions.comprehension,
-    ast.GeneratorExp: Expressions.comprehension,
-    ast.DictComp: Expressions.comprehension,
-    ast.Starred: Expressions.starred,
-    ast.NamedExpr: Expressions.walrus,
-    ast.Await: Expressions.await_,
-    ast.Yield: Expressions.yield_,
-    ast.YieldFrom: Expressions.yield_,
-    ast.Lambda: Expressions.lambda_,
+    ast.Constant: Expressions._constant,
+    ast.Name: Expressions._name,
+    ast.Attribute: Expressions._attribute,
+    ast.Subscript: Expressions._subscript,
+    ast.Slice: Expressions._slice,
+    ast.Call: Expressions._call,
+    ast.BinOp: Expressions._binary,
+    ast.UnaryOp: Expressions._unary,
+    ast.BoolOp: Expressions._boolean,
+    ast.Compare: Expressions._compare,
+    ast.IfExp: Expressions._choice,
+    ast.Tuple: Expressions._sequence,
+    ast.List: Expressions._sequence,
+    ast.Set: Expressions._sequence,
+    ast.Dict: Expressions._mapping,
+    ast.JoinedStr: Expressions._text,
+    ast.ListComp: Expressions._comprehension,
+    ast.SetComp: Expressions._comprehension,
+    ast.GeneratorExp: Expressions._comprehension,
+    ast.DictComp: Expressions._comprehension,
+    ast.Starred: Expressions._starred,
+    ast.NamedExpr: Expressions._walrus,
+    ast.Await: Expressions._await,
+    ast.Yield: Expressions._yield,
+    ast.YieldFrom: Expressions._yield,
+    ast.Lambda: Expressions._lambda,
 }

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
+from tarl_lint.catalog import NO_FACT, Fact
 from tarl_lint.config import Config
 from tarl_lint.names import Index
 from tarl_lint.source import Module
@@ -14,7 +14,7 @@ from tarl_lint.valueflow.control import Branch, Control, control_dependence
 from tarl_lint.valueflow.graph import Graph, Place
 from tarl_lint.valueflow.lower import lower_body
 from tarl_lint.valueflow.store import Root, Shared, Store
-from tarl_lint.valueflow.values import NONE, Branches, Frame, Nodes, Obj, Value
+from tarl_lint.valueflow.values import BOTTOM, NONE, Branches, Frame, Nodes, Obj, Value
 
 MAX_CALLS = 24  # nested calls that are told apart; deeper ones are taken for library calls
 MAX_FRAMES = 20_000  # activations in all
@@ -65,6 +65,33 @@ class Publisher:
 
 
 Arguments = tuple[list[Value], dict[str, Value]]
+
+
+@dataclass(slots=True)
+class Invocation:
+    """A call of something that is not analysed. Of a method, `base` is the receiver."""
+
+    name: str
+    base: Value
+    arguments: Arguments
+    frame: Frame
+    call: ir.Call
+    fact: Fact = NO_FACT
+
+    @property
+    def statement(self) -> int:
+        """Return the number of the calling statement, -1 when ROS itself calls."""
+        return self.frame.statement.id if self.frame.statement is not None else -1
+
+    def argument(self, which: tuple[int, str]) -> Value:
+        """Return an argument by position or keyword, BOTTOM where it is not given."""
+        number, name = which
+        plain, named = self.arguments
+        if 0 <= number < len(plain):
+            return plain[number]
+        return named.get(name, BOTTOM)
+
+
 Probe = Callable[["Machine", Frame, ir.Stmt, ir.Expr, Value], None]
 
 
@@ -214,6 +241,14 @@ class Machine:
         """Add data to the variable that holds an object of which nothing is known."""
         raise NotImplementedError
 
-    def ros_call(self, fact: Any, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+    def ros_call(self, it: Invocation) -> Value:
         """Do what the catalog says about a call."""
+        raise NotImplementedError
+
+    def block(self, body: Sequence[ir.Stmt], frame: Frame) -> bool:
+        """Execute statements in order; tell whether execution can go on after them."""
+        raise NotImplementedError
+
+    def bind_target(self, target: ir.Expr, value: Value, frame: Frame, slot: str, source: ir.Expr) -> None:
+        """Let a value pass through the statement into a target, element by element."""
         raise NotImplementedError

@@ -29,7 +29,9 @@ class Written:
     @property
     def shown(self) -> bool:
         """Tell whether it is shown around steps inside it: a loop, or the `__main__` guard."""
-        return isinstance(self.node, LOOPS) or (isinstance(self.node, ast.If) and _guards_main(self.node.test))
+        return isinstance(self.node, LOOPS) or (
+            isinstance(self.node, ast.If) and _guards_main(self.node.test)
+        )
 
 
 @dataclass(slots=True)
@@ -71,7 +73,7 @@ class Text:
             if isinstance(child, (ast.stmt, ast.match_case)):
                 self._enter(child, qualname, written)
             elif isinstance(child, ast.excepthandler):
-                self._body(child.body, qualname, written)
+                self._body(getattr(child, "body", []), qualname, written)
             elif isinstance(child, ast.expr):
                 self._lambdas([child], qualname, written)
             elif isinstance(child, ast.withitem):

@@ -27,7 +27,7 @@ class Obj:
         self.name = name
         self.parent = parent
         self.depth: int = parent.depth + 1 if parent is not None else 0
-        self.many = parent.many if parent is not None else False
+        self.many: bool = parent.many if parent is not None else False
         self.fields: dict[str, None] = {}  # every field ever stored, in order
         self.subs: dict[str, Obj] = {}
         self.holders: dict[tuple[Obj, str], None] = {}  # where pointers to it were stored
@@ -64,9 +64,30 @@ class Frame(Obj):
     """One activation of a function, known by its chain of calls. Its fields are the local variables."""
 
     __slots__ = (
-        "arguments", "base", "call", "call_pos", "caller", "captured", "closures", "cls", "control",
-        "depth_of_layers", "root_waits", "function", "id", "jumps",
-        "module", "outer", "owner", "program", "result", "returns", "slot", "statement", "tries", "yielded",
+        "arguments",
+        "base",
+        "call",
+        "call_pos",
+        "caller",
+        "captured",
+        "closures",
+        "cls",
+        "control",
+        "depth_of_layers",
+        "function",
+        "id",
+        "jumps",
+        "module",
+        "outer",
+        "owner",
+        "program",
+        "result",
+        "returns",
+        "root_waits",
+        "slot",
+        "statement",
+        "tries",
+        "yielded",
     )  # fmt: skip
 
     def __init__(
@@ -213,8 +234,7 @@ def lineage(cls: Obj) -> list[Obj]:
     pending = [cls]
     while pending:
         current = pending.pop(0)
-        if current in found:
-            del found[current]
+        found.pop(current, None)
         found[current] = None
         if isinstance(current.info, ClassInfo) and len(found) < 50:
             pending = [*current.info.bases, *pending]

@@ -1,0 +1,147 @@
+"""Branches, loops and handlers: several continuations of one state."""
+
+from __future__ import annotations
+
+from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.ros import Ros
+from tarl_lint.valueflow.store import Delta
+from tarl_lint.valueflow.values import (
+    BOTTOM,
+    UNKNOWN,
+    Frame,
+    Value,
+)
+
+MAX_PASSES = 12  # over a loop's body; a safety net, since the values that can arise are finite
+
+
+class Branches(Ros):
+    """Executes what has statements inside."""
+
+    def decide(self, test: ir.Expr, s: ir.Stmt, frame: Frame) -> bool | None:
+        """Evaluate a condition; return which way it goes when a constant tells."""
+        node = self.condition(frame, s)
+        value = self.evaluate(test, frame)
+        frame.statement = s
+        self.graph.flow(self.truth(value), node)
+        known, constant = value.constant()
+        if value.consts and not value.pts and not known:
+            ways = {bool(c) for c in value.consts}
+            return ways.pop() if len(ways) == 1 else None
+        return bool(constant) if known else None
+
+    def _if(self, s: ir.If, frame: Frame) -> bool:
+        way = self.decide(s.test, s, frame)
+        if way is not None:
+            return self.block(s.body if way else s.orelse, frame)
+        goes_on: list[Delta] = []
+        for body in (s.body, s.orelse):
+            self.store.push()
+            if self.block(body, frame):
+                goes_on.append(self.store.pop())
+            else:
+                self.store.pop()
+        if goes_on:
+            self.merge(goes_on)
+        return bool(goes_on)
+
+    def loop(self, s: ir.Loop, frame: Frame) -> bool:
+        """Repeat the body until the state at its head changes no more."""
+        source = self.evaluate(s.source, frame) if s.target is not None else BOTTOM
+        depth = len(self.store.layers)
+        head: Delta = {}
+        for _ in range(MAX_PASSES):
+            self.store.push(head)
+            table: dict[str, list[Delta]] = {"break": [], "continue": []}
+            frame.jumps.append((depth, table))
+            enters, leaves = self._loop_head(s, source, frame)
+            done = [self.store.since(depth)] if leaves else []
+            backs: list[Delta] = []
+            if enters:
+                if self.block(s.body, frame):
+                    backs.append(self.store.since(depth))
+                backs += table["continue"]
+            frame.jumps.pop()
+            del self.store.layers[depth:]
+            again = self.joined([head, *backs]) if backs else head
+            if again == head:
+                break
+            head = again
+        return self._loop_end(s, done, table["break"], frame)
+
+    def _loop_head(self, s: ir.Loop, source: Value, frame: Frame) -> tuple[bool, bool]:
+        """Evaluate the condition or bind the next element; tell whether the body and the end are reached."""
+        frame.statement = s
+        if self.watch is not None:
+            self.watch(frame, s)
+        if frame.root_waits and s.target is None:
+            self.wait(frame)
+        if s.target is None:
+            way = self.decide(s.source, s, frame)
+            return way is not False, way is not True and not s.endless
+        node = self.condition(frame, s)
+        self.graph.flow(self.use(source), node)
+        element = self.elements(source)
+        self.bind_target(s.target, element, frame, "element", s.source)
+        return True, True
+
+    def _loop_end(self, s: ir.Loop, done: list[Delta], broken: list[Delta], frame: Frame) -> bool:
+        if done and s.orelse:
+            self.store.push(done[0])
+            depth = len(self.store.layers) - 1
+            done = [self.store.since(depth)] if self.block(s.orelse, frame) else []
+            del self.store.layers[depth:]
+        if not done and not broken:
+            return False
+        self.merge([*done, *broken])
+        return True
+
+    def _try(self, s: ir.Try, frame: Frame) -> bool:
+        """A handler can be entered from before and after every statement of the body."""
+        depth = len(self.store.layers)
+        self.condition(frame, s)
+        self.store.push()
+        states: list[Delta] = [{}]
+        frame.tries.append((depth, states))
+        goes_on = True
+        for statement in s.body:
+            goes_on = self.block([statement], frame)
+            states.append(self.store.since(depth)) if s.handlers and goes_on else None
+            if not goes_on:
+                break
+        frame.tries.pop()
+        ends: list[Delta] = []
+        if goes_on and self.block(s.orelse, frame):
+            ends.append(self.store.since(depth))
+        del self.store.layers[depth:]
+        if s.handlers:
+            ends += self._handlers(s, states, frame)
+        if not ends:
+            if s.final:
+                self.store.push(self.joined(states))
+                self.block(s.final, frame)
+                del self.store.layers[depth:]
+            return False
+        self.merge(ends)
+        return self.block(s.final, frame)
+
+    def _handlers(self, s: ir.Try, states: list[Delta], frame: Frame) -> list[Delta]:
+        depth = len(self.store.layers)
+        start = self.joined(states)
+        ends: list[Delta] = []
+        for _, name, body in s.handlers:
+            self.store.push(start)
+            if name is not None:
+                self.assign(name, UNKNOWN, frame)
+            if self.block(body, frame):
+                ends.append(self.store.since(depth))
+            del self.store.layers[depth:]
+        return ends
+
+    def _with(self, s: ir.With, frame: Frame) -> bool:
+        for number, (context, target) in enumerate(s.items):
+            value = self.evaluate(context, frame)
+            frame.statement = s
+            if target is not None:
+                self.bind_target(target, value, frame, f"with{number}", context)
+        return self.block(s.body, frame)

@@ -1,0 +1,105 @@
+"""Displays of sequences and mappings, comprehensions, and taking elements out."""
+
+from __future__ import annotations
+
+from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.heap import ANY, item_field
+from tarl_lint.valueflow.operators import Operators
+from tarl_lint.valueflow.values import (
+    NONE,
+    ClassInfo,
+    Frame,
+    Obj,
+    Value,
+    pointer,
+)
+
+
+class Displays(Operators):
+    """Evaluates what makes containers."""
+
+    def _sequence(self, expr: ir.SequenceDisplay, frame: Frame) -> Value:
+        obj = self.allocate("sequence", frame, ("display", expr.slot))
+        items = [(i, self.evaluate(i.value if isinstance(i, ir.Starred) else i, frame)) for i in expr.items]
+        where = pointer(obj)
+        exact = True
+        for number, (item, value) in enumerate(items):
+            value = self.entry(item, value, frame, (expr.slot, number))
+            if isinstance(item, ir.Starred):
+                exact = False
+                self.add_element(where, self.elements(value))
+            elif exact:
+                self.store.put((obj, item_field(number)), value)
+            else:
+                self.add_element(where, value)
+        return where
+
+    def _mapping(self, expr: ir.MappingDisplay, frame: Frame) -> Value:
+        obj = self.allocate("mapping", frame, ("display", expr.slot))
+        where = pointer(obj)
+        for key, item in expr.items:
+            value = self.entry(item, self.evaluate(item, frame), frame, (expr.slot, item.pos))
+            if key is None:
+                self.absorb(obj, value)
+            else:
+                self.write_item(where, self.evaluate(key, frame), value)
+        return where
+
+    def entry(self, expr: ir.Expr, value: Value, frame: Frame, slot: object) -> Value:
+        """Return an element of a display; numbers get a node of their own, so that they are found again."""
+        if not isinstance(expr, ir.Const) or not isinstance(expr.value, (int, float)):
+            return value
+        node = self.node(frame, ("entry", slot), "assign")
+        self.mark(node, expr, value, frame)
+        return self.carry(value, node)
+
+    def absorb(self, obj: Obj, value: Value) -> None:
+        """Copy the elements of what a value may be into an object."""
+        for source in value.pts:
+            for name in list(source.fields):
+                stored = self.store.get((source, name))
+                if stored is not None and (name.startswith("[") or name == ANY):
+                    self.weaken(obj, name, self.arrive(stored, value.deps))
+            content = self.content(source)
+            if content.deps and self.store.get((source, ANY)) is None:
+                self.add_element(pointer(obj), content)
+        if not value.pts and value.deps:
+            self.add_element(pointer(obj), Value(value.deps))
+
+    def _comprehension(self, expr: ir.Comprehension, frame: Frame) -> Value:
+        kind = "mapping" if expr.key is not None else "sequence"
+        obj = self.allocate(kind, frame, ("display", expr.slot))
+        deps = NONE
+        for target, source, conditions in expr.loops:
+            self.assign(target, self.elements(self.evaluate(source, frame)), frame)
+            for condition in conditions:
+                deps |= self.use(self.evaluate(condition, frame))
+        element = self.evaluate(expr.element, frame)
+        if deps:
+            node = self.node(frame, ("filter", expr.slot), "condition")
+            self.graph.control[node].update(deps)
+            element = Value(element.deps | {node}, element.pts, element.consts)
+        if expr.key is not None:
+            self.write_item(pointer(obj), self.evaluate(expr.key, frame), element)
+        else:
+            self.add_element(pointer(obj), element)
+        return pointer(obj)
+
+    def mark(self, node: int, expr: ir.Expr, value: Value, frame: Frame) -> None:
+        """Note that a node is a constant, or passes on another unchanged."""
+        known, constant = value.constant()
+        if isinstance(expr, (ir.Name, ir.Attribute, ir.Item)) or _conversion(expr):
+            self.graph.copies.add(node)
+        elif known and isinstance(constant, (bool, int, float)):
+            self.graph.literals[node] = (constant, expr.pos, frame.program.path)
+
+    def class_of(self, obj: Obj) -> ClassInfo | None:
+        """Return the class of an instance or class object."""
+        cls = obj.info if obj.kind == "instance" else obj
+        info = cls.info if isinstance(cls, Obj) else None
+        return info if isinstance(info, ClassInfo) else None
+
+
+def _conversion(expr: ir.Expr) -> bool:
+    """Tell whether an expression is `float(x)`, which leaves the number what it is."""
+    return isinstance(expr, ir.Call) and isinstance(expr.function, ir.Name) and expr.function.name == "float"

@@ -1,0 +1,56 @@
+"""States that come together: after branches, loops, alternative callees."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tarl_lint.valueflow.allocation import BORN
+from tarl_lint.valueflow.heap import Heap
+from tarl_lint.valueflow.store import Delta
+from tarl_lint.valueflow.values import (
+    ABSENT,
+    Obj,
+    Value,
+    join,
+)
+
+
+class Joining(Heap):
+    """Joins continuations of a state."""
+
+    def merge(self, deltas: Sequence[Delta]) -> None:
+        """Let the state be what it is after any of several continuations of it."""
+        for key, value in self.joined(deltas).items():
+            self.store.put(key, value)
+
+    def joined(self, deltas: Sequence[Delta]) -> Delta:
+        """Return the join of continuations of the present state."""
+        if len(deltas) == 1:
+            return deltas[0]
+        keys: dict[tuple[Obj, str], None] = {}
+        for delta in deltas:
+            keys.update(dict.fromkeys(delta))
+        result: Delta = {}
+        for key in keys:
+            value: Value | None = None
+            for delta in deltas:
+                here = delta.get(key)
+                if here is None or here is ABSENT:
+                    here = self._former(key) if here is None else self.default(*key)
+                if here is not None:
+                    value = here if value is None else join(value, here)
+            if value is not None:
+                result[key] = value
+        return result
+
+    def _former(self, key: tuple[Obj, str]) -> Value | None:
+        """Return what a continuation that does not store leaves."""
+        value = self.store.get(key)
+        if value is not None:
+            return value
+        owner, name = key
+        if owner.kind in ("frame", "module", "class", "closure"):
+            return None
+        if owner.kind != "message" and self.store.get((owner.root(), BORN)) is None:
+            return None  # the object does not exist there
+        return self.content(owner) if name == "*" else self.default(owner, name)

@@ -1,0 +1,107 @@
+"""Operators: what data they use, and constants that are folded."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.joining import Joining
+from tarl_lint.valueflow.values import (
+    BOTTOM,
+    NONE,
+    Frame,
+    Nodes,
+    Value,
+    join,
+)
+
+FOLDED: Mapping[str, Callable[..., object]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+    "%": operator.mod,
+    "neg": operator.neg,
+    "not": operator.not_,
+    "==": operator.eq,
+    "!=": operator.ne,
+    "is": lambda a, b: a is b or a == b,
+    "is not": lambda a, b: not (a is b or a == b),
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+MAX_TEXT = 300
+
+
+class Operators(Joining):
+    """Evaluates operators."""
+
+    def _operation(self, expr: ir.Operation, frame: Frame) -> Value:
+        values = [self.evaluate(p, frame) for p in expr.parts]
+        if expr.operator in ("or", "and"):
+            return self.boolean(expr.operator, values)
+        if expr.operator == "+=" and values[0].pts:
+            self.add_element(values[0], self.elements(values[1]))
+            return Value(values[0].deps | values[1].deps, values[0].pts)
+        deps = NONE
+        for value in values:
+            deps |= self.tested(expr.operator, value)
+        return Value(deps, consts=self.fold(expr.operator, values))
+
+    def tested(self, name: str, value: Value) -> Nodes:
+        """Return the nodes whose data an operator uses. Whether a message is there at all is not data of it."""
+        if name in ("is", "is not"):
+            return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind != "message")))
+        return self.truth(value) if name == "not" else self.use(value)
+
+    def truth(self, value: Value) -> Nodes:
+        """Return the nodes that decide whether a value counts as true: a whole message always does."""
+        kept = frozenset(o for o in value.pts if o.kind != "message" or o.parent is not None)
+        return self.use(value if len(kept) == len(value.pts) else Value(value.deps, kept))
+
+    def boolean(self, name: str, values: list[Value]) -> Value:
+        """Return what `a or b` may be: one of them, decided by the former."""
+        result, deps = BOTTOM, NONE
+        for value in values:
+            known, constant = value.constant()
+            decided = known and not value.deps and bool(constant) is (name == "or")
+            passed = known and not value.deps and not decided and value is not values[-1]
+            deps |= self.truth(value)
+            if not passed:
+                result = join(result, value)
+            if decided:
+                break
+        return Value(result.deps | deps, result.pts, result.consts)
+
+    def fold(self, name: str, values: list[Value]) -> frozenset[object] | None:
+        """Return the constants that an operator makes of constants."""
+        if name == "text":
+            return self._fold_text(values)
+        function = FOLDED.get(name)
+        if function is None or any(v.pts for v in values):
+            return None if any(v.pts or v.consts is None for v in values) or function is None else frozenset()
+        constants: list[Any] = []
+        for value in values:
+            known, constant = value.constant()
+            if not known:
+                return None
+            constants.append(constant)
+        try:
+            result = function(*constants)
+        except Exception:
+            return None
+        return None if isinstance(result, (str, bytes)) and len(result) > MAX_TEXT else frozenset([result])
+
+    def _fold_text(self, values: list[Value]) -> frozenset[object] | None:
+        texts = [""]
+        for value in values:
+            if not value.consts or value.pts:
+                return None
+            texts = [t + str(c) for t in texts for c in sorted(value.consts, key=str)]
+            if len(texts) > 4 or len(texts[0]) > MAX_TEXT:
+                return None
+        return frozenset(texts)

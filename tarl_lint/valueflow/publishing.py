@@ -1,0 +1,84 @@
+"""Publishers and publish calls."""
+
+from __future__ import annotations
+
+from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.graph import Place
+from tarl_lint.valueflow.library import Library
+from tarl_lint.valueflow.machine import Arguments, Invocation, Publisher, SinkRecord
+from tarl_lint.valueflow.values import UNKNOWN, Frame, Obj, Value, pointer
+
+
+class Sinks(Library):
+    """Records sinks."""
+
+    def _publisher(self, it: Invocation) -> Value:
+        obj = self.intern("publisher", (it.frame.id, it.statement, it.call.slot))
+        info = obj.info if isinstance(obj.info, Publisher) else Publisher(api=it.fact.api)
+        obj.info = info
+        info.topics.update(it.argument(it.fact.topic).texts())
+        info.types.update(type_names(it.argument(it.fact.type)))
+        return pointer(obj)
+
+    def publish(self, target: Obj | None, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+        """Record a sink: everything inside the message reaches it, and whether it is reached at all."""
+        if target is None or not isinstance(target.info, Publisher):
+            return UNKNOWN
+        info = target.info
+        key = (frame.program.path, call.pos)
+        api = "rospy.Publisher.publish" if info.api.startswith("rospy") else "rclpy.Publisher.publish"
+        record = self.sinks.get(key)
+        if record is None:
+            record = SinkRecord(*key, api, frame.program.name, self.qualname(frame))
+            self.sinks[key] = record
+        record.topics |= info.topics
+        record.types |= info.types
+        node = self.node(frame, ("publish", call.slot), "publish")
+        self.graph.flow(self.all_used(arguments), node)
+        if frame.statement is not None:
+            self.under(frame, frame.statement, node)
+        record.nodes.add(node)
+        return UNKNOWN
+
+    def under(self, frame: Frame, statement: ir.Stmt, node: int) -> None:
+        """Let a node depend on the conditions that decide whether its statement runs, in callers too."""
+        control = self.control(frame)
+        for branch in control.direct.get(statement.id, ()):
+            decision, _ = self.branch(frame, branch)
+            self.graph.control[node].add(decision)
+            self._reached(frame, branch[0], node)
+        if statement.id in control.always:
+            self._entered(frame, node)
+
+    def _reached(self, frame: Frame, number: int, node: int) -> None:
+        """Let a node depend on what decides whether a condition is evaluated."""
+        place = self.graph.places[self.branch(frame, (number, ""))[0]]
+        if place.statement is None:
+            return
+        key = (frame.id, number, "reached")
+        if key not in self.graph.numbers:
+            waypoint = self.graph.node(key, place, frozenset())
+            self.under(frame, place.statement, waypoint)
+        waypoint = self.graph.numbers[key]
+        if waypoint != node:
+            self.graph.control[node].add(waypoint)
+
+    def _entered(self, frame: Frame, node: int) -> None:
+        """Let a node depend on what decides whether its function is called."""
+        caller, call = frame.caller, frame.call
+        if caller is None or call is None:
+            return
+        key = (frame.id, "entered")
+        if key not in self.graph.numbers:
+            waypoint = self.graph.node(key, Place(caller, call, "call", call.pos), frozenset())
+            self.under(caller, call, waypoint)
+        self.graph.control[node].add(self.graph.numbers[key])
+
+    def qualname(self, frame: Frame) -> str:
+        """Return the qualified name of the function (or class body) that a frame runs."""
+        return frame.function.qualname
+
+
+def type_names(value: Value) -> list[str]:
+    """Return the names of message types: the last part."""
+    return [o.name.rpartition(".")[2] for o in value.pts if o.kind in ("ext", "class")]

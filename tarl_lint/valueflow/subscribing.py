@@ -1,0 +1,180 @@
+"""Subscriptions: where messages come in, and the callbacks that they go to."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+
+from tarl_lint import catalog
+from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.activations import CALLABLE, ROOT_CALL
+from tarl_lint.valueflow.graph import Place
+from tarl_lint.valueflow.machine import Invocation, SourceRecord
+from tarl_lint.valueflow.publishing import Sinks, type_names
+from tarl_lint.valueflow.store import Root
+from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Obj, Value, join, pointer
+
+
+class Sources(Sinks):
+    """Records sources."""
+
+    def source(self, it: Invocation, callback: Value) -> SourceRecord:
+        """Record a subscription at the outermost call that supplies its callback."""
+        place, pos, statement, via = it.frame, it.call.pos, it.frame.statement, []
+        while place.caller is not None and place.call is not None and _supplied(place, callback):
+            via.append((place.program.path, pos))
+            statement = place.call
+            pos = self.call_position(place)
+            place = place.caller
+        key = (place.program.path, pos)
+        record = self.sources.get(key)
+        if record is None:
+            assert statement is not None  # noqa: S101 - a call stands in a statement
+            record = SourceRecord(
+                *key, it.fact.api, place.program.name, self.qualname(place), statement, place
+            )
+            self.sources[key] = record
+        record.via.update(via)
+        record.topics.update(it.argument(it.fact.topic).texts())
+        record.types.update(type_names(it.argument(it.fact.type)))
+        return record
+
+    def call_position(self, frame: Frame) -> ir.Pos:
+        """Return where the call stands that entered a frame."""
+        assert frame.call is not None  # noqa: S101 - asked before
+        return frame.call_pos or frame.call.pos
+
+    def _subscribe(self, it: Invocation) -> Value:
+        callback = it.argument(it.fact.callback)
+        record = self.source(it, callback)
+        extra = it.argument(it.fact.extra)
+        passed = [extra] if extra is not BOTTOM else []
+        self.connect(record, callback, passed)
+        return self.handle(it.frame, it.call)
+
+    def handle(self, frame: Frame, call: ir.Call) -> Value:
+        """Return the object that a registration gives back."""
+        return pointer(self.allocate("lib", frame, ("made", call.slot)))
+
+    def connect(self, record: SourceRecord, callback: Value, extra: Sequence[Value]) -> None:
+        """Run a callback whenever a message of the source arrives."""
+        for target in callback.pts:
+            if target.kind in CALLABLE or target.kind == "instance":
+                message = self.message(record, target)
+                self.call_when(
+                    ("callback", record.path, record.pos), target, [pointer(message), *extra], "callback"
+                )
+
+    def message(self, record: SourceRecord, target: Obj) -> Obj:
+        """Return the message object that a source hands to a callback."""
+        obj = record.messages.get(target.key)
+        if obj is None:
+            obj = record.messages[target.key] = Obj("message", (record.path, record.pos, target.key))
+            frame = self.described(target)
+            place = Place(frame or record.frame, None, "receive", (frame or record.frame).function.pos)
+            node = self.graph.node(("receive", obj.key), place, frozenset())
+            obj.info = node
+            record.nodes.add(node)
+            record.callbacks.add(frame.function.qualname if frame is not None else target.name)
+        return obj
+
+    def described(self, target: Obj) -> Frame | None:
+        """Return a frame that stands for a callback's function, whoever calls it."""
+        while target.kind in ("bound", "partial", "instance"):
+            if target.kind == "bound" and isinstance(target.info, tuple):
+                target = target.info[0]
+                continue
+            if target.kind == "partial" and isinstance(target.info, tuple):
+                inner: frozenset[Obj] = target.info[0].pts
+            else:
+                inner = self.read_field(target, "__call__").pts
+            if len(inner) != 1:
+                return None
+            target = next(iter(inner))
+        if target.kind != "closure" or not isinstance(target.info, tuple):
+            return None
+        function, _, program, _ = target.info
+        return Frame(("described", target.key), -1, function, program, self.module_objects[program.name])
+
+    def receive(self, it: Invocation) -> Value:
+        """Return the message that a waiting call gives."""
+        record = self.source(it, BOTTOM)
+        key = (it.frame.id, it.call.slot)
+        obj = record.messages.get(key)
+        if obj is None:
+            obj = record.messages[key] = Obj("message", (record.path, record.pos, key))
+            node = self.node(it.frame, ("receive", it.call.slot), "receive")
+            obj.info = node
+            record.nodes.add(node)
+        self._clear(obj)
+        return pointer(obj)
+
+    def filter(self, it: Invocation) -> Value:
+        """Return a subscriber of message_filters: rospy's starts with the topic, rclpy's with the node."""
+        first = it.arguments[0][0] if it.arguments[0] else BOTTOM
+        if len(it.arguments[0]) > 2 and not first.texts() and not it.argument(it.fact.type).texts():
+            it.fact = catalog.FILTER_WITH_NODE
+        record = self.source(it, BOTTOM)
+        obj = self.intern("filter", (record.path, record.pos))
+        obj.info = record
+        return pointer(obj)
+
+    def synchronizer(self, it: Invocation) -> Value:
+        """Return a synchroniser of several subscribers."""
+        given = it.argument(it.fact.topic)
+        obj = self.intern("synchronizer", (it.frame.id, it.statement, it.call.slot))
+        parts = self._unpacked(given)
+        if parts is None:
+            parts = [self.elements(given)] if all(o.kind == "sequence" for o in given.pts) else [given]
+        obj.info = (parts, (it.frame.program.path, it.call.pos))
+        return pointer(obj)
+
+    def register_filter(self, target: Obj | None, it: Invocation) -> Value:
+        """Run a callback with one message of each subscriber."""
+        if target is None:
+            return UNKNOWN
+        places = {(it.frame.program.path, it.call.pos)}
+        parts: Sequence[Value] = [pointer(target)]
+        if target.kind == "synchronizer" and isinstance(target.info, tuple):
+            parts = target.info[0]
+            places.add(target.info[1])
+        callback = it.argument((0, "cb"))
+        extra = it.arguments[0][1:]
+        for function in callback.pts:
+            if function.kind in CALLABLE:
+                messages = [self._filtered(part, function, places) for part in parts]
+                key = ("filter", it.frame.program.path, it.call.pos)
+                self.call_when(key, function, [*messages, *extra], "callback")
+        return UNKNOWN
+
+    def _filtered(self, part: Value, function: Obj, places: set[tuple[str, ir.Pos]]) -> Value:
+        """Return the message that a subscriber of message_filters hands on."""
+        message = BOTTOM
+        for subscriber in part.pts:
+            if isinstance(subscriber.info, SourceRecord):
+                subscriber.info.registered |= places
+                message = join(message, pointer(self.message(subscriber.info, function)))
+        return message
+
+    def call_when(self, key: Hashable, target: Obj, values: Sequence[Value], kind: str) -> None:
+        """Run a function on its own with these arguments."""
+        root = Root((key, target.kind, target.key), kind, target.name, once=kind == "thread")
+
+        def run(root: Root) -> None:
+            frame = self.root_frame(root)
+            self.call_object(target, (list(values), {}), frame, ROOT_CALL)
+
+        self.add_root(root, run)
+
+    def root_frame(self, root: Root) -> Frame:
+        """Return the frame that stands for ROS itself, calling."""
+        raise NotImplementedError
+
+    def call_later(self, target: Obj, frame: Frame) -> None:  # noqa: ARG002
+        """Have a function run on its own, with arguments of which nothing is known."""
+        self.call_when("later", target, [], "callback")
+
+
+def _supplied(frame: Frame, callback: Value) -> bool:
+    """Tell whether a function's caller hands in the callback."""
+    wanted = {o for o in callback.pts if o.kind in CALLABLE}
+    return bool(wanted) and any(wanted & v.pts for v in frame.arguments)
