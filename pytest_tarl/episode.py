@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -67,12 +67,23 @@ class Tarl:
         """Virtual seconds since the episode began."""
         return self.ros.now
 
-    def start(self, script: str, *, name: str | None = None, argv: Sequence[str] = ()) -> None:
-        """Start a node: a file relative to the test's folder, run as a program. Raises NodeError when it fails."""
+    def start(
+        self,
+        script: str,
+        *,
+        name: str | None = None,
+        argv: Sequence[str] = (),
+        parameters: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Start a node: a file relative to the test's folder, run as a program. Raises NodeError when it fails.
+
+        `argv` as on its command line, remappings included; `parameters` are added to those of all nodes.
+        """
         path = (self._folder / script).resolve()
         if not path.is_file():
             raise SettingsError(f"tarl.start: there is no file {script!r} in {self._folder}.")
         self.drives_ros = True
+        self.ros.parameters.update(parameters or {})
         imports = self._imports
 
         def program() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison
+from pytest_tarl.patching import patch
 from pytest_tarl.recording import Progress, record
 from pytest_tarl.repairing import RepairShop, repair
 from pytest_tarl.repeating import Instruments
@@ -27,10 +27,11 @@ IGNORED = "# Only the recorded utility is worth committing.\n*\n!.gitignore\n!ut
 
 @dataclass(frozen=True)
 class Account:
-    """What a mode has to tell: lines for the summary, and what fails the test."""
+    """What a mode has to tell: lines for the summary, what fails the test, the patch to apply."""
 
     lines: tuple[str, ...]
     problem: str = ""
+    patch: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,8 @@ class Mission:
     @property
     def fixture_path(self) -> Path:
         """Return where the utility fixture of the test is."""
-        return self.tarl / "utility" / f"{slug(self.test)}.npz"
+        digest = hashlib.sha256(self.test.encode()).hexdigest()[:8]
+        return self.tarl / "utility" / f"{patch.slug(self.test)}-{digest}.npz"
 
     @property
     def tarl(self) -> Path:
@@ -116,7 +118,7 @@ class Mission:
         return self._told(comparison, online, episodes)
 
     def _told(self, comparison: Comparison, online: Online, episodes: Mapping[str, int]) -> Account:
-        name = f"{slug(self.test, hashed=False)}-{self.drift or 'online'}"
+        name = f"{patch.slug(self.test)}-{patch.slug(self.drift or 'online')}"
         json_result.write(comparison, self.tarl / "results" / f"{name}.json", episodes)
         fixtures.save(as_fixture(comparison, online), self.tarl / "online" / f"{name}.npz")
         page = self.tarl / "report" / f"{name}.html"
@@ -129,10 +131,9 @@ class Mission:
             notes = [f"  no report page: {missing}"]
         shown = None if notes else page
         lines = terminal.lines(comparison, width=self.width, root=self.root, page=shown)
-        problem = ""
-        if comparison.verdict.result == "degraded":
-            problem = lines[0]
-        return Account((*lines, *notes), problem)
+        problem = lines[0] if comparison.verdict.result == "degraded" else ""
+        written = comparison.repair.patch if comparison.repair else ""
+        return Account((*lines, *notes), problem, self.root / written if written else None)
 
     def _fixture(self) -> Fixture:
         if not self.fixture_path.exists():
@@ -154,12 +155,6 @@ class Mission:
 
 class NoFixtureError(FixtureError):
     """Nothing was recorded yet: the test is skipped, or fails under `--tarl-strict`."""
-
-
-def slug(test: str, *, hashed: bool = True) -> str:
-    """Make a file name of a test's id: readable, and told apart by a hash."""
-    readable = re.sub(r"[^A-Za-z0-9]+", "-", test.replace(".py", "")).strip("-")[:60]
-    return f"{readable}-{hashlib.sha256(test.encode()).hexdigest()[:8]}" if hashed else readable
 
 
 def as_fixture(comparison: Comparison, online: Online) -> Fixture:

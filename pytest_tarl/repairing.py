@@ -281,7 +281,7 @@ def _repair(shop: RepairShop, accepted: Accepted | None) -> Repair:
     originals = {path: path.read_bytes() for path in changed}
     diff = patch.unified_diff(originals, changed, shop.root, _evidence(shop, accepted, guard))
     written = patch.write(diff, shop.patches, shop.fixture.test, shop.comparison.drift)
-    return Repair(True, guard, edits, diff, written.relative_to(shop.root).as_posix())
+    return Repair(True, guard, edits, patch.readable(diff), written.relative_to(shop.root).as_posix())
 
 
 def _edit(mutation: Mutation) -> Edit:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import pytest
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from pytest_tarl.missions import Account
     from pytest_tarl.recording import Progress
 
+PATCH = "tarl_patch"  # attribute of a report: path of the patch that mends the test
 ACCOUNT = "tarl_account"  # attribute of a report: lines for the summary
 
 
@@ -27,6 +29,7 @@ class TarlSession:
         self.config = config
         self.options = options
         self._accounts: list[list[str]] = []
+        self._patches: list[str] = []
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
         """Make an id of every drift scenario: `test_delivers[mud]`, `[online]` without one."""
@@ -72,6 +75,7 @@ class TarlSession:
         account = call.result if call.excinfo is None else None
         if account is not None:
             setattr(report, ACCOUNT, list(account.lines))
+            setattr(report, PATCH, str(account.patch or ""))
             if account.problem:
                 report.outcome, report.longrepr = "failed", account.problem
         elif call.excinfo is not None and isinstance(call.excinfo.value, TarlError):
@@ -85,6 +89,7 @@ class TarlSession:
         """Collect what the tests have to tell, also from xdist's workers."""
         if hasattr(report, ACCOUNT):
             self._accounts.append(getattr(report, ACCOUNT))
+            self._patches += [getattr(report, PATCH)] if getattr(report, PATCH) else []
 
     def pytest_terminal_summary(self, terminalreporter: TerminalReporter) -> None:
         """Tell it in one section."""
@@ -93,6 +98,16 @@ class TarlSession:
         terminalreporter.section("TARL", sep="=")
         for number, lines in enumerate(self._accounts):
             terminalreporter.write_line("\n".join(["", *lines] if number else lines))
+
+    def pytest_unconfigure(self) -> None:
+        """Let the last lines of the output be the commands that apply what was found."""
+        if not self._patches:
+            return
+        from pytest_tarl.patching.patch import apply_command
+
+        terminal = self.config.get_terminal_writer()
+        for path in self._patches:
+            terminal.line(apply_command(Path(path), self.config.invocation_params.dir))
 
     def _run(self, item: pytest.Function) -> Account:
         from pytest_tarl.missions import Mission, NoFixtureError

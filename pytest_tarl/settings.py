@@ -132,9 +132,9 @@ def _drifts(where: str, drifts: Any) -> Mapping[str, Any]:
     return dict(drifts)
 
 
-def _number(where: str, name: str, value: Any, kind: type, low: float, high: float) -> Any:
-    fits = isinstance(value, (int, kind)) and not isinstance(value, bool) and low <= value <= high
-    if not fits:
+def _number(where: str, name: str, value: Any, kind: type[int] | type[float], low: float, high: float) -> Any:
+    takes = int if kind is int else (int, float)
+    if isinstance(value, bool) or not isinstance(value, takes) or not low <= value <= high:
         what = "a whole number" if kind is int else "a number"
         raise SettingsError(f"{where}: {name} must be {what} from {low:g} to {high:g}, got {value!r}.")
     return kind(value)

@@ -16,7 +16,7 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
-from pytest_tarl.learning.statistics import END, Chain, Ints, Sample, aligned
+from pytest_tarl.learning.statistics import END, Chain, Ints, Sample, aligned, sum_by
 from pytest_tarl.learning.utility import GAMMA_STEP, Floats, chain_utility
 from pytest_tarl.model import Region, Result, Verdict
 from pytest_tarl.sensors import Cell
@@ -101,11 +101,11 @@ def fitted(chain: Chain, cells: int) -> Model:
     """Fit the model to off-line transitions."""
     utility = chain_utility(chain, cells)
     inside = chain.next_cell != END
-    moves = np.bincount(chain.cell, weights=_gain(chain, utility) * chain.count, minlength=cells)
+    moves = sum_by(chain.cell, _gain(chain, utility) * chain.count, cells)
+    rewards = sum_by(chain.cell, chain.reward, cells)
     with np.errstate(invalid="ignore", divide="ignore"):
-        move = moves / np.bincount(chain.cell, weights=chain.count * inside, minlength=cells)
-        reward = np.bincount(chain.cell, weights=chain.reward, minlength=cells)
-        reward = reward / np.bincount(chain.cell, weights=chain.count, minlength=cells)
+        move = moves / sum_by(chain.cell, chain.count * inside, cells)
+        reward = rewards / sum_by(chain.cell, chain.count, cells)
     return Model(utility, move, reward)
 
 
@@ -121,9 +121,9 @@ def residuals(compared: Sample, model: Model) -> Residuals:
     move = np.where((chain.next_cell != END) & ~np.isnan(move), move, 0.0)
     reward = chain.reward - model.reward[chain.cell] * chain.count
     return Residuals(
-        move=_sum_by(chain.episode, chain.cell, move, shape),
-        reward=_sum_by(chain.episode, chain.cell, np.where(known[chain.cell], reward, 0.0), shape),
-        novel=_sum_by(chain.episode, chain.cell, np.where(known[chain.cell], 0.0, chain.count), shape),
+        move=_by_episode(chain, move, shape),
+        reward=_by_episode(chain, np.where(known[chain.cell], reward, 0.0), shape),
+        novel=_by_episode(chain, np.where(known[chain.cell], 0.0, chain.count), shape),
     )
 
 
@@ -201,11 +201,9 @@ def _labels(rows: int, first: int, generator: np.random.Generator) -> Floats:
     return labels
 
 
-def _sum_by(row: Ints, column: Ints, weights: Floats, shape: tuple[int, int]) -> Floats:
-    flat = np.bincount(row * shape[1] + column, weights=weights, minlength=shape[0] * shape[1]).astype(
-        np.float64, copy=False
-    )
-    return flat.reshape(shape)
+def _by_episode(chain: Chain, weights: Floats, shape: tuple[int, int]) -> Floats:
+    """Return the sums per episode and cell, shape (episodes, cells)."""
+    return sum_by(chain.episode * shape[1] + chain.cell, weights, shape[0] * shape[1]).reshape(shape)
 
 
 def _variance(values: NDArray[np.float64]) -> float:

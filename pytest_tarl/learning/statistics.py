@@ -111,6 +111,11 @@ class EventSequence:
     flow: Floats
 
 
+def sum_by(index: Ints, weights: Floats | Ints, size: int) -> Floats:
+    """Return the sum of the weights at each index, shape (size,)."""
+    return np.bincount(index, weights=weights, minlength=size).astype(np.float64, copy=False)
+
+
 def event_sequence(trace: Trace, members: Sequence[int]) -> EventSequence:
     """Return the subsequence of a taint list whose n-th site has the global number `members[n]`, -1 for none.
 
@@ -140,13 +145,13 @@ def _given(step: Ints, reward: Floats) -> Floats:
     last = np.flatnonzero(np.append(step[1:] != step[:-1], True)) if step.size else np.empty(0, np.int64)
     owner = np.searchsorted(step[last], np.arange(reward.size), side="right")
     receivers = np.concatenate(([0], last + 1))[owner]
-    return np.bincount(receivers, weights=reward, minlength=step.size + 1)
+    return sum_by(receivers, reward, step.size + 1)
 
 
 def relabelled(trace: Trace, cells: Sequence[Cell]) -> Trace:
     """Number the trace's cells as in `cells`, which must hold them all."""
     index = {cell: i for i, cell in enumerate(cells)}
-    place = np.array([*(index[cell] for cell in trace.cells), -1], dtype=np.int64)
+    place = np.array([*(index[cell] for cell in trace.cells), -1], dtype=np.int32)
     return replace(
         trace, cells=tuple(cells), event_cell=place[trace.event_cell], step_cell=place[trace.step_cell]
     )
@@ -175,13 +180,13 @@ def _chain(trace: Trace, names: Sequence[str]) -> Chain:
     following = np.append(cell[1:], END) if cell.size else cell
     pairs, inverse, count = _unique_pairs(cell, following)
     columns = [trace.parts[name][known] for name in names]
-    summed = [np.bincount(inverse, weights=column, minlength=count.size) for column in columns]
+    summed = [sum_by(inverse, column, count.size) for column in columns]
     return Chain(
         episode=np.zeros(count.size, np.int64),
         cell=pairs[0],
         next_cell=pairs[1],
         count=count,
-        reward=np.bincount(inverse, weights=trace.reward[known], minlength=count.size),
+        reward=sum_by(inverse, trace.reward[known], count.size),
         parts=np.stack(summed, axis=1) if summed else np.zeros((count.size, 0)),
     )
 
@@ -193,7 +198,7 @@ def _list_sample(sequence: EventSequence, width: int) -> ListSample:
     states, inverse, visits = np.unique(sequence.state, return_inverse=True, return_counts=True)
 
     def sums(column: Floats) -> Floats:
-        return np.bincount(inverse, weights=column, minlength=states.size)
+        return sum_by(inverse, column, states.size)
 
     return ListSample(
         width,

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from pytest_tarl.learning.statistics import END, START, Chain, EventSequence, ListSample
+from pytest_tarl.learning.statistics import END, START, Chain, EventSequence, ListSample, sum_by
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -28,7 +28,7 @@ def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamm
     `reward` is the summed reward per state, shape (states,). Transitions to `END` end the episode.
     """
     states = reward.size
-    visits = np.bincount(state, weights=count, minlength=states)
+    visits = sum_by(state, count, states)
     seen = np.flatnonzero(visits)
     place = np.full(states + 1, -1, dtype=np.int64)
     place[seen] = np.arange(seen.size)
@@ -47,7 +47,7 @@ def batch(recorded: ListSample, cells: int, scale: float, gamma: float = GAMMA_E
     edges, visits = recorded.edges, recorded.visits
     states = 1 + cells * recorded.width
     signal = visits.reward + visits.scaled / scale
-    reward = np.bincount(visits.state, weights=signal, minlength=states)
+    reward = sum_by(visits.state, signal, states)
     return _by_cell(fixed_point(edges.state, edges.next_state, edges.count, reward, gamma), cells)
 
 
@@ -76,7 +76,7 @@ def sarsa(
 
 def chain_utility(chain: Chain, cells: int, gamma: float = GAMMA_STEP) -> Floats:
     """Return U(x) on the chain of sensor cells, shape (cells,); NaN where never visited."""
-    reward = np.bincount(chain.cell, weights=chain.reward, minlength=cells)
+    reward = sum_by(chain.cell, chain.reward, cells)
     return fixed_point(chain.cell, chain.next_cell, chain.count, reward, gamma)
 
 

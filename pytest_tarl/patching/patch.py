@@ -47,10 +47,11 @@ def readable(diff: str) -> str:
 
 
 def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
-    """Write a patch as `<test>-<drift>-<hash of its content>.patch`, completely or not at all."""
+    """Write a patch as `<test>-<drift>-<hash of its content>.patch`, whole or not at all, in place of older ones."""
     content = diff.encode("utf-8", "surrogateescape")
     digest = hashlib.sha256(content).hexdigest()[:8]
-    path = folder / f"{slug(test)}-{slug(drift or 'online')}-{digest}.patch"
+    name = f"{slug(test)}-{slug(drift or 'online')}"
+    path = folder / f"{name}-{digest}.patch"
     folder.mkdir(parents=True, exist_ok=True)
     handle, temporary = tempfile.mkstemp(dir=folder, prefix=".patch-")
     try:
@@ -61,6 +62,9 @@ def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
+    for older in folder.glob(f"{name}-????????.patch"):
+        if older != path:
+            older.unlink()
     return path
 
 

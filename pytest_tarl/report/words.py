@@ -12,6 +12,7 @@ from statistics import fmean
 from pytest_tarl.model import Comparison, Edit, OperandEffect, Reason, Repair, Slice
 from pytest_tarl.report.regions import Vocabulary
 
+SIGNIFICANT = 0.05  # p from which a loss is not spoken of
 SHORTEST = 16  # characters of a code line that are shown however narrow the place is
 REASONS: dict[Reason, str] = {
     "": "no reason was recorded",
@@ -67,10 +68,11 @@ def verdict_sentence(comparison: Comparison) -> str:
         loss = amount(verdict.loss)
         return f"In {world} an episode earns {loss} less than designed ({p_value(verdict.p_loss)})."
     if verdict.result == "drifted":
-        return (
-            f"{_capital(world)} differs from the designed one ({p_value(verdict.p_drift)}), "
-            f"but no loss of reward was found ({p_value(verdict.p_loss)})."
-        )
+        differs = f"{_capital(world)} differs from the designed one ({p_value(verdict.p_drift)})"
+        if verdict.loss > 0 and verdict.p_loss < SIGNIFICANT:
+            tolerated = f"within the {amount(verdict.tolerance)} that is tolerated"
+            return f"{differs}; an episode earns {amount(verdict.loss)} less, {tolerated}."
+        return f"{differs}, but no loss of reward was found ({p_value(verdict.p_loss)})."
     seen = f"a loss of {amount(verdict.detectable_loss)} per episode would have been"
     if not math.isfinite(verdict.detectable_loss):
         seen = "too few episodes were run to see any loss"

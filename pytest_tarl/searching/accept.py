@@ -63,7 +63,8 @@ def accept(
     worlds = [drifted] if nominal is None else [drifted, nominal]
     risk = alpha / len(LOOKS)
     runs: list[tuple[Outcome, ...]] = []
-    for world, reason in zip(worlds, ("gain too small", "nominal gets worse"), strict=False):
+    reasons: tuple[Reason, ...] = ("gain too small", "nominal gets worse")
+    for world, reason in zip(worlds, reasons, strict=False):
         held, outcomes = _holds(map(world, seeds), reference, risk)
         runs.append(outcomes)
         if not held:
