@@ -102,8 +102,11 @@ class Holding:
 
     fresh: dict[str, bool] = field(default_factory=dict)  # variables written in the run that is looked at
 
+    delivered: set[Obj] = field(default_factory=set)  # messages that have just arrived
+
     def look(self, machine: Linker, frame: Frame) -> None:
         """Add what the variables hold now."""
+        self.delivered |= machine.delivered
         for name, value, written in _variables(machine, frame):
             self.fresh[name] = written and self.fresh.get(name, True)
             before = self.values.get(name)
@@ -138,9 +141,10 @@ class Holding:
                 if self._intact(name, rest, obj, origins, topic):
                     found.append((name + _spelled(rest), self.fresh[name]))
                 break
-        new = [
-            text for text, fresh in found if fresh
-        ]  # beside a new message, what an earlier one left is stale
+        arrived = any(topic in origins.topics.get(m, ()) for m in self.delivered)
+        new = (
+            [text for text, fresh in found if fresh] if arrived else []
+        )  # an earlier message's values are stale
         texts = new or [text for text, _ in found]
         return tuple(sorted(texts, key=lambda text: (text.count("."), len(text), text)))
 

@@ -159,10 +159,10 @@ class Tracer:
         """Return a statement as a step."""
         text = written.text
         role = ROLES.get(type(written.node).__name__, "assign")
-        if id(written) in self.arrivals(origin):
-            role = "receive"
-        elif sink:
+        if sink:
             role = "publish"
+        elif id(written) in self.arrivals(origin):
+            role = "receive"
         elif registers:
             role = "register"
         elif written.qualname.endswith("<lambda>") and role == "assign":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Sequence
 
 from tarl_lint.valueflow.machine import SourceRecord
@@ -29,30 +28,36 @@ class Surroundings:
         registration = self.registration(origin)
         if registration is not None:
             found[id(registration)] = registration
-            self._around(registration, registration, found, edges)
+            self._around(registration, registration, registration, found, edges)
             self._callers(origin.frame, registration, found, edges)
         for frame, written in steps:
-            self._around(written, written, found, edges)
+            self._around(written, written, written, found, edges)
             self._callers(frame, written, found, edges)
         return list(found.values()), list(edges)
 
     def _callers(
         self, frame: Frame, step: Written, found: dict[int, Written], edges: dict[tuple[int, int], None]
     ) -> None:
+        """Add what is around the calls that lead to a frame, from the inside out."""
         current: Frame | None = frame
+        inner = step
         while current is not None and current.caller is not None and current.call is not None:
             call = self.texts[current.caller.program.path].statement(current.call.pos)
             if call is not None:
-                self._around(call, step, found, edges)
+                inner = self._around(call, step, inner, found, edges)
             current = current.caller
 
     def _around(
-        self, written: Written, step: Written, found: dict[int, Written], edges: dict[tuple[int, int], None]
-    ) -> None:
-        around, inner = written.around, step
-        while around is not None:
-            if isinstance(around.node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-                return
+        self,
+        written: Written,
+        step: Written,
+        inner: Written,
+        found: dict[int, Written],
+        edges: dict[tuple[int, int], None],
+    ) -> Written:
+        """Add the loops and guards around a statement; return the outermost."""
+        around = written.around
+        while around is not None and not around.defines:
             if around.shown:
                 found[id(around)] = around
                 edges[id(around), id(step)] = None
@@ -60,3 +65,4 @@ class Surroundings:
                     edges[id(around), id(inner)] = None
                 inner = around
             around = around.around
+        return inner

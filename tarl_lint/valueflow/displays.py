@@ -7,7 +7,6 @@ from tarl_lint.valueflow.heap import ANY, item_field
 from tarl_lint.valueflow.operators import Operators
 from tarl_lint.valueflow.values import (
     NONE,
-    ClassInfo,
     Frame,
     Obj,
     Value,
@@ -88,16 +87,18 @@ class Displays(Operators):
     def mark(self, node: int, expr: ir.Expr, value: Value, frame: Frame) -> None:
         """Note that a node is a constant, or passes on another unchanged."""
         known, constant = value.constant()
-        if isinstance(expr, (ir.Name, ir.Attribute, ir.Item)) or _conversion(expr):
+        if (
+            isinstance(expr, (ir.Name, ir.Attribute, ir.Item))
+            or _conversion(expr)
+            or self._parameter_call(expr, value)
+        ):
             self.graph.copies.add(node)
         elif known and isinstance(constant, (bool, int, float)):
             self.graph.literals[node] = (constant, expr.pos, frame.program.path)
 
-    def class_of(self, obj: Obj) -> ClassInfo | None:
-        """Return the class of an instance or class object."""
-        cls = obj.info if obj.kind == "instance" else obj
-        info = cls.info if isinstance(cls, Obj) else None
-        return info if isinstance(info, ClassInfo) else None
+    def _parameter_call(self, expr: ir.Expr, value: Value) -> bool:
+        """Tell whether an expression is a call that gives a ROS parameter."""
+        return isinstance(expr, ir.Call) and bool(value.deps) and value.deps <= self.graph.parameters
 
 
 def _conversion(expr: ir.Expr) -> bool:

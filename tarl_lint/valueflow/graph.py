@@ -36,6 +36,7 @@ class Graph:
     held: dict[int, set[int]] = field(default_factory=dict)
     numbers: dict[Hashable, int] = field(default_factory=dict)
     literals: dict[int, tuple[object, ir.Pos, str]] = field(default_factory=dict)  # node → constant it is
+    parameters: set[int] = field(default_factory=set)  # nodes of ROS parameters
     copies: set[int] = field(default_factory=set)  # nodes that pass on their only input unchanged
     carried: dict[int, tuple[int, int]] = field(
         default_factory=dict

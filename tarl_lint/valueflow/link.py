@@ -80,6 +80,7 @@ class Linker(Execution):
         self.store = Store(self.shared, root)
         self.stack = []
         self.spent = 0
+        self.delivered = frozenset()
         run(root)
         for key in self.store.own():
             value = self._at_end(key)

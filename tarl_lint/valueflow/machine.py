@@ -111,6 +111,7 @@ class Machine:
         self.frames: dict[Hashable, Frame] = {}
         self.frame_numbers: dict[Hashable, int] = {}
         self.stack: list[Frame] = []
+        self.delivered: frozenset[Obj] = frozenset()  # messages that ROS hands over in this run
         self.spent = 0  # statements executed in this run of a root
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.sources: dict[tuple[str, ir.Pos], SourceRecord] = {}

@@ -48,6 +48,7 @@ class Ros(Sources):
         default = it.argument(it.fact.extra)
         if default is BOTTOM:
             node = self.node(it.frame, ("parameter", it.call.slot), "assign")
+            self.graph.parameters.add(node)
             self.graph.literals[node] = (None, it.call.pos, it.frame.program.path)
             return Value(frozenset([node]))
         expr = _default(it)
@@ -55,6 +56,7 @@ class Ros(Sources):
 
     def _default_of(self, default: Value, expr: ir.Expr | None, frame: Frame, slot: Hashable) -> Value:
         node = self.node(frame, slot, "assign")
+        self.graph.parameters.add(node)
         if expr is not None:
             self.mark(node, expr, default, frame)
         self.graph.flow(default.deps, node)

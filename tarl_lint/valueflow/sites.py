@@ -27,6 +27,11 @@ class Written:
     text: Text
 
     @property
+    def defines(self) -> bool:
+        """Tell whether it is a function or class: what is around it is not around its calls."""
+        return isinstance(self.node, (*FUNCTIONS, ast.ClassDef))
+
+    @property
     def shown(self) -> bool:
         """Tell whether it is shown around steps inside it: a loop, or the `__main__` guard."""
         return isinstance(self.node, LOOPS) or (

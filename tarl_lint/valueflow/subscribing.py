@@ -161,6 +161,7 @@ class Sources(Sinks):
 
         def run(root: Root) -> None:
             frame = self.root_frame(root)
+            self.delivered = frozenset(o for v in values for o in v.pts if o.kind == "message")
             self.call_object(target, (list(values), {}), frame, ROOT_CALL)
 
         self.add_root(root, run)

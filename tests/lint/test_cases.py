@@ -16,7 +16,9 @@ UNITS = sorted(p for p in CASES.iterdir() if p.suffix == ".py" or (p / "__init__
 MARK = re.compile(r"# (source|sink|clean)((?: ~?\w+)*)")
 
 
-def marks(unit: Path) -> tuple[dict[tuple[str, int], str], set[tuple[str, str, int, str]], set[tuple[str, int]]]:
+def marks(
+    unit: Path,
+) -> tuple[dict[tuple[str, int], str], set[tuple[str, str, int, str]], set[tuple[str, int]]]:
     sources: dict[tuple[str, int], str] = {}
     flows: set[tuple[str, str, int, str]] = set()
     clean: set[tuple[str, int]] = set()

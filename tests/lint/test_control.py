@@ -1,0 +1,101 @@
+import ast
+from textwrap import dedent
+
+import pytest
+
+from tarl_lint.source import Module
+from tarl_lint.valueflow.control import control_dependence
+from tarl_lint.valueflow.lower import lower_module
+
+
+def dependence(text: str) -> dict[int, set[tuple[int, str]]]:
+    """Return by line which lines, gone which way, decide whether it runs."""
+    text = dedent(text).strip()
+    body = lower_module(Module("m.py", "m", text, ast.parse(text))).body
+    lines: dict[int, int] = {}
+
+    def number(statements: object) -> None:
+        for s in statements:  # type: ignore[attr-defined]
+            lines[s.id] = s.pos[0]
+            for inner in ("body", "orelse", "final"):
+                number(getattr(s, inner, ()))
+            for _, _, handler in getattr(s, "handlers", ()):
+                number(handler)
+
+    number(body)
+    control = control_dependence(body)
+    return {lines[n]: {(lines[b], way) for b, way in branches} for n, branches in control.direct.items()}
+
+
+def test_both_arms_of_a_condition_depend_on_it_and_what_follows_does_not():
+    found = dependence("""
+        if a:
+            b()
+        else:
+            c()
+        d()
+    """)
+    assert (found[2], found[4], found[5]) == ({(1, "then")}, {(1, "else")}, set())
+
+
+def test_what_follows_a_loop_does_not_depend_on_it():
+    found = dependence("""
+        while a:
+            b()
+        c()
+    """)
+    assert (found[1], found[2], found[3]) == ({(1, "body")}, {(1, "body")}, set())
+
+
+def test_the_rest_of_an_endless_loop_depends_on_the_way_out():
+    found = dependence("""
+        while True:
+            if a:
+                break
+            b()
+        c()
+    """)
+    assert (found[4], found[5]) == ({(2, "else")}, set())
+
+
+@pytest.mark.parametrize("leave", ["return", "raise E"])
+def test_what_comes_after_an_early_end_depends_on_its_condition(leave):
+    found = dependence(f"""
+        if a:
+            {leave}
+        b()
+    """)
+    assert found[3] == {(1, "else")}
+
+
+def test_a_handler_depends_on_the_condition_of_the_raise():
+    found = dependence("""
+        try:
+            if a:
+                raise E
+            b()
+        except E:
+            c()
+        d()
+    """)
+    assert (2, "then") in found[6]
+    assert (2, "else") in found[4]
+    assert found[7] == set()
+
+
+def test_the_rest_of_a_loop_body_depends_on_continue():
+    found = dependence("""
+        for x in y:
+            if x:
+                continue
+            b()
+    """)
+    assert found[4] == {(2, "else")}
+
+
+def test_an_endless_loop_without_a_way_out_has_an_analysis():
+    found = dependence("""
+        while True:
+            a()
+    """)
+    assert 2 in found

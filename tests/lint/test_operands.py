@@ -1,0 +1,111 @@
+import pytest
+
+from tests.lint.analysing import analysed, site
+
+NODE = """
+    import time
+    import numpy as np
+    import rospy
+    from rclpy.node import Node
+    GAIN = 2.5
+    TABLE = {"p": 0.4, "i": 0.02}
+    class Arm:
+        reach = 1.5
+        def __init__(self, k, offset=0.25):
+            self.k = k
+            self.offset = offset
+            self.moved = 0.0
+    class Driver(Node):
+        def __init__(self):
+            super().__init__("driver")
+            self.arm = Arm(0.75)
+            self.last = 0.0
+            self.declare_parameter("speed", 1.25)
+            self.speed = self.get_parameter("speed").get_parameter_value().double_value
+            self.limit = rospy.get_param("~limit", 9.0)
+            self.free = rospy.get_param("~free")
+            self.out = self.create_publisher(F, "b", 10)
+            self.create_subscription(F, "a", self.on, 10)
+        def on(self, msg):
+            self.last = msg.data
+            v = {expression}
+            self.out.publish(v)
+"""
+
+
+@pytest.mark.parametrize(
+    ("expression", "operands"),
+    [
+        ("3 * msg.data", [("3", 3)]),
+        ("-0.5 * msg.data + 2", [("-0.5", -0.5), ("2", 2)]),
+        ("GAIN * msg.data", [("GAIN", 2.5)]),
+        ("msg.data * self.arm.k", [("self.arm.k", 0.75)]),
+        ("msg.data * self.arm.offset", [("self.arm.offset", 0.25)]),
+        ("msg.data * self.arm.reach", [("self.arm.reach", 1.5)]),
+        ("msg.data * TABLE['p']", [("TABLE['p']", 0.4)]),
+        ("msg.data * self.speed", [("self.speed", 1.25)]),
+        ("min(msg.data, self.limit)", [("self.limit", 9.0)]),
+        ("msg.data * self.free", [("self.free", None)]),
+        ("(lambda x, g=0.125: g * x)(msg.data)", []),
+        ("msg.data if msg.data > 0.1 else True", [("0.1", 0.1), ("True", True)]),
+        ("msg.ranges[3]", []),
+        ("msg.ranges[1:4]", []),
+        ("msg.data + np.zeros(3)", []),
+        ("f'{msg.data:.2f} of {10}'", []),
+        ("msg.data * self.last", []),
+        ("msg.data * time.time()", []),
+    ],
+)
+def test_operands_are_the_constants_that_a_site_uses(tmp_path, expression, operands):
+    analysis = analysed(tmp_path, node=NODE.replace("{expression}", expression))
+    step = next(s for s in analysis.sites if s.code.startswith("v = "))
+    found = analysis.operands(step.site)
+    assert [(o.code, o.value) for o in found] == operands
+    for operand in found:
+        assert operand.span.line == step.span.line
+        line = analysis.sources[operand.span.path].split("\n")[operand.span.line - 1]
+        assert line[operand.span.column - 1 : operand.span.end_column - 1] == operand.code
+        assert operand.literal == (operand.code[-1].isdigit() or operand.code == "True")
+
+
+def test_a_named_constant_says_where_it_is_written(tmp_path):
+    analysis = analysed(tmp_path, node=NODE.replace("{expression}", "GAIN * msg.data"))
+    (operand,) = analysis.operands(next(s.site for s in analysis.sites if s.code.startswith("v = ")))
+    assert operand.definition is not None
+    assert operand.definition.line == 6
+
+
+def test_a_parameter_that_callers_fill_differently_has_no_value(tmp_path):
+    analysis = analysed(
+        tmp_path,
+        node="""
+        import rospy
+        def send(gain, x):
+            y = gain * x
+            out.publish(y)
+        def on(msg):
+            send(2.0, msg.data)
+            send(3.0, msg.data)
+        out = rospy.Publisher("b", F)
+        rospy.Subscriber("a", F, on)
+        """,
+    )
+    (operand,) = analysis.operands(site(analysis, "y = gain * x"))
+    assert (operand.code, operand.value, operand.definition) == ("gain", None, None)
+
+
+def test_conditions_have_operands_too(tmp_path):
+    analysis = analysed(
+        tmp_path,
+        node="""
+        import rospy
+        NEAR = 0.3
+        def on(msg):
+            if msg.data < NEAR:
+                out.publish(1.0)
+        out = rospy.Publisher("b", F)
+        rospy.Subscriber("a", F, on)
+        """,
+    )
+    assert [o.code for o in analysis.operands(site(analysis, "if msg.data < NEAR:"))] == ["NEAR"]
+    assert [o.code for o in analysis.operands(site(analysis, "out.publish(1.0)"))] == ["1.0"]
