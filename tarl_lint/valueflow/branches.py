@@ -80,10 +80,16 @@ class Branches(Ros):
             way = self.decide(s.source, s, frame)
             return way is not False, way is not True and not s.endless
         node = self.condition(frame, s)
-        self.graph.flow(self.use(source), node)
+        self._length(source, node)
         element = self.elements(source)
         self.bind_target(s.target, element, frame, "element", s.source)
         return True, True
+
+    def _length(self, source: Value, node: int) -> None:
+        """How often a loop runs depends on a container's length: on what chose to add elements, not on them."""
+        ours = frozenset(o for o in source.pts if o.kind in ("sequence", "mapping"))
+        self.graph.flow(self.use(Value(source.deps, source.pts - ours)), node)
+        self.graph.choice(self.deep(ours), node)
 
     def _loop_end(self, s: ir.Loop, done: list[Delta], broken: list[Delta], frame: Frame) -> bool:
         if done and s.orelse:

@@ -69,6 +69,13 @@ class Graph:
             if theirs and not theirs <= mine:
                 self._choose(dep, theirs - mine, node)
 
+    def choice(self, deps: Iterable[int], node: int) -> None:
+        """Let only the choice that was made for `deps` reach `node`, not their data."""
+        mine = self.branches[node]
+        for dep in deps:
+            if not self.branches[dep] <= mine:
+                self._choose(dep, self.branches[dep] - mine, node)
+
     def _choose(self, dep: int, choice: Branches, node: int) -> None:
         """Say that which value arrives at `node` was decided by conditions that `node` is not under."""
         gate = self.node((dep, choice), self.places[dep], self.branches[node])
