@@ -65,6 +65,8 @@ class Calls(Activations):
         self, expr: ir.Call, function: ir.Attribute, base: Value, arguments: Arguments, frame: Frame
     ) -> Value:
         """Call a method on everything the receiver may be."""
+        if self.nothing_yet(base):
+            return BOTTOM
         if not base.pts:
             return self.call_method(base, None, function.name, arguments, frame, expr)
         targets: list[tuple[Obj, Value]] = []
@@ -102,6 +104,8 @@ class Calls(Activations):
     def call_value(self, function: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
         """Call whatever a value may be; what is not known passes its arguments on."""
         targets = sorted(function.pts, key=_order)
+        if self.nothing_yet(function):
+            return BOTTOM
         if not targets:
             return Value(function.deps | self.all_used(arguments))
         if len(targets) == 1:

@@ -126,6 +126,8 @@ class Execution(Branches):
 
     def assign_fallback(self, expr: ir.Expr, value: Value, frame: Frame) -> None:
         """Add data to the variable that holds an object of which nothing is known."""
+        if self.nothing_yet(self.evaluate(expr, frame)):
+            return
         while isinstance(expr, (ir.Item, ir.Attribute)):
             if isinstance(expr, ir.Attribute) and self.evaluate(expr.base, frame).pts:
                 break

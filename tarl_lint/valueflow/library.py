@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from tarl_lint import catalog
+from tarl_lint.catalog import Fact
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.containers import CONTAINERS, READERS, Containers
 from tarl_lint.valueflow.heap import ANY
-from tarl_lint.valueflow.machine import Arguments, Invocation
+from tarl_lint.valueflow.machine import Arguments, Invocation, Publisher
 from tarl_lint.valueflow.values import (
     BOTTOM,
     NONE,
@@ -31,7 +32,9 @@ class Library(Containers):
             return UNKNOWN
         if qualified in catalog.WAITS:
             self.wait(frame)
-        fact = catalog.fact(qualified)
+        if qualified in self.config.sinks:
+            return self.send(Invocation(qualified, BOTTOM, arguments, frame, call), Publisher(api=qualified))
+        fact = self._configured(qualified) or catalog.fact(qualified)
         if fact is not None:
             return self.ros_call(Invocation(qualified, BOTTOM, arguments, frame, call, fact))
         name = qualified.removeprefix("builtins.").removeprefix("collections.")
@@ -39,6 +42,12 @@ class Library(Containers):
         if special is not None:
             return special(self, Invocation(name, BOTTOM, arguments, frame, call))
         return self.generic(qualified, arguments, frame, call)
+
+    def _configured(self, qualified: str) -> Fact | None:
+        """Return what a source named in the settings does: it subscribes when it is given a callback."""
+        if qualified not in self.config.sources:
+            return None
+        return Fact("configured", qualified, (0, "topic"), (1, "type"), (-1, "callback"))
 
     def generic(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
         """Pass the arguments on to the result; write the argument that the catalog says is written."""
@@ -92,8 +101,8 @@ class Library(Containers):
     ) -> Value:
         """Call a method of an object that is not a class of ours."""
         kind = target.kind if target is not None else ""
-        if kind == "publisher" and name == "publish":
-            return self.publish(target, arguments, frame, call)
+        if target is not None and isinstance(target.info, Publisher) and name == "publish":
+            return self.send(Invocation(name, base, arguments, frame, call), target.info)
         if name == "registerCallback" and kind in ("filter", "synchronizer"):
             return self.register_filter(target, Invocation(name, base, arguments, frame, call))
         if kind == "parameter":
@@ -112,7 +121,7 @@ class Library(Containers):
             return READERS[name](self, Invocation(name, base, arguments, frame, call))
         return self._unknown_method(base, name, arguments, frame, call)
 
-    def publish(self, target: Obj | None, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+    def send(self, it: Invocation, info: Publisher) -> Value:
         """Record a sink."""
         raise NotImplementedError
 

@@ -45,6 +45,10 @@ class Linker(Execution):
             self._settle()
             if len(self.roots) == before:
                 break
+        if self.waiting:  # all is stored by now: what is still unknown stays so
+            self.patient = False
+            self.pending.update(self.waiting)
+            self._settle()
         self.graph.settle()
 
     def replay(self) -> None:
@@ -65,7 +69,7 @@ class Linker(Execution):
 
     def _settle(self) -> None:
         for _ in range(MAX_ROUNDS):
-            batch = list(self.pending)
+            batch = sorted(self.pending, key=lambda r: r.kind != "module")
             if not batch:
                 return
             self.pending.clear()

@@ -64,6 +64,7 @@ class Publisher:
     api: str = ""
 
 
+NONE_ONLY = frozenset([None])
 Arguments = tuple[list[Value], dict[str, Value]]
 
 
@@ -112,6 +113,8 @@ class Machine:
         self.frame_numbers: dict[Hashable, int] = {}
         self.stack: list[Frame] = []
         self.delivered: frozenset[Obj] = frozenset()  # messages that ROS hands over in this run
+        self.patient = True  # what is not known yet may be stored by a root that runs later
+        self.waiting: dict[Root, None] = {}  # roots that met such a thing
         self.spent = 0  # statements executed in this run of a root
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.sources: dict[tuple[str, ir.Pos], SourceRecord] = {}
@@ -189,6 +192,17 @@ class Machine:
         if not content:
             return value.deps
         return value.deps | self.graph.through(content, value.deps)
+
+    def nothing_yet(self, value: Value) -> bool:
+        """Tell whether nothing was stored so far where a value was looked for, or only None."""
+        if value.pts or (value.deps and value.consts != NONE_ONLY):
+            return False
+        if value.consts == NONE_ONLY:
+            return True
+        if value.consts is None or value.consts or not self.patient:
+            return False
+        self.waiting[self.store.root] = None
+        return True
 
     # --- what the parts provide --------------------------------------------------------------------------
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.graph import Place
 from tarl_lint.valueflow.library import Library
-from tarl_lint.valueflow.machine import Arguments, Invocation, Publisher, SinkRecord
-from tarl_lint.valueflow.values import UNKNOWN, Frame, Obj, Value, pointer
+from tarl_lint.valueflow.machine import Invocation, Publisher, SinkRecord
+from tarl_lint.valueflow.values import UNKNOWN, Frame, Value, pointer
 
 
 class Sinks(Library):
@@ -20,21 +20,18 @@ class Sinks(Library):
         info.types.update(type_names(it.argument(it.fact.type)))
         return pointer(obj)
 
-    def publish(self, target: Obj | None, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+    def send(self, it: Invocation, info: Publisher) -> Value:
         """Record a sink: everything inside the message reaches it, and whether it is reached at all."""
-        if target is None or not isinstance(target.info, Publisher):
-            return UNKNOWN
-        info = target.info
+        frame, call = it.frame, it.call
         key = (frame.program.path, call.pos)
-        api = "rospy.Publisher.publish" if info.api.startswith("rospy") else "rclpy.Publisher.publish"
         record = self.sinks.get(key)
         if record is None:
-            record = SinkRecord(*key, api, frame.program.name, self.qualname(frame))
+            record = SinkRecord(*key, _api(info), self.modules[key[0]].name, self.qualname(frame))
             self.sinks[key] = record
         record.topics |= info.topics
         record.types |= info.types
         node = self.node(frame, ("publish", call.slot), "publish")
-        self.graph.flow(self.all_used(arguments), node)
+        self.graph.flow(self.all_used(it.arguments), node)
         if frame.statement is not None:
             self.under(frame, frame.statement, node)
         record.nodes.add(node)
@@ -82,3 +79,9 @@ class Sinks(Library):
 def type_names(value: Value) -> list[str]:
     """Return the names of message types: the last part."""
     return [o.name.rpartition(".")[2] for o in value.pts if o.kind in ("ext", "class")]
+
+
+def _api(info: Publisher) -> str:
+    """Name the call that publishes, by who made the publisher."""
+    library = info.api.partition(".")[0]
+    return f"{library}.Publisher.publish" if library in ("rospy", "rclpy") else info.api

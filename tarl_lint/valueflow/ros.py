@@ -88,6 +88,7 @@ ACTIONS: Mapping[str, Callable[..., Value]] = {
     "publisher": Ros._publisher,
     "subscribe": Ros._subscribe,
     "receive": Ros.receive,
+    "configured": Ros._configured_source,
     "filter": Ros.filter,
     "synchronizer": Ros.synchronizer,
     "timer": Ros._timer,

@@ -30,7 +30,7 @@ class Sources(Sinks):
         if record is None:
             assert statement is not None  # noqa: S101 - a call stands in a statement
             record = SourceRecord(
-                *key, it.fact.api, place.program.name, self.qualname(place), statement, place
+                *key, it.fact.api, self.modules[key[0]].name, self.qualname(place), statement, place
             )
             self.sources[key] = record
         record.via.update(via)
@@ -49,6 +49,15 @@ class Sources(Sinks):
         extra = it.argument(it.fact.extra)
         passed = [extra] if extra is not BOTTOM else []
         self.connect(record, callback, passed)
+        return self.handle(it.frame, it.call)
+
+    def _configured_source(self, it: Invocation) -> Value:
+        """Subscribe when one of the arguments is a function, else return the message."""
+        given = [*it.arguments[0], *it.arguments[1].values()]
+        callbacks = [v for v in given if any(o.kind in ("closure", "bound", "partial") for o in v.pts)]
+        if not callbacks:
+            return self.receive(it)
+        self.connect(self.source(it, callbacks[0]), callbacks[0], [])
         return self.handle(it.frame, it.call)
 
     def handle(self, frame: Frame, call: ir.Call) -> Value:

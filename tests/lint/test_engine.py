@@ -1,0 +1,118 @@
+from textwrap import dedent
+
+from tarl_lint.config import Config
+from tarl_lint.engine import analyse
+from tarl_lint.relevance import relevant
+from tarl_lint.source import Module, parse
+
+
+def module(name, text, path=None):
+    parsed = parse(path or f"{name.replace('.', '/')}.py", dedent(text).encode(), name)
+    assert isinstance(parsed, Module)
+    return parsed
+
+
+NODE = """
+    import rospy
+    import bus
+    from tools import clean, helper
+    def on(msg):
+        pub.publish({value})
+    pub = rospy.Publisher("b", F)
+    rospy.Subscriber("a", F, on)
+    """
+
+
+def kinds(*modules, **settings):
+    return [(f.kind, f.source.topics, f.sink.topics) for f in analyse(modules, Config(**settings))]
+
+
+def test_the_order_of_the_files_does_not_matter():
+    node = module("node", NODE.format(value="helper(msg.data)"))
+    tools = module("tools", "def helper(x):\n    return x * 2\ndef clean(x):\n    return x")
+    assert analyse([node, tools], Config()) == analyse([tools, node], Config()) != ()
+
+
+def test_a_sanitizer_of_the_settings_ends_a_flow():
+    node = module("node", NODE.format(value="bus.checked(msg.data)"))
+    assert kinds(node) == [("explicit", ("a",), ("b",))]
+    assert kinds(node, sanitizers=("bus.checked",)) == []
+
+
+def test_sources_of_the_settings_subscribe_or_return_a_message():
+    text = """
+        import rospy
+        import bus
+        pub = rospy.Publisher("b", F)
+        bus.listen("a", lambda msg: pub.publish(msg.data))
+        pub.publish(bus.read("c"))
+        """
+    assert kinds(module("node", text)) == []
+    found = kinds(module("node", text), sources=("bus.listen", "bus.read"))
+    assert found == [("explicit", ("a",), ("b",)), ("explicit", ("c",), ("b",))]
+
+
+def test_sinks_of_the_settings_are_publish_calls():
+    text = """
+        import rospy
+        import bus
+        rospy.Subscriber("a", F, lambda msg: bus.send(msg.data))
+        """
+    assert kinds(module("node", text)) == []
+    assert kinds(module("node", text), sinks=("bus.send",)) == [("explicit", ("a",), ())]
+
+
+def test_of_modules_with_one_name_the_nearest_is_meant():
+    near = module("tools", "def helper(x):\n    return 0", "one/tools.py")
+    far = module("tools", "def helper(x):\n    return x", "two/tools.py")
+    text = NODE.format(value="helper(msg.data)")
+    assert kinds(module("node", text, "one/node.py"), near, far) == []
+    assert kinds(module("other", text, "two/other.py"), near, far) == [("explicit", ("a",), ("b",))]
+
+
+def test_relative_imports_find_their_package():
+    package = module("pkg", "", "pkg/__init__.py")
+    inner = module("pkg.inner.tools", "def helper(x):\n    return x", "pkg/inner/tools.py")
+    node = module(
+        "pkg.nodes.node",
+        """
+        import rospy
+        from ..inner import tools
+        from ..inner.tools import helper
+        def on(msg):
+            pub.publish(helper(msg.data))
+            pub.publish(tools.helper(msg.data))
+        pub = rospy.Publisher("b", F)
+        rospy.Subscriber("a", F, on)
+        """,
+        "pkg/nodes/node.py",
+    )
+    assert len(kinds(package, inner, node)) == 2
+
+
+def test_modules_that_cannot_matter_are_left_out():
+    node = module("node", NODE.format(value="helper(msg.data)"))
+    tools = module("tools", "def helper(x):\n    return x\ndef clean(x):\n    return x")
+    apart = module("apart", "x = 1")
+    user = module("user", "import node")
+    assert [m.name for m in relevant([apart, node, tools, user], Config())] == ["node", "tools", "user"]
+    assert relevant([apart, tools], Config()) == []
+
+
+def test_classes_that_only_others_start_are_started():
+    node = module(
+        "node",
+        """
+        from rclpy.node import Node
+        class Echo(Node):
+            def __init__(self):
+                super().__init__("echo")
+                self.pub = self.create_publisher(F, "b", 10)
+                self.create_subscription(F, "a", self.on, 10)
+            def on(self, msg):
+                self.pub.publish(msg)
+            def never(self):
+                self.pub.publish(self.last)
+        """,
+    )
+    assert kinds(node) == [("explicit", ("a",), ("b",))]
