@@ -5,7 +5,7 @@
 For every seed the shuttle's transit is recorded off-line (200 episodes), run in mud (40 episodes), run in the
 off-line world as if it were another one (40 episodes), and repaired; then recorded and run in mud with two lines
 swapped, and with gain and wheels in other units (0.5 instead of 5, the same motion). What is mud is asked from the
-world, not from a sensor.
+world, not from a sensor. The line follower is recorded, run at dusk and repaired beside it.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ from pytest_tarl.sensors import Cell
 from pytest_tarl.settings import Designation, Options
 from tarl_lint.api import Analysis, analyse
 
-EXAMPLE = Path(__file__).resolve().parent.parent / "examples" / "shuttle"
+EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 OFFLINE, ONLINE = 200, 40
 UTILITIES = ("batch", "SARSA", "batch, no flow term", "SARSA, no flow term")
 RESTORED = 0.95
@@ -55,11 +55,13 @@ class Variant:
 
     test: str
     edits: tuple[tuple[str, str, str], ...] = ()
-    whole: bool = False
+    repaired: bool = False
+    mud: bool = False
+    example: str = "shuttle"
 
 
 VARIANTS = {
-    "Figure 4(a)": Variant("test_shuttle.py::test_delivers", whole=True),
+    "Figure 4(a)": Variant("test_shuttle.py::test_delivers", repaired=True, mud=True),
     "Figure 4(b), lines swapped": Variant("test_swapped.py::test_delivers_swapped"),
     "gain 0.5": Variant(
         "test_shuttle.py::test_delivers",
@@ -69,6 +71,9 @@ VARIANTS = {
             ("world.py", "TOP_SPEED = 55.0", "TOP_SPEED = 5.5"),
         ),
     ),
+    "line follower": Variant(
+        "test_line_follower.py::test_follows_the_line", repaired=True, example="line_follower"
+    ),
 }
 
 
@@ -77,7 +82,7 @@ class Study:
     """A pytest plugin that runs one test's episodes in both worlds and writes down what it saw."""
 
     seed: int
-    whole: bool
+    variant: Variant
     found: dict[str, Any] = field(default_factory=dict)
 
     @pytest.hookimpl(tryfirst=True)
@@ -89,34 +94,27 @@ class Study:
         analysis = analyse([item.path.parent / node for node in marked.nodes], root=root)
         sites = plan(analysis)
         instruments = Instruments({root / p: at for p, at in sites.positions.items()}, sites.publishes)
-        self._study(ItemRollout(item, marked, instruments), marked, analysis, sites, root, _watched_mud())
+        self._study(ItemRollout(item, marked, instruments), marked, analysis, sites, root)
         finish(item, nextitem)
         return True
 
     def _study(
-        self,
-        rollout: ItemRollout,
-        marked: Designation,
-        analysis: Analysis,
-        sites: Plan,
-        root: Path,
-        mud: list[bool],
+        self, rollout: ItemRollout, marked: Designation, analysis: Analysis, sites: Plan, root: Path
     ) -> None:
         (drift,) = marked.drifts
+        mud = _watched_mud() if self.variant.mud else []
         offline = self._run(rollout, sites, "offline", OFFLINE, None)
         online = self._run(rollout, sites, "online", ONLINE, drift)
-        self.found["atr"] = {
-            "offline": float(offline.sample.total.mean()),
-            "online": float(online.sample.total.mean()),
-        }
-        self.found["success"] = {"offline": offline.success, "online": online.success}
+        worlds = {"offline": offline, "online": online}
+        self.found["atr"] = {name: float(world.sample.total.mean()) for name, world in worlds.items()}
         region = self._judged(offline, online).region
         self.found["peaks"] = _peaks(offline, online, sites, region)
-        if self.whole:
-            same = self._run(rollout, sites, "online", ONLINE, None)
-            self.found["null"] = self._judged(offline, same).verdict.result
+        if self.variant.mud:
             self.found["muddy"] = _in_mud(rollout, online, drift, mud)
             self.found["region"] = sorted(map(list, (*region.cells, *region.novel)))
+        if self.variant.repaired:
+            same = self._run(rollout, sites, "online", ONLINE, None)
+            self.found["null"] = self._judged(offline, same).verdict.result
             self._repaired(rollout, marked, analysis, sites, root, offline, mud)
 
     def _run(self, rollout: ItemRollout, sites: Plan, stream: str, count: int, drift: str | None) -> Recorded:
@@ -159,7 +157,7 @@ class Study:
             "culprit": comparison.culprits[0].site.code,
             **{name: fmean(totals) for name, totals in comparison.totals.items()},
         }
-        if outcome.accepted is not None:
+        if outcome.accepted is not None and self.variant.mud:
             guard = outcome.accepted.candidate.guard
             self.found["guard"] = _guard_hits(rollout, shop, outcome.accepted.candidate, guard, drift, mud)
 
@@ -240,13 +238,17 @@ def one(name: str, seed: int) -> dict[str, Any]:
     """Study one variant with one seed, in this process."""
     variant = VARIANTS[name]
     with tempfile.TemporaryDirectory() as folder:
-        copy = Path(folder) / "shuttle"
-        shutil.copytree(EXAMPLE, copy, ignore=shutil.ignore_patterns(".tarl", "__pycache__", ".pytest_cache"))
+        copy = Path(folder) / variant.example
+        shutil.copytree(
+            EXAMPLES / variant.example,
+            copy,
+            ignore=shutil.ignore_patterns(".tarl", "__pycache__", ".pytest_cache"),
+        )
         for file, old, new in variant.edits:
             text = (copy / file).read_text()
             assert old in text, f"{file} no longer holds {old!r}: mend VARIANTS"
             (copy / file).write_text(text.replace(old, new))
-        study = Study(seed, variant.whole)
+        study = Study(seed, variant)
         code = pytest.main(
             ["-q", "-p", "no:cacheprovider", "--rootdir", str(copy), str(copy / variant.test)], [study]
         )
@@ -258,42 +260,54 @@ def table(results: dict[str, list[dict[str, Any]]]) -> str:
     """Return what the seeds showed, as a Markdown table."""
     rows = []
     for name, found in results.items():
-        for utility in UTILITIES:
-            peaks = [seen["peaks"][utility] for seen in found]
-            rows.append((f"{name}: peak of the slice difference, {utility}", _counted(peaks)))
-    whole = next(found for name, found in results.items() if VARIANTS[name].whole)
-    repaired = [seen["repair"] for seen in whole if seen["repair"]["accepted"]]
-    hit = [seen["guard"] for seen in whole if "guard" in seen]
-    rows += [
-        ("ATR off-line / on-line", f"{_mean(whole, 'offline'):.2f} / {_mean(whole, 'online'):.2f}"),
+        if VARIANTS[name].example == "shuttle":
+            for utility in UTILITIES:
+                peaks = _counted([seen["peaks"][utility] for seen in found])
+                rows.append((f"{name}: peak of the slice difference, {utility}", peaks))
+    for name, found in results.items():
+        rows += _mud_rows(found) if VARIANTS[name].mud else []
+        rows += _repair_rows(VARIANTS[name].example, found) if VARIANTS[name].repaired else []
+    return "\n".join(["| what | seen |", "|---|---|", *(f"| {what} | {seen} |" for what, seen in rows)])
+
+
+def _mud_rows(found: list[dict[str, Any]]) -> list[tuple[str, str]]:
+    hit = [seen["guard"] for seen in found if "guard" in seen]
+    return [
         (
-            "on-line below half of off-line",
-            _share(s["atr"]["online"] < s["atr"]["offline"] / 2 for s in whole),
-        ),
-        ("degraded in mud", _share(seen["repair"]["verdict"] == "degraded" for seen in whole)),
-        ("not degraded in the off-line world again", _share(seen["null"] != "degraded" for seen in whole)),
-        ("region holds the muddy cells", _share(all(c in s["region"] for c in s["muddy"]) for s in whole)),
-        ("muddy cells in the region, mean share", f"{fmean(_covered(seen) for seen in whole):.2f}"),
-        ("repair accepted", _share(seen["repair"]["accepted"] for seen in whole)),
-        ("repaired ≥ 95 % of off-line", _share(_restored(seen) for seen in whole)),
-        (
-            "nominal world not worse",
-            _share(r["nominal_repaired"] >= RESTORED * r["offline"] for r in repaired),
+            "shuttle: region holds the muddy cells",
+            _share(all(c in s["region"] for c in s["muddy"]) for s in found),
         ),
         (
-            "guard true on ≥ 90 % in mud, false on ≥ 90 % elsewhere",
+            "shuttle: guard true on ≥ 90 % of the steps in mud, false on ≥ 90 % of the others",
             _share(h["in mud"] >= 0.9 and h["elsewhere"] >= 0.9 for h in hit),
         ),
-        ("guards", _counted([r["guard"] for r in repaired])),
-        ("edits", _counted([", ".join(r["edits"]) for r in repaired])),
-        (
-            "episodes of search / acceptance, mean",
-            " / ".join(
-                f"{fmean(s['repair']['episodes'][k] for s in whole):.0f}" for k in ("search", "acceptance")
-            ),
-        ),
     ]
-    return "\n".join(["| what | seen |", "|---|---|", *(f"| {what} | {seen} |" for what, seen in rows)])
+
+
+def _repair_rows(example: str, found: list[dict[str, Any]]) -> list[tuple[str, str]]:
+    fixed = [seen["repair"] for seen in found]
+    kept = [one for one in fixed if one["accepted"]]
+    episodes = [f"{fmean(one['episodes'][kind] for one in fixed):.0f}" for kind in ("search", "acceptance")]
+    rows = [
+        ("ATR off-line / on-line", f"{_mean(found, 'offline'):.2f} / {_mean(found, 'online'):.2f}"),
+        (
+            "on-line below half of off-line",
+            _share(s["atr"]["online"] < s["atr"]["offline"] / 2 for s in found),
+        ),
+        ("degraded under the drift", _share(one["verdict"] == "degraded" for one in fixed)),
+        ("not degraded in the off-line world again", _share(seen["null"] != "degraded" for seen in found)),
+        ("first culprit", _counted([one["culprit"] for one in fixed])),
+        ("repair accepted", _share(one["accepted"] for one in fixed)),
+        ("repaired ≥ 95 % of off-line", _share(_restored(one) for one in fixed)),
+        (
+            "nominal world not worse",
+            _share(one["nominal_repaired"] >= RESTORED * one["offline"] for one in kept),
+        ),
+        ("guards", _counted([one["guard"] or "none" for one in kept])),
+        ("edits", _counted([", ".join(one["edits"]) for one in kept])),
+        ("episodes of search / acceptance, mean", " / ".join(episodes)),
+    ]
+    return [(f"{example}: {what}", seen) for what, seen in rows]
 
 
 def _counted(values: list[str]) -> str:
@@ -310,12 +324,7 @@ def _mean(found: list[dict[str, Any]], world: str) -> float:
     return fmean(seen["atr"][world] for seen in found)
 
 
-def _covered(seen: dict[str, Any]) -> float:
-    return fmean(cell in seen["region"] for cell in seen["muddy"]) if seen["muddy"] else 1.0
-
-
-def _restored(seen: dict[str, Any]) -> bool:
-    fixed = seen["repair"]
+def _restored(fixed: dict[str, Any]) -> bool:
     return bool(fixed["accepted"]) and fixed["repaired"] >= RESTORED * fixed["offline"]
 
 
