@@ -18,7 +18,7 @@ from tarl_lint.valueflow.values import BOTTOM, NONE, Branches, Frame, Nodes, Obj
 
 MAX_CALLS = 24  # nested calls that are told apart; deeper ones are taken for library calls
 MAX_FRAMES = 20_000  # activations in all
-MAX_STATEMENTS = 60_000  # executed in one run of a root; then calls are taken for library calls
+MAX_STATEMENTS = 20_000  # executed in one run of a root; then calls are taken for library calls
 
 
 @dataclass(slots=True, eq=False)
