@@ -1,4 +1,4 @@
-"""Import both packages whole: pytester forgets what a run in this process imports, and half a package is worse than none."""
+"""Import both packages whole: pytester forgets what a run in this process imports, and half is worse than none."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ def test_a_measurement_needs_bins_and_a_text_categories(value: object) -> None:
 
 
 def test_an_unknown_category_is_named() -> None:
-    with pytest.raises(SettingsError, match="'icy'.*'dry', 'wet'"):
+    with pytest.raises(SettingsError, match=r"'icy'.*'dry', 'wet'"):
         Sensor("mode", categories=("dry", "wet")).bin("icy")
 
 

@@ -1,0 +1,42 @@
+"""The documentation says what is true: messages exist, links lead somewhere, commands have their flags."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").rglob("*.md")])
+SOURCE = "\n".join(path.read_text("utf-8") for path in sorted((ROOT / "pytest_tarl").rglob("*.py")))
+SPOKEN = re.sub(r'"\s*\n\s*f?"', "", SOURCE)  # sentences that are written over several lines
+
+
+def headings(page: Path) -> list[str]:
+    return re.findall(r"^### (.+)$", page.read_text("utf-8"), re.MULTILINE)
+
+
+@pytest.mark.parametrize("message", headings(ROOT / "docs" / "messages.md"))
+def test_every_explained_message_exists(message: str) -> None:
+    assert message in SPOKEN
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_lead_to_files(page: Path) -> None:
+    links = re.findall(r"\]\(([^)#\s]+)[^)]*\)", page.read_text("utf-8"))
+    missing = [link for link in links if "://" not in link and not (page.parent / link).exists()]
+    assert not missing
+
+
+def test_every_flag_that_is_mentioned_exists() -> None:
+    plugin = (ROOT / "pytest_tarl" / "plugin.py").read_text("utf-8")
+    mentioned = {flag for page in PAGES for flag in re.findall(r"--tarl-[a-z]+", page.read_text("utf-8"))}
+    assert mentioned
+    assert {flag for flag in mentioned if f'"{flag}"' not in plugin} == set()
+
+
+def test_every_flag_is_in_the_guide() -> None:
+    guide = (ROOT / "docs" / "guide.md").read_text("utf-8")
+    flags = re.findall(r'"(--tarl-[a-z]+)"', (ROOT / "pytest_tarl" / "plugin.py").read_text("utf-8"))
+    assert {flag for flag in flags if flag not in guide} == set()
