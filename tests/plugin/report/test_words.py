@@ -35,21 +35,27 @@ def test_a_running_mean_is_the_average_so_far():
 
 
 SENTENCES = {
-    "degraded": "In the drift scenario 'mud' an episode earns 3.00 less than designed (p = 0.01).",
-    "drifted": (
-        "The drift scenario 'mud' differs from the designed one (p = 0.002), "
-        "but no loss of reward was found (p = 0.01)."
+    Verdict("degraded", 0.002, 0.01, 3.0, 0.4, 0.5): (
+        "In the drift scenario 'mud' an episode earns 3.00 less than designed (p = 0.01)."
     ),
-    "no difference": (
+    Verdict("drifted", 0.002, 0.3, 0.1, 0.4, 0.5): (
+        "The drift scenario 'mud' differs from the designed one (p = 0.002), "
+        "but no loss of reward was found (p = 0.3)."
+    ),
+    Verdict("drifted", 0.002, 0.01, 0.2, 0.4, 0.5): (
+        "The drift scenario 'mud' differs from the designed one (p = 0.002); "
+        "an episode earns 0.20 less, within the 0.50 that is tolerated."
+    ),
+    Verdict("no difference", 0.6, 0.4, 0.1, 0.4, 0.5): (
         "No difference was found between the drift scenario 'mud' and the designed one; "
         "a loss of 0.40 per episode would have been."
     ),
 }
 
 
-@pytest.mark.parametrize(("result", "said"), SENTENCES.items())
-def test_every_verdict_has_its_sentence(varied, result, said):
-    assert words.verdict_sentence(varied(verdict=Verdict(result, 0.002, 0.01, 3.0, 0.4, 0.5))) == said
+@pytest.mark.parametrize(("verdict", "said"), SENTENCES.items())
+def test_every_verdict_has_its_sentence(varied, verdict, said):
+    assert words.verdict_sentence(varied(verdict=verdict)) == said
 
 
 def test_a_loss_that_could_not_have_been_seen_at_all_is_said(varied):
