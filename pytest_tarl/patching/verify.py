@@ -1,0 +1,54 @@
+"""The last look before a patch is written: on the concrete syntax tree, nothing of the file is lost but what changes.
+
+Edits are made on spans of the text. This check knows nothing of spans: it parses both texts, comments and all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from typing import TYPE_CHECKING
+
+from pytest_tarl.errors import RepairError
+
+if TYPE_CHECKING:
+    import libcst
+
+
+def nothing_lost(path: str, original: str, patched: str, changed: Collection[int]) -> None:
+    """Check that every simple statement and comment of the original stands in the patched text, in the same order.
+
+    `changed` are the lines (from 1) of the statements that the repair rewrites; those may differ. Raises RepairError
+    when the patched text does not parse or loses something.
+    """
+    import libcst as cst
+    from libcst.metadata import MetadataWrapper, PositionProvider
+
+    try:
+        before, after = MetadataWrapper(cst.parse_module(original)), cst.parse_module(patched)
+    except cst.ParserSyntaxError as problem:
+        raise RepairError(
+            f"The repair of {path} would not parse ({problem.message}), so no patch is written."
+        ) from problem
+    places = before.resolve(PositionProvider)
+    wanted = [
+        text
+        for node, text in _pieces(before.module, before.module)
+        if not any(places[node].start.line <= line <= places[node].end.line for line in changed)
+    ]
+    kept = (text for _, text in _pieces(after, after))
+    for piece in wanted:
+        if piece not in kept:  # consumes up to the piece: a subsequence, in order
+            raise RepairError(f"The repair of {path} would lose `{piece}`, so no patch is written.")
+
+
+def _pieces(node: libcst.CSTNode, module: libcst.Module) -> Iterator[tuple[libcst.CSTNode, str]]:
+    """Yield simple statements and comments in the order of the text, without their indentation."""
+    import libcst as cst
+
+    if isinstance(node, cst.Comment):
+        yield node, node.value
+    elif isinstance(node, cst.BaseSmallStatement):
+        yield node, module.code_for_node(node.with_changes(semicolon=cst.MaybeSentinel.DEFAULT)).strip()
+    else:
+        for child in node.children:
+            yield from _pieces(child, module)
