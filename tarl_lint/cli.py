@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import Final
 
 from tarl_lint import baseline, report, runner
-from tarl_lint.config import BASELINE_NAME, Config, resolve, shown
+from tarl_lint.config import Config, Options, resolve, shown
 from tarl_lint.errors import LintError, OutputError
 from tarl_lint.files import write_whole
+from tarl_lint.keys import BASELINE_NAME
 from tarl_lint.options import options, parser
 from tarl_lint.report import paint, summary
 from tarl_lint.report.line import Line, View, plain
@@ -42,12 +43,13 @@ def _run(typed: Namespace) -> int:
         return 0
     chosen = options(typed)
     config = resolve(chosen)
-    if config.select or config.ignore:
-        _check_codes(config)
+    _check(config)
     if typed.show_settings:
-        _print(_settings(config))
+        from tarl_lint.report.settings import settings
+
+        _print(settings(config))
         return 0
-    result = runner.run(chosen, config)
+    result = _lint(chosen, config)
     if typed.write_baseline:
         _print(_accept(result, config))
         return 0
@@ -61,13 +63,29 @@ def _explanation(code: str) -> Iterator[Line]:
     return explanation(code)
 
 
-def _check_codes(config: Config) -> None:
-    """Refuse codes that no rule has, wherever they come from."""
-    from tarl_lint.explain import check_codes
+def _lint(chosen: Options, config: Config) -> Result:
+    """Run, saying on a terminal what a long run is at."""
+    if not sys.stderr.isatty():
+        return runner.run(chosen, config)
+    from tarl_lint.progress import Progress
 
-    for key, codes in (("select", config.select), ("ignore", config.ignore)):
-        origin = dict(config.origins)[key]
-        check_codes(codes, f"--{key}" if origin == "command line" else f"{origin}: {key!r}")
+    with Progress(sys.stderr) as progress:
+        return runner.run(chosen, config, progress.tell)
+
+
+def _check(config: Config) -> None:
+    """Refuse codes that no rule has and wrappers of what ROS does not have, wherever they come from."""
+    per_file = tuple(code for _, codes in config.per_file_ignores for code in codes)
+    for key, codes in (("select", config.select), ("ignore", config.ignore), ("per-file-ignores", per_file)):
+        if codes:
+            from tarl_lint.explain import check_codes
+
+            origin = dict(config.origins)[key]
+            check_codes(codes, f"--{key}" if origin == "command line" else f"{origin}: {key!r}")
+    if config.wrappers:
+        from tarl_lint.wrapping import facts
+
+        facts(config.wrappers)
 
 
 def _show(typed: Namespace, result: Result) -> None:
@@ -119,27 +137,3 @@ def _accept(result: Result, config: Config) -> Iterator[Line]:
     yield ((f"{shown(path)}: {summary.many(total, 'flow')} accepted ({', '.join(parts)}).", "strong"),)
     if result.errors:
         yield from summary.not_analysed(result)
-
-
-def _settings(config: Config) -> Iterator[Line]:
-    """Yield the settings in use, as they would stand in a settings file, and where each comes from."""
-    origins = dict(config.origins)
-    values = {
-        "select": list(config.select),
-        "ignore": list(config.ignore),
-        "exclude": list(config.exclude),
-        "baseline": shown(config.baseline) if config.baseline else "",
-        "sanitizers": list(config.sanitizers),
-        "fail-on": config.fail_on,
-    }
-    yield ((f"# settings file: {shown(config.file) if config.file else 'none'}", "quiet"),)
-    yield ((f"# relative to:   {(config.root or Path.cwd()).as_posix()}", "quiet"),)
-    for key, value in values.items():
-        text = f"{key} = {_toml(value)}"
-        yield ((f"{text:<40}", ""), (f"  # {origins.get(key, 'default')}", "quiet"))
-
-
-def _toml(value: Sequence[str]) -> str:
-    import json  # strings and lists of them are written alike
-
-    return json.dumps(value, ensure_ascii=False)

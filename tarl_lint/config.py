@@ -5,18 +5,23 @@ from __future__ import annotations
 import importlib
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Literal, cast, get_args
+from typing import Any, Final, cast
 
 from tarl_lint.errors import BaselineError, ConfigError
-
-FailOn = Literal["never", "hazard", "explicit", "implicit"]
+from tarl_lint.keys import BASELINE_NAME, KEYS, FailOn, Wrapper
 
 TABLE: Final = "tarl-lint"
-BASELINE_NAME: Final = "tarl-flows.json"
-FAIL_ON: Final[tuple[FailOn, ...]] = get_args(FailOn)
+
+
+@dataclass(frozen=True)
+class Stdin:
+    """The text of a file that came through the standard input, as an editor has it before it is saved."""
+
+    path: Path
+    data: bytes
 
 
 @dataclass(frozen=True)
@@ -32,6 +37,8 @@ class Options:
     no_baseline: bool = False
     write_baseline: bool = False
     fail_on: FailOn | None = None
+    per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] | None = None
+    stdin: Stdin | None = None
 
 
 @dataclass(frozen=True)
@@ -40,7 +47,9 @@ class Config:
 
     `select` and `ignore` hold rule codes or their beginnings (`TARL1`); an empty `select` means all rules.
     `exclude` holds patterns as in .gitignore; they and a named baseline are relative to `root`.
+    `per_file_ignores` holds such patterns with the codes that are not wanted in the files they match.
     `sources`, `sinks` and `sanitizers` are qualified names (`robot.bus.listen`); what a sanitizer returns is clean.
+    `wrappers` are functions that subscribe, publish or wait as one of ROS does.
     `origins` names where each value comes from: "default", "command line" or the settings file.
     """
 
@@ -53,6 +62,8 @@ class Config:
     sources: tuple[str, ...] = ()
     sinks: tuple[str, ...] = ()
     sanitizers: tuple[str, ...] = ()
+    wrappers: tuple[Wrapper, ...] = ()
+    per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] = ()
     file: Path | None = None
     origins: tuple[tuple[str, str], ...] = ()
 
@@ -85,7 +96,11 @@ def resolve(options: Options) -> Config:
         exclude=choose("exclude", options.exclude, ()),
         baseline=_baseline(options, root, choose("baseline", options.baseline, None)),
         fail_on=choose("fail-on", options.fail_on, "explicit"),
+        sources=choose("sources", None, ()),
+        sinks=choose("sinks", None, ()),
         sanitizers=choose("sanitizers", None, ()),
+        wrappers=choose("wrappers", None, ()),
+        per_file_ignores=choose("per-file-ignores", options.per_file_ignores, ()),
         file=file,
         origins=tuple(origins.items()),
     )
@@ -174,34 +189,6 @@ def _parse_toml(path: Path, data: bytes) -> dict[str, Any]:
         return cast("dict[str, Any]", toml.loads(data.decode("utf-8")))
     except ValueError as error:  # also bytes that are not UTF-8
         raise ConfigError(f"{shown(path)} is not valid TOML: {error}.") from None
-
-
-def _texts(value: Any) -> tuple[str, ...] | None:
-    texts = isinstance(value, list) and all(isinstance(v, str) and v for v in value)
-    return tuple(value) if texts else None
-
-
-def _codes(value: Any) -> tuple[str, ...] | None:
-    codes = _texts(value)
-    return codes and tuple(code.upper() for code in codes) if codes is not None else None
-
-
-def _text(value: Any) -> str | None:
-    return value if isinstance(value, str) and value else None
-
-
-def _fail_on(value: Any) -> str | None:
-    return value if value in FAIL_ON else None
-
-
-KEYS: Final[Mapping[str, tuple[Callable[[Any], Any], str]]] = {
-    "select": (_codes, 'a list of rule codes such as ["TARL1"]'),
-    "ignore": (_codes, 'a list of rule codes such as ["TARL102"]'),
-    "exclude": (_texts, 'a list of patterns as in .gitignore, such as ["vendor/"]'),
-    "baseline": (_text, f'the name of a file, such as "{BASELINE_NAME}"'),
-    "sanitizers": (_texts, 'a list of qualified names of functions, such as ["robot.safety.clamp"]'),
-    "fail-on": (_fail_on, f"one of {', '.join(map(repr, FAIL_ON))}"),
-}
 
 
 def _check(path: Path, key: str, value: Any) -> Any:

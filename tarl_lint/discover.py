@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tarl_lint import gitignore
-from tarl_lint.config import Config, repository_root, shown
+from tarl_lint.config import Config, Stdin, repository_root, shown
 from tarl_lint.errors import UsageError
 from tarl_lint.gitignore import Ignore
 from tarl_lint.layout import Layout
@@ -59,16 +59,16 @@ class Discovery:
     notes: Notes = field(default_factory=Notes)
 
 
-def find(paths: Sequence[Path], config: Config) -> Discovery:
+def find(paths: Sequence[Path], config: Config, stdin: Stdin | None = None) -> Discovery:
     """Return the Python files at and below `paths`; what is named itself is taken even if excluded.
 
-    Raises UsageError for a path that does not exist.
+    Raises UsageError for a path that does not exist, unless its text comes through the standard input.
     """
     walk = _Walk(config)
     for path in paths:
         if path.is_dir():
             walk.tree(_absolute(path))
-        elif path.exists():
+        elif path.exists() or (stdin is not None and path == stdin.path):
             walk.take(_absolute(path))
         else:
             raise UsageError(_missing(path))

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import argparse
 import re
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, NoReturn
 
 from tarl_lint import __version__
-from tarl_lint.config import BASELINE_NAME, FAIL_ON, Options, suggestion
+from tarl_lint.config import Options, Stdin, suggestion
 from tarl_lint.errors import UsageError
+from tarl_lint.keys import BASELINE_NAME, FAIL_ON
 from tarl_lint.report import FORMATS
 
 _DESCRIPTION: Final = (
@@ -20,6 +22,7 @@ _EPILOG: Final = (
     "Exit code: 0 nothing to fail on, 1 findings to fail on (--fail-on), 2 the command line, the settings or "
     "the baseline cannot be used, 130 interrupted. Settings are read from [tool.tarl-lint] in pyproject.toml."
 )
+_DASH: Final = Path("-")
 
 
 class _Parser(argparse.ArgumentParser):
@@ -40,6 +43,8 @@ def _sentence(message: str, known: Sequence[str]) -> str:
         return f"{found[1]} cannot be {found[2]!r}{suggestion(found[2], choices)} It can be {', '.join(choices)}."
     if found := re.fullmatch(r"argument (\S+): expected one argument", message):
         return f"{found[1]} needs a value."
+    if found := re.fullmatch(r"argument (\S+): ('.*' has no form .*)", message):
+        return f"{found[1]}: {found[2]}."
     return message[:1].upper() + message[1:] + "."
 
 
@@ -47,11 +52,22 @@ def _codes(text: str) -> tuple[str, ...]:
     return tuple(code.strip().upper() for code in text.split(",") if code.strip())
 
 
+def _per_file(text: str) -> tuple[str, tuple[str, ...]]:
+    pattern, _, codes = text.rpartition(":")
+    if not pattern or not _codes(codes):
+        raise argparse.ArgumentTypeError(f"{text!r} has no form PATTERN:CODES, such as 'tests/:TARL1'")
+    return pattern, _codes(codes)
+
+
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     made = _Parser(prog="tarl-lint", description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False)
     made.add_argument(
-        "paths", nargs="*", type=Path, metavar="PATH", help="files and directories (default: .)"
+        "paths",
+        nargs="*",
+        type=Path,
+        metavar="PATH",
+        help="files and directories (default: .); - is the standard input",
     )
     made.add_argument("--version", action="version", version=f"tarl-lint {__version__}")
     made.add_argument("--explain", metavar="CODE", help="explain a rule, with examples, and stop")
@@ -64,7 +80,11 @@ def parser() -> argparse.ArgumentParser:
 
 def _add_output(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
-        "--format", choices=tuple(FORMATS), default="text", help="text (default), concise or json"
+        "--format",
+        choices=tuple(FORMATS),
+        default="text",
+        metavar="FORMAT",
+        help=f"one of {', '.join(FORMATS)} (default: text)",
     )
     group.add_argument("--show-paths", action="store_true", help="list the statements of every flow")
     group.add_argument("--statistics", action="store_true", help="count what was found")
@@ -81,6 +101,16 @@ def _add_choice(group: argparse._ArgumentGroup) -> None:
         action="append",
         metavar="PATTERN",
         help="leave out paths, as .gitignore does; may be repeated",
+    )
+    group.add_argument(
+        "--per-file-ignores",
+        action="append",
+        type=_per_file,
+        metavar="PATTERN:CODES",
+        help="not these rules in the files that match; may be repeated",
+    )
+    group.add_argument(
+        "--stdin-filename", type=Path, metavar="FILE", help="which file's text the standard input holds"
     )
     group.add_argument(
         "--config", type=Path, metavar="FILE", help="settings file (default: nearest pyproject.toml)"
@@ -108,8 +138,11 @@ def options(typed: argparse.Namespace) -> Options:
     if typed.no_baseline and (typed.write_baseline or typed.baseline):
         other = "--write-baseline" if typed.write_baseline else "--baseline"
         raise UsageError(f"--no-baseline and {other} contradict each other: leave one out.")
+    stdin = _stdin(typed)
+    paths = tuple(stdin.path if stdin and path == _DASH else path for path in typed.paths)
     return Options(
-        paths=tuple(typed.paths) or (Path(),),
+        paths=paths or (Path(),),
+        stdin=stdin,
         config=typed.config,
         select=typed.select,
         ignore=typed.ignore,
@@ -118,4 +151,14 @@ def options(typed: argparse.Namespace) -> Options:
         no_baseline=typed.no_baseline,
         write_baseline=typed.write_baseline,
         fail_on=typed.fail_on,
+        per_file_ignores=tuple(typed.per_file_ignores) if typed.per_file_ignores else None,
     )
+
+
+def _stdin(typed: argparse.Namespace) -> Stdin | None:
+    """Return the text that came through the standard input, where it is asked for."""
+    if _DASH not in typed.paths:
+        if typed.stdin_filename:
+            raise UsageError("--stdin-filename is for text on the standard input: add - to the paths.")
+        return None
+    return Stdin(typed.stdin_filename or Path("stdin.py"), sys.stdin.buffer.read())

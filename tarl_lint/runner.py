@@ -11,11 +11,13 @@ from typing import Final
 
 from tarl_lint import baseline, discover, suppress
 from tarl_lint.baseline import Accepted, Baseline, Fingerprint
-from tarl_lint.config import Config, Options
+from tarl_lint.config import Config, Options, Stdin
 from tarl_lint.discover import Notes, SourceFile
 from tarl_lint.errors import AnalysisBug, UsageError
 from tarl_lint.layout import Layout
 from tarl_lint.model import Finding, Kind
+from tarl_lint.perfile import FileIgnores
+from tarl_lint.progress import Tell, silent
 from tarl_lint.source import Module, SourceError, parse
 from tarl_lint.suppress import Suppression
 
@@ -39,7 +41,8 @@ class Result:
 
     `findings` are sorted by place and carry fingerprint and status. `found` are the same flows as a baseline
     holds them, `vanished` and `kept` what the baseline holds beyond that. `texts` are the analysed files.
-    Without `names_errors` files that cannot be read are counted but not listed for people.
+    Without `names_errors` files that cannot be read are counted but not listed for people. New findings of
+    the codes in `failing` make the run fail.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -52,6 +55,7 @@ class Result:
     statistics: Statistics = field(default_factory=Statistics)
     baseline: Path | None = None
     names_errors: bool = True
+    failing: frozenset[str] = frozenset()
 
     @property
     def new(self) -> tuple[Finding, ...]:
@@ -59,25 +63,28 @@ class Result:
         return tuple(f for f in self.findings if f.status == "new")
 
 
-def run(options: Options, config: Config) -> Result:
-    """Lint the files at and below the paths.
+def run(options: Options, config: Config, tell: Tell = silent) -> Result:
+    """Lint the files at and below the paths, telling what it is at.
 
     Raises UsageError when there is nothing to lint, BaselineError when the baseline is unusable, AnalysisBug
     when the analysis crashed.
     """
-    discovery = discover.find(options.paths, config)
+    tell("Looking for files")
+    discovery = discover.find(options.paths, config, options.stdin)
     if not discovery.files:
         raise UsageError(_nothing(options.paths, discovery.notes))
     known = _accepted(options, config)
-    modules, errors = read(discovery.files)
+    modules, errors = read(discovery.files, options.stdin, tell)
     texts = {module.path: module.text for module in modules}
     identities = _Identities(discovery.files, config)
+    tell(f"Following values through {len(modules)} files")
     wanted = tuple(identities.mark(f) for f in _analyse(modules, config) if config.enabled(f.code))
     heard, unused = suppress.apply(wanted, texts)
-    findings = baseline.subtract(heard, known.counts())
+    elsewhere = FileIgnores(config.root or Path.cwd(), config.per_file_ignores)
+    silenced = len(wanted) - len(heard)
+    findings = baseline.subtract([f for f in heard if not elsewhere.silences(f)], known.counts())
     judged = _judge(discovery.files, errors, config)
     vanished, kept = baseline.missing(known, Counter(f.fingerprint for f in wanted), judged)
-    silenced = len(wanted) - len(heard)
     lines = sum(text.count("\n") for text in texts.values())
     return Result(
         findings=tuple(sorted(findings, key=_place)),
@@ -90,12 +97,18 @@ def run(options: Options, config: Config) -> Result:
         statistics=Statistics(len(modules), lines, silenced, discovery.notes),
         baseline=config.baseline if known.entries else None,
         names_errors=config.enabled(UNREADABLE),
+        failing=failing(findings, config),
     )
 
 
 def exceeds(result: Result, config: Config) -> bool:
-    """Tell whether the findings are what `fail_on` fails on: each level includes the ones before it."""
-    codes = {f.code for f in result.new}
+    """Tell whether the findings are what `fail_on` fails on."""
+    return bool(failing(result.new, config))
+
+
+def failing(findings: Sequence[Finding], config: Config) -> frozenset[str]:
+    """Return the codes of new findings that `fail_on` fails on: each level includes the ones before it."""
+    codes = {f.code for f in findings if f.status == "new"}
     hazards = {code for code in codes if code.startswith("TARL2")}
     levels = {
         "never": set[str](),
@@ -103,19 +116,26 @@ def exceeds(result: Result, config: Config) -> bool:
         "explicit": hazards | (codes & {CODES["explicit"]}),
         "implicit": hazards | (codes & set(CODES.values())),
     }
-    return bool(levels[config.fail_on])
+    return frozenset(levels[config.fail_on])
 
 
-def read(files: Sequence[SourceFile]) -> tuple[tuple[Module, ...], tuple[SourceError, ...]]:
+def read(
+    files: Sequence[SourceFile], stdin: Stdin | None = None, tell: Tell = silent
+) -> tuple[tuple[Module, ...], tuple[SourceError, ...]]:
     """Parse the files. One that cannot be read, or on which the parser fails, becomes an error."""
-    parsed = [_read(file) for file in files]
+    parsed: list[Module | SourceError] = []
+    for number, file in enumerate(files, 1):
+        tell(f"Reading file {number} of {len(files)}")
+        parsed.append(_read(file, stdin))
     modules = tuple(p for p in parsed if isinstance(p, Module))
     return modules, tuple(p for p in parsed if isinstance(p, SourceError))
 
 
-def _read(file: SourceFile) -> Module | SourceError:
+def _read(file: SourceFile, stdin: Stdin | None) -> Module | SourceError:
     try:
-        found = parse(file.shown, file.path.read_bytes(), file.name)
+        typed = stdin is not None and stdin.path.absolute() == file.path
+        data = stdin.data if stdin is not None and typed else file.path.read_bytes()
+        found = parse(file.shown, data, file.name)
     except OSError as error:
         return SourceError(file.shown, 1, f"This file cannot be read: {error.strerror}.")
     except Exception as error:

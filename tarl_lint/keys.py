@@ -1,0 +1,106 @@
+"""The keys of `[tool.tarl-lint]` and what their values must be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final, Literal, get_args
+
+FailOn = Literal["never", "hazard", "explicit", "implicit"]
+
+BASELINE_NAME: Final = "tarl-flows.json"
+FAIL_ON: Final[tuple[FailOn, ...]] = get_args(FailOn)
+
+
+@dataclass(frozen=True)
+class Wrapper:
+    """A function that does what one of ROS does: `like` names that one, the rest says where arguments stand.
+
+    A number is a position, a text a keyword; None means that the argument stands where it does in `like`.
+    """
+
+    name: str
+    like: str
+    topic: int | str | None = None
+    type: int | str | None = None
+    callback: int | str | None = None
+    extra: int | str | None = None
+
+
+def _texts(value: Any) -> tuple[str, ...] | None:
+    texts = isinstance(value, list) and all(isinstance(v, str) and v for v in value)
+    return tuple(value) if texts else None
+
+
+def _codes(value: Any) -> tuple[str, ...] | None:
+    codes = _texts(value)
+    return codes and tuple(code.upper() for code in codes) if codes is not None else None
+
+
+def _names(value: Any) -> tuple[str, ...] | None:
+    """Accept names with dots, such as `robot.bus.listen`: a name alone would mean a function of no module."""
+    names = _texts(value)
+    good = names is not None and all("." in name and _identifiers(name) for name in names)
+    return names if good else None
+
+
+def _identifiers(name: str) -> bool:
+    return all(part.isidentifier() for part in name.split("."))
+
+
+def _per_file(value: Any) -> tuple[tuple[str, tuple[str, ...]], ...] | None:
+    if not isinstance(value, dict):
+        return None
+    checked = [(pattern, _codes(codes)) for pattern, codes in value.items()]
+    return (
+        tuple((pattern, codes) for pattern, codes in checked if codes) if all(c for _, c in checked) else None
+    )
+
+
+def _wrappers(value: Any) -> tuple[Wrapper, ...] | None:
+    if not isinstance(value, dict):
+        return None
+    made = [_wrapper(name, spec) for name, spec in value.items()]
+    return tuple(w for w in made if w) if all(made) else None
+
+
+def _wrapper(name: str, spec: Any) -> Wrapper | None:
+    spec = {"like": spec} if isinstance(spec, str) else spec
+    known = isinstance(spec, dict) and set(spec) <= _WRAPPER_KEYS and isinstance(spec.get("like"), str)
+    if not known or _names([name]) is None:
+        return None
+    places = {key: place for key, place in spec.items() if key != "like"}
+    return Wrapper(name, spec["like"], **places) if all(map(_place, places.values())) else None
+
+
+def _place(value: Any) -> bool:
+    """Tell whether a value says where an argument stands: its position from 0 or its keyword."""
+    return (type(value) is int and value >= 0) or (isinstance(value, str) and value.isidentifier())
+
+
+_WRAPPER_KEYS: Final = frozenset({"like", "topic", "type", "callback", "extra"})
+
+
+def _text(value: Any) -> str | None:
+    return value if isinstance(value, str) and value else None
+
+
+def _fail_on(value: Any) -> str | None:
+    return value if value in FAIL_ON else None
+
+
+KEYS: Final[Mapping[str, tuple[Callable[[Any], Any], str]]] = {
+    "select": (_codes, 'a list of rule codes such as ["TARL1"]'),
+    "ignore": (_codes, 'a list of rule codes such as ["TARL102"]'),
+    "exclude": (_texts, 'a list of patterns as in .gitignore, such as ["vendor/"]'),
+    "baseline": (_text, f'the name of a file, such as "{BASELINE_NAME}"'),
+    "per-file-ignores": (_per_file, 'a table of patterns and rule codes, such as {"tests/" = ["TARL1"]}'),
+    "sources": (_names, 'a list of qualified names of functions, such as ["robot.bus.listen"]'),
+    "sinks": (_names, 'a list of qualified names of functions, such as ["robot.bus.send"]'),
+    "sanitizers": (_names, 'a list of qualified names of functions, such as ["robot.safety.clamp"]'),
+    "wrappers": (
+        _wrappers,
+        'a table such as {"bus.listen" = "rospy.Subscriber", "bus.talk" = {like = "rospy.Publisher", topic = 1}}',
+    ),
+    "fail-on": (_fail_on, f"one of {', '.join(map(repr, FAIL_ON))}"),
+}

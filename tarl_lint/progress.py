@@ -1,0 +1,57 @@
+"""What a long run is at, on one line of a terminal that comes late, and is gone at the end."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Final, TextIO
+
+Tell = Callable[[str], None]
+
+PATIENCE: Final = 1.0  # seconds in which nobody asks
+EVERY: Final = 0.25
+_CLEAR: Final = "\r\x1b[K"
+
+
+def silent(_text: str) -> None:
+    """Tell nobody."""
+
+
+class Progress:
+    """Shows what was told last, and for how long the run has been going on."""
+
+    def __init__(self, stream: TextIO, *, patience: float = PATIENCE, every: float = EVERY) -> None:
+        self._stream = stream
+        self._text = ""
+        self._patience = patience
+        self._every = every
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._paint, daemon=True)
+
+    def __enter__(self) -> Progress:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._over.set()
+        self._thread.join()
+
+    def tell(self, text: str) -> None:
+        """Say what the run is at."""
+        self._text = text
+
+    def _paint(self) -> None:
+        start = time.monotonic()
+        if self._over.wait(self._patience):
+            return
+        while True:
+            self._stream.write(f"{_CLEAR}{self._text} ({time.monotonic() - start:.0f} s)")
+            self._stream.flush()
+            if self._over.wait(self._every):
+                break
+        self._stream.write(_CLEAR)
+        self._stream.flush()

@@ -1,0 +1,54 @@
+"""The settings in use, as they would stand in a settings file, and where each comes from."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from tarl_lint.config import Config, shown
+from tarl_lint.keys import Wrapper
+from tarl_lint.report.line import Line
+
+
+def settings(config: Config) -> Iterator[Line]:
+    """Yield the file, then one setting a line."""
+    origins = dict(config.origins)
+    yield ((f"# settings file: {shown(config.file) if config.file else 'none'}", "quiet"),)
+    yield ((f"# relative to:   {(config.root or Path.cwd()).as_posix()}", "quiet"),)
+    for key, value in _values(config).items():
+        text = f"{key} = {_toml(value)}"
+        yield ((f"{text:<40}", ""), (f"  # {origins.get(key, 'default')}", "quiet"))
+
+
+def _values(config: Config) -> Mapping[str, Any]:
+    return {
+        "select": list(config.select),
+        "ignore": list(config.ignore),
+        "exclude": list(config.exclude),
+        "per-file-ignores": {pattern: list(codes) for pattern, codes in config.per_file_ignores},
+        "baseline": shown(config.baseline) if config.baseline else "",
+        "sources": list(config.sources),
+        "sinks": list(config.sinks),
+        "sanitizers": list(config.sanitizers),
+        "wrappers": {wrapper.name: _wrapper(wrapper) for wrapper in config.wrappers},
+        "fail-on": config.fail_on,
+    }
+
+
+def _wrapper(wrapper: Wrapper) -> str | Mapping[str, int | str]:
+    places = {
+        "topic": wrapper.topic,
+        "type": wrapper.type,
+        "callback": wrapper.callback,
+        "extra": wrapper.extra,
+    }
+    given = {key: place for key, place in places.items() if place is not None}
+    return {"like": wrapper.like, **given} if given else wrapper.like
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{json.dumps(key)} = {_toml(item)}" for key, item in value.items()) + "}"
+    return json.dumps(value, ensure_ascii=False)  # strings, numbers and lists of them are written alike
