@@ -105,7 +105,7 @@ SOURCE_WORDS: Final = (
     "create_subscription",
     "wait_for_message",
 )  # a file without them has no source
-SINK_WORDS: Final = ("publish",)
+SINK_WORDS: Final = ("publish", "Publisher")
 
 WAITS: Final = frozenset(
     [

@@ -12,12 +12,12 @@ from tarl_lint.source import Module
 
 
 def relevant(modules: Sequence[Module], config: Config) -> list[Module]:
-    """Return the modules that a flow may pass through; none when nothing subscribes or nothing publishes."""
+    """Return the modules that a flow may pass through, or a subscription or publisher that leads nowhere."""
     sources = [*catalog.SOURCE_WORDS, *(s.rpartition(".")[2] for s in config.sources)]
     sinks = [*catalog.SINK_WORDS, *(s.rpartition(".")[2] for s in config.sinks)]
     receiving = [m for m in modules if _mentions(m, sources)]
     sending = [m for m in modules if _mentions(m, sinks)]
-    if not receiving or not sending:
+    if not receiving and not sending:
         return []
     index = Index(modules)
     imports = {m.path: [i for i in _imports(m, index) if i is not m] for m in modules}

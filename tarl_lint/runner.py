@@ -152,7 +152,7 @@ def _analyse(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
     from tarl_lint import engine  # --help and mistyped commands need not wait for it
 
     try:
-        return engine.findings(engine.analyse(modules, config))
+        return engine.lint(modules, config)
     except Exception as error:
         if _debugging():
             raise

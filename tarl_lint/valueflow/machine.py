@@ -53,15 +53,19 @@ class SinkRecord:
     topics: set[str] = field(default_factory=set)
     types: set[str] = field(default_factory=set)
     nodes: set[int] = field(default_factory=set)
+    publishers: set[tuple[str, ir.Pos]] = field(default_factory=set)  # where they are made
 
 
 @dataclass(slots=True, eq=False)
 class Publisher:
-    """What a publisher object is for."""
+    """What a publisher object is for, where it is made, and whether anything publishes with it."""
 
     topics: set[str] = field(default_factory=set)
     types: set[str] = field(default_factory=set)
     api: str = ""
+    path: str = ""
+    pos: ir.Pos = (0, 0, 0, 0)
+    used: bool = False
 
 
 NONE_ONLY = frozenset([None])

@@ -14,7 +14,9 @@ class Sinks(Library):
 
     def _publisher(self, it: Invocation) -> Value:
         obj = self.intern("publisher", (it.frame.id, it.statement, it.call.slot))
-        info = obj.info if isinstance(obj.info, Publisher) else Publisher(api=it.fact.api)
+        info = obj.info
+        if not isinstance(info, Publisher):
+            info = Publisher(api=it.fact.api, path=it.frame.program.path, pos=it.call.pos)
         obj.info = info
         info.topics.update(it.argument(it.fact.topic).texts())
         info.types.update(type_names(it.argument(it.fact.type)))
@@ -30,6 +32,8 @@ class Sinks(Library):
             self.sinks[key] = record
         record.topics |= info.topics
         record.types |= info.types
+        record.publishers.add((info.path, info.pos))
+        info.used = True
         node = self.node(frame, ("publish", call.slot), "publish")
         self.graph.flow(self.all_used(it.arguments), node)
         if frame.statement is not None:

@@ -151,7 +151,7 @@ def test_settings_are_shown_as_they_would_be_written(node, capsys):
 
 
 def test_a_bug_of_ours_is_one_sentence(node, capsys, monkeypatch):
-    monkeypatch.setattr("tarl_lint.engine.analyse", lambda modules, config: 1 / 0)
+    monkeypatch.setattr("tarl_lint.engine.lint", lambda modules, config: 1 / 0)
     code, out, err = lint(capsys)
     assert (code, out) == (2, "")
     assert "tarl-lint has a bug and could not finish (ZeroDivisionError" in err

@@ -22,7 +22,7 @@ def reported(text: str) -> set[str]:
     if isinstance(module, SourceError):
         return {"TARL001"}
     assert isinstance(module, Module)
-    return {f.code for f in engine.findings(engine.analyse([module], Config()))}
+    return {f.code for f in engine.lint([module], Config())}
 
 
 @pytest.mark.parametrize(("code", "name", "text"), SNIPPETS)
@@ -43,7 +43,7 @@ def test_a_finding_stands_at_the_publish_call_and_names_both_topics():
 
     module = parse("snippet.py", cleandoc(text).encode(), "snippet")
     assert isinstance(module, Module)
-    (finding,) = engine.findings(engine.analyse([module], Config()))
+    (finding,) = engine.lint([module], Config())
     assert finding.message == "/range (Range) reaches /brake (Float64)"
     assert finding.flow is not None
     assert finding.span == finding.flow.sink.span

@@ -36,12 +36,11 @@ def accept(lint) -> Callable[..., Path]:
 
 @pytest.fixture
 def crash(monkeypatch):
-    def analyse(modules, config):
+    def lint(modules, config):
         raise KeyError("graph")
 
     broken = types.ModuleType("tarl_lint.engine")
-    broken.analyse = analyse
-    broken.findings = tuple
+    broken.lint = lint
     monkeypatch.setitem(sys.modules, "tarl_lint.engine", broken)
     monkeypatch.setattr(tarl_lint, "engine", broken, raising=False)
 

@@ -1,0 +1,135 @@
+"""What hazards are found from: the linked modules, their graph, their flows, and who reads which name."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+from tarl_lint.model import Finding, Flow, Source, Span
+from tarl_lint.taint import Tracer
+from tarl_lint.valueflow.ir import Pos
+from tarl_lint.valueflow.link import Linker
+
+PROGRAM: Final = re.compile(r"__main__|\bdef main\(|\binit_node\(|\brclpy\.init\(")
+BY_TEXT: Final = frozenset(["getattr", "hasattr", "vars", "globals", "locals", "eval", "exec"])
+
+
+@dataclass(slots=True)
+class Read:
+    """One use of a name: the expression, and the expressions and statements around it from the inside out."""
+
+    path: str
+    node: ast.expr
+    around: list[ast.AST]
+
+
+@dataclass(slots=True)
+class Outline:
+    """The tree of one module with the way up from each node."""
+
+    tree: ast.Module
+    parents: dict[ast.AST, ast.AST] = field(default_factory=dict)
+    calls: dict[tuple[int, int], list[ast.Call]] = field(default_factory=dict)
+    by_text: bool = False  # names may be looked up by texts made at run time
+
+    def __post_init__(self) -> None:
+        for node in ast.walk(self.tree):
+            for child in ast.iter_child_nodes(node):
+                self.parents[child] = node
+            if isinstance(node, ast.Call):
+                self.calls.setdefault((node.lineno, node.col_offset), []).append(node)
+                self.by_text |= _by_text(node)
+            elif isinstance(node, ast.Attribute):
+                self.by_text |= node.attr == "__dict__"
+
+    def around(self, node: ast.AST) -> Iterator[ast.AST]:
+        """Yield what is around a node, from the inside out."""
+        while (outer := self.parents.get(node)) is not None:
+            yield outer
+            node = outer
+
+    def call(self, pos: Pos) -> ast.Call | None:
+        """Return the call at a position."""
+        found = self.calls.get((pos[0], pos[1]), [])
+        return next((c for c in found if (c.end_lineno, c.end_col_offset) == (pos[2], pos[3])), None)
+
+    def scope(self, node: ast.AST, kinds: tuple[type[ast.AST], ...]) -> ast.AST | None:
+        """Return the nearest enclosing function or class."""
+        return next((a for a in self.around(node) if isinstance(a, kinds)), None)
+
+
+class Evidence:
+    """Everything that a rule about hazards may ask."""
+
+    def __init__(self, machine: Linker, flows: Sequence[Flow], tracer: Tracer) -> None:
+        self.machine = machine
+        self.flows = flows
+        self.tracer = tracer
+        self._outlines: dict[str, Outline] = {}
+
+    def outline(self, path: str) -> Outline:
+        """Return the outline of a module."""
+        if path not in self._outlines:
+            self._outlines[path] = Outline(self.machine.modules[path].tree)
+        return self._outlines[path]
+
+    def span(self, path: str, pos: Pos) -> Span:
+        """Return a position as a span."""
+        return self.tracer.texts[path].stretch(pos)
+
+    def source(self, path: str, pos: Pos) -> Source:
+        """Return a subscription by its place."""
+        return self.tracer.source(self.machine.sources[path, pos])
+
+    def finding(self, code: str, path: str, pos: Pos, message: str) -> Finding:
+        """Return a hazard at a position."""
+        return Finding(code, self.span(path, pos), message)
+
+    def complete(self, path: str) -> bool:
+        """Tell whether a module is part of a program that is here whole, rather than a library for others."""
+        module = self.machine.modules[path]
+        if PROGRAM.search(module.text):
+            return True
+        last = module.name.rpartition(".")[2]
+        return any(last in m.text and PROGRAM.search(m.text) for m in self.machine.modules.values())
+
+    def reads(self, name: str, *, attribute: bool, path: str = "") -> Iterator[Read]:
+        """Yield every place that may read a name, in one module or in all; texts that spell it count."""
+        for module in self.machine.modules.values():
+            if name not in module.text or (path and module.path != path):
+                continue
+            outline = self.outline(module.path)
+            for node in ast.walk(module.tree):
+                if isinstance(node, ast.expr) and _reads(node, name, attribute):
+                    yield Read(module.path, node, list(outline.around(node)))
+
+    def imported(self, name: str) -> bool:
+        """Tell whether any module imports a name from another one."""
+        return any(
+            alias.name == name
+            for module in self.machine.modules.values()
+            if name in module.text
+            for node in ast.walk(module.tree)
+            if isinstance(node, ast.ImportFrom)
+            for alias in node.names
+        )
+
+
+def _reads(node: ast.expr, name: str, attribute: bool) -> bool:
+    if isinstance(node, ast.Attribute):
+        return node.attr == name and not isinstance(node.ctx, ast.Store)
+    if isinstance(node, ast.Name):
+        return not attribute and node.id == name and not isinstance(node.ctx, ast.Store)
+    return isinstance(node, ast.Constant) and node.value == name
+
+
+def _by_text(call: ast.Call) -> bool:
+    """Tell whether a call looks names up that are not written there."""
+    if not isinstance(call.func, ast.Name) or call.func.id not in BY_TEXT:
+        return False
+    if call.func.id in ("getattr", "hasattr"):
+        return len(call.args) > 1 and not isinstance(call.args[1], ast.Constant)
+    return True

@@ -1,0 +1,187 @@
+"""TARL203: what is subscribed to reaches nothing.
+
+The callback does nothing with its messages: it neither keeps, publishes, passes on, logs nor returns anything, or
+what it keeps is never read. The subscription costs bandwidth and time for nothing, and often a line is missing that
+somebody believes to be there. Not meant are callbacks that ignore the message but do something when it arrives, and
+those that are written to do nothing: `lambda msg: None`, or a parameter whose name starts with an underscore.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.evidence import Evidence
+from tarl_lint.model import Finding
+from tarl_lint.rules.wording import end
+from tarl_lint.valueflow.ir import Function
+from tarl_lint.valueflow.machine import SourceRecord
+
+CODE: Final = "TARL203"
+SUMMARY: Final = "what is subscribed to reaches nothing"
+
+INVALID: Final = (
+    """
+    import rospy
+    from sensor_msgs.msg import LaserScan
+
+    def on_scan(msg):
+        nearest = min(msg.ranges)
+
+    rospy.init_node("watch")
+    rospy.Subscriber("/scan", LaserScan, on_scan)
+    rospy.spin()
+    """,
+    """
+    import rclpy
+    from nav_msgs.msg import Odometry
+    from rclpy.node import Node
+
+    class Follower(Node):
+        def __init__(self):
+            super().__init__("follower")
+            self.create_subscription(Odometry, "odom", self.on_odom, 10)
+
+        def on_odom(self, msg):
+            self.position = msg.pose.pose.position
+
+    def main():
+        rclpy.init()
+        rclpy.spin(Follower())
+    """,
+)
+
+VALID: Final = (
+    """
+    import rospy
+    from std_msgs.msg import Empty
+
+    armed = False
+
+    def on_start(_):
+        global armed
+        armed = True
+
+    rospy.init_node("watch")
+    rospy.Subscriber("/start", Empty, on_start)
+    while not rospy.is_shutdown():
+        if armed:
+            rospy.loginfo("armed")
+    """,
+    """
+    import rospy
+    from sensor_msgs.msg import LaserScan
+
+    def on_scan(msg):
+        rospy.loginfo("nearest: %s", min(msg.ranges))
+
+    rospy.Subscriber("/scan", LaserScan, on_scan)
+    """,
+)
+
+PURE: Final = frozenset(
+    ["abs", "all", "any", "bool", "dict", "enumerate", "float", "int", "len", "list", "max", "min", "range", "round",
+     "set", "sorted", "str", "sum", "tuple", "zip"]
+)  # fmt: skip
+ACTIONS: Final = (
+    ast.Raise, ast.Assert, ast.Await, ast.Yield, ast.YieldFrom, ast.Delete, ast.With, ast.AsyncWith,
+    ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef,
+)  # fmt: skip
+
+
+def findings(evidence: Evidence) -> Iterator[Finding]:
+    """Yield a hazard for each subscription whose callbacks do nothing that matters."""
+    for record in evidence.machine.sources.values():
+        functions = _callbacks(evidence, record)
+        if not functions or any(_meant(f) for f, _ in functions):
+            continue
+        kept = [_kept(function, path, evidence) for function, path in functions]
+        names = {name for stores in kept for name in stores or ()}
+        if any(stores is None for stores in kept) or (names and not _unread(names, functions, evidence)):
+            continue
+        source = evidence.tracer.source(record)
+        reason = "does nothing with it"
+        if names:
+            reason = f"keeps it in {', '.join(sorted(names))}, which nothing reads"
+        yield evidence.finding(CODE, record.path, record.pos, f"{end(source)}: {source.callback} {reason}")
+
+
+def _callbacks(evidence: Evidence, record: SourceRecord) -> list[tuple[Function, str]]:
+    """Return the callbacks with their files; none when one of them is not known."""
+    found: list[tuple[Function, str]] = []
+    for node in sorted(record.nodes):
+        place = evidence.machine.graph.places[node]
+        if place.statement is not None or place.frame is record.frame:
+            return []
+        found.append((place.frame.function, place.frame.program.path))
+    return found
+
+
+def _meant(function: Function) -> bool:
+    """Tell whether a function says that it ignores its messages, or that others are to take its place."""
+    ignored = any(p.name.startswith("_") for p in function.parameters)
+    return ignored or bool(function.decorators) or isinstance(function.node, ast.Lambda)
+
+
+def _kept(function: Function, path: str, evidence: Evidence) -> set[str] | None:
+    """Return the attributes (`self.x`) and globals that a callback stores to and nothing else; None for more."""
+    node = function.node
+    if isinstance(node, ast.Lambda):
+        return None
+    receiver = node.args.args[0].arg if node.args.args and "." in function.qualname else ""
+    shared = {n for s in ast.walk(node) if isinstance(s, (ast.Global, ast.Nonlocal)) for n in s.names}
+    stored: set[str] = set()
+    for part in (n for statement in node.body for n in ast.walk(statement)):
+        if _acts(part) or (isinstance(part, ast.Return) and not _nothing(part.value)):
+            return None
+        if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store) and part.id in shared:
+            stored.add(part.id)
+        elif isinstance(part, (ast.Attribute, ast.Subscript)) and not isinstance(part.ctx, ast.Load):
+            name = _attribute(part, receiver)
+            if name is None:
+                return None
+            stored.add(name)
+    whole = not stored or (evidence.complete(path) and not evidence.outline(path).by_text)
+    return stored if whole else None
+
+
+def _acts(node: ast.AST) -> bool:
+    """Tell whether an expression or statement may do something beyond computing a value."""
+    if isinstance(node, ast.Call):
+        return not (isinstance(node.func, ast.Name) and node.func.id in PURE)
+    return isinstance(node, ACTIONS)
+
+
+def _nothing(value: ast.expr | None) -> bool:
+    return value is None or isinstance(value, ast.Constant)
+
+
+def _attribute(target: ast.expr, receiver: str) -> str | None:
+    """Return `self.x` for a plain store to it."""
+    if (
+        isinstance(target, ast.Attribute)
+        and isinstance(target.value, ast.Name)
+        and target.value.id == receiver
+    ):
+        return f"self.{target.attr}"
+    return None
+
+
+def _unread(names: set[str], functions: list[tuple[Function, str]], evidence: Evidence) -> bool:
+    """Tell whether nothing reads what is kept under the names."""
+    own = [function.node for function, _ in functions]
+    for name in names:
+        plain, attribute = name.removeprefix("self."), name.startswith("self.")
+        reads = evidence.reads(plain, attribute=attribute)
+        if _defined(plain, evidence) or any(not any(f in r.around for f in own) for r in reads):
+            return False
+        if not attribute and evidence.imported(plain):
+            return False
+    return True
+
+
+def _defined(name: str, evidence: Evidence) -> bool:
+    """Tell whether a function has the name: a property's setter does more than store."""
+    marker = f"def {name}("
+    return any(marker in m.text for m in evidence.machine.modules.values())

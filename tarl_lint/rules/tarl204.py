@@ -1,0 +1,161 @@
+"""TARL204: a publisher never publishes.
+
+The topic is advertised, so other nodes see it and may wait for it, but no publish call anywhere uses the publisher,
+and it is not handed to anyone who could. Usually a line was lost, or the publisher was left over.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.evidence import Evidence, Read
+from tarl_lint.model import Finding
+from tarl_lint.valueflow.ir import Pos
+from tarl_lint.valueflow.machine import Publisher
+
+CODE: Final = "TARL204"
+SUMMARY: Final = "a publisher never publishes"
+
+INVALID: Final = (
+    """
+    import rospy
+    from geometry_msgs.msg import Twist
+    from std_msgs.msg import Float64
+
+    class Drive:
+        def __init__(self):
+            self.cmd = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+            self.speed = rospy.Publisher("/speed", Float64, queue_size=1)
+
+        def run(self):
+            if self.cmd.get_num_connections() > 0:
+                self.speed.publish(0.5)
+
+    if __name__ == "__main__":
+        Drive().run()
+    """,
+)
+
+VALID: Final = (
+    """
+    import rospy
+    from std_msgs.msg import Float64
+
+    pubs = {"left": rospy.Publisher("/left", Float64, queue_size=1)}
+
+    def send(side, value):
+        pubs[side].publish(value)
+    """,
+    """
+    import rospy
+    from robot.bridge import Sender
+    from std_msgs.msg import Float64
+
+    if __name__ == "__main__":
+        pub = rospy.Publisher("/speed", Float64, queue_size=1)
+        Sender(pub).run()
+    """,
+)
+
+HARMLESS: Final = frozenset(
+    ["get_num_connections", "get_subscription_count", "unregister", "destroy", "topic", "topic_name", "name",
+     "resolved_name", "assert_liveliness", "wait_for_all_acked"]
+)  # fmt: skip
+SCOPES: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
+
+
+def findings(evidence: Evidence) -> Iterator[Finding]:
+    """Yield a hazard for each call that makes a publisher which never publishes."""
+    made: dict[tuple[str, Pos], list[Publisher]] = {}
+    for obj in evidence.machine.objects.values():
+        if isinstance(obj.info, Publisher):
+            made.setdefault((obj.info.path, obj.info.pos), []).append(obj.info)
+    for (path, pos), publishers in made.items():
+        if any(p.used for p in publishers) or _may_publish(path, pos, evidence):
+            continue
+        topics = ", ".join(sorted({t for p in publishers for t in p.topics})) or "a topic"
+        types = " | ".join(sorted({t for p in publishers for t in p.types}))
+        named = f"{topics} ({types})" if types else topics
+        yield evidence.finding(CODE, path, pos, f"{named} is advertised, but nothing is ever published on it")
+
+
+def _may_publish(path: str, pos: Pos, evidence: Evidence) -> bool:
+    """Tell whether anyone could publish with the publisher that a call makes."""
+    outline = evidence.outline(path)
+    call = outline.call(pos)
+    statement = outline.parents.get(call) if call is not None else None
+    if call is None or statement is None:
+        return True
+    if any(keyword.arg == "event_callbacks" for keyword in call.keywords):
+        return True  # it is there to learn who listens
+    if isinstance(statement, ast.Expr):
+        return False
+    targets: list[ast.expr] = []
+    if isinstance(statement, ast.Assign):
+        targets = statement.targets
+    elif isinstance(statement, ast.AnnAssign):
+        targets = [statement.target]
+    if not targets or outline.by_text or not evidence.complete(path):
+        return True
+    return any(_target_read(t, path, pos, evidence) for t in targets)
+
+
+def _target_read(target: ast.expr, path: str, pos: Pos, evidence: Evidence) -> bool:
+    """Tell whether what a target holds is used for more than asking about it."""
+    outline = evidence.outline(path)
+    if isinstance(target, ast.Attribute):
+        reads = evidence.reads(target.attr, attribute=True)
+    elif isinstance(target, ast.Name):
+        function = outline.scope(target, SCOPES)
+        if function is not None and not _declared(function, target.id):
+            local = evidence.reads(target.id, attribute=False, path=path)
+            reads = (r for r in local if function in r.around)
+        elif evidence.imported(target.id):
+            return True
+        else:
+            reads = evidence.reads(target.id, attribute=False)
+    else:
+        return True
+    return any(not _harmless(read, path, pos, evidence) for read in reads)
+
+
+def _declared(function: ast.AST, name: str) -> bool:
+    """Tell whether a function says that a name is not its own."""
+    return any(isinstance(n, (ast.Global, ast.Nonlocal)) and name in n.names for n in ast.walk(function))
+
+
+def _harmless(read: Read, path: str, pos: Pos, evidence: Evidence) -> bool:
+    """Tell whether a use neither publishes nor hands the publisher on."""
+    outer = read.around[0]
+    if isinstance(outer, ast.Attribute):
+        called = read.around[1]
+        if outer.attr == "publish" and isinstance(called, ast.Call) and called.func is outer:
+            return _others(read, called, path, pos, evidence)
+        return outer.attr in HARMLESS
+    if isinstance(outer, ast.Call):
+        return isinstance(outer.func, ast.Attribute) and outer.func.attr == "destroy_publisher"
+    return isinstance(outer, (ast.If, ast.Compare, ast.While, ast.IfExp)) or (
+        isinstance(outer, ast.UnaryOp) and isinstance(outer.op, ast.Not)
+    )
+
+
+def _others(read: Read, call: ast.Call, path: str, pos: Pos, evidence: Evidence) -> bool:
+    """Tell whether a publish call is known to use other publishers, which only have the same name."""
+    place = (call.lineno, call.col_offset, call.end_lineno or 0, call.end_col_offset or 0)
+    record = evidence.machine.sinks.get((read.path, place))
+    if record is None or (path, pos) in record.publishers or read.path != path:
+        return False
+    outline = evidence.outline(path)
+    made = outline.call(pos)
+    mine = outline.scope(made, (ast.ClassDef,)) if made is not None else None
+    theirs = outline.scope(read.node, (ast.ClassDef,))
+    return mine is not theirs and not (_related(mine, theirs) or _related(theirs, mine))
+
+
+def _related(one: ast.AST | None, other: ast.AST | None) -> bool:
+    """Tell whether a class names another one as its base, or has bases that are not looked into."""
+    if not isinstance(one, ast.ClassDef) or not isinstance(other, ast.ClassDef):
+        return False
+    return any(other.name in ast.unparse(base) for base in one.bases)
