@@ -1,0 +1,1 @@
+"""The command `tarl`: look at what was recorded without running pytest."""

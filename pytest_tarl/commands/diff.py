@@ -1,0 +1,94 @@
+"""`tarl diff A B`: what changed between two recordings of a test."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from pytest_tarl.learning.drift import permuted_loss
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.model import SitePlace
+from pytest_tarl.seeds import generator
+
+
+@dataclass(frozen=True)
+class Moved:
+    """A site that stands on another line."""
+
+    before: SitePlace
+    after: SitePlace
+
+
+@dataclass(frozen=True)
+class FixtureDiff:
+    """What changed. `loss` is the reward per episode that B earns less than A, `p_loss` its permutation p-value."""
+
+    loss: float
+    p_loss: float
+    success: tuple[float, float]
+    gone: tuple[SitePlace, ...]
+    new: tuple[SitePlace, ...]
+    moved: tuple[Moved, ...]
+    cells: tuple[int, int, int]  # only in A, in both, only in B
+    same_sensors: bool
+
+    @property
+    def worse(self) -> bool:
+        """Tell whether B earns significantly less."""
+        return self.loss > 0 and self.p_loss < SIGNIFICANT
+
+
+SIGNIFICANT = 0.05
+
+
+def compared(first: Fixture, second: Fixture) -> FixtureDiff:
+    """Compare two fixtures; their tests may have different names."""
+    before, after = _sites(first), _sites(second)
+    mine, theirs = set(first.sample.cells), set(second.sample.cells)
+    a, b = first.sample, second.sample
+    return FixtureDiff(
+        loss=float(a.total.mean() - b.total.mean()),
+        p_loss=permuted_loss(a.total, b.total, generator(0, "diff")),
+        success=(float(a.passed.mean()), float(b.passed.mean())),
+        gone=tuple(place for site, place in before.items() if site not in after),
+        new=tuple(place for site, place in after.items() if site not in before),
+        moved=tuple(
+            Moved(place, after[site])
+            for site, place in before.items()
+            if site in after and (after[site].path, after[site].line) != (place.path, place.line)
+        ),
+        cells=(len(mine - theirs), len(mine & theirs), len(theirs - mine)),
+        same_sensors=first.sensors == second.sensors,
+    )
+
+
+def lines(first: Fixture, second: Fixture, found: FixtureDiff) -> Iterator[str]:
+    """Yield the account of a difference."""
+    a, b = first.sample, second.sample
+    yield f"{first.test} → {second.test}" if first.test != second.test else first.test
+    yield f"  episodes   {a.episodes} → {b.episodes}"
+    yield f"  reward     {a.total.mean():.4g} → {b.total.mean():.4g} per episode (less: p = {found.p_loss:.2g})"
+    yield f"  success    {found.success[0]:.1%} → {found.success[1]:.1%}"
+    if found.same_sensors:
+        yield f"  cells      {found.cells[1]} in both, {found.cells[0]} gone, {found.cells[2]} new"
+    else:
+        yield "  cells      not comparable: the sensors differ"
+    for place in found.gone:
+        yield f"  gone       {place.path}:{place.line}  {_code(place)}"
+    for place in found.new:
+        yield f"  new        {place.path}:{place.line}  {_code(place)}"
+    for moved in found.moved:
+        yield f"  moved      {_code(moved.before)}  from {moved.before.path}:{moved.before.line} to {_place(moved)}"
+
+
+def _place(moved: Moved) -> str:
+    same_file = moved.before.path == moved.after.path
+    return f"line {moved.after.line}" if same_file else f"{moved.after.path}:{moved.after.line}"
+
+
+def _code(place: SitePlace) -> str:
+    return " ".join(place.code.split())
+
+
+def _sites(fixture: Fixture) -> dict[str, SitePlace]:
+    return {site.id: site for one in fixture.lists for site in one.sites}

@@ -1,0 +1,56 @@
+"""`tarl show FIXTURE`: what was recorded, in a screenful."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.statistics import START, ListSample
+from pytest_tarl.model import TaintList
+from pytest_tarl.sensors import Sensor
+
+CODE = 60  # characters of a line of code
+
+
+def lines(fixture: Fixture) -> Iterator[str]:
+    """Yield the account of a fixture."""
+    sample = fixture.sample
+    yield f"{fixture.test}, seed {fixture.seed}"
+    yield f"  episodes   {sample.episodes}, {int(sample.steps.sum())} steps, success {sample.passed.mean():.1%}"
+    least, most = sample.total.min(), sample.total.max()
+    yield f"  reward     {sample.total.mean():.4g} per episode, from {least:.4g} to {most:.4g}"
+    for i, name in enumerate(sample.part_names):
+        yield f"             {name} {sample.chain.parts[:, i].sum() / sample.episodes:.4g}"
+    yield f"  cells      {len(sample.cells)}"
+    for i, sensor in enumerate(fixture.sensors):
+        yield f"             {described(sensor, [cell[i] for cell in sample.cells])}"
+    for taint_list, recorded in zip(fixture.lists, sample.lists, strict=True):
+        yield from _list(taint_list, recorded)
+
+
+def described(sensor: Sensor, bins: Sequence[int]) -> str:
+    """Describe a sensor and which of its bins were seen."""
+    origin = f"{sensor.topic} {sensor.field}" if sensor.topic else "observed"
+    if sensor.numeric:
+        unit = f" {sensor.unit}" if sensor.unit else ""
+        kind = f"{sensor.low:g} to {sensor.high:g}{unit} in {sensor.bins} bins, {len(set(bins))} seen"
+    else:
+        kind = "seen " + ", ".join(sensor.label(index) for index in sorted(set(bins)))
+    return f"{sensor.name}: {origin}, {kind}"
+
+
+def _list(taint_list: TaintList, recorded: ListSample) -> Iterator[str]:
+    visits = recorded.visits
+    events = visits.state != START
+    site = (visits.state[events] - 1) % max(recorded.width, 1)
+    counts = np.bincount(site, weights=visits.count[events], minlength=recorded.width)
+    flows = np.bincount(site, weights=visits.flow[events], minlength=recorded.width)
+    yield f"  {taint_list.name}: {int(counts.sum())} events, mean |f| {recorded.mean_flow:.4g}"
+    for place, count, flow in zip(taint_list.sites, counts.tolist(), flows.tolist(), strict=True):
+        mean = flow / count if count else 0.0
+        mark = "●" if place.dependence == "data" else "◆"
+        code = " ".join(place.code.split())
+        shown = code if len(code) <= CODE else f"{code[: CODE - 1]}…"
+        yield f"    {place.path}:{place.line:<4} {mark} {shown:<{CODE}} {int(count):>7} × {mean:.4g}"

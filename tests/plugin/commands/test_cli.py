@@ -1,0 +1,66 @@
+"""`tarl show` and `tarl diff`, on fixtures as they lie on disk."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from pytest_tarl.commands.cli import main
+from pytest_tarl.learning.fixture import Fixture, save
+from tests.plugin.learning.test_fixture import example
+
+
+def saved(fixture: Fixture, path: Path) -> str:
+    save(fixture, path)
+    return str(path)
+
+
+def test_show_tells_test_reward_sensors_and_sites(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    fixture = example()
+    assert main(["show", saved(fixture, tmp_path / "a.npz")]) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("test_node.py::test_it, seed 3\n  episodes   6,")
+    assert "x: /in0 data, 0 to 1 in 4 bins" in told
+    assert "terrain: observed" in told
+    assert all(f"{site.path}:{site.line}" in told for one in fixture.lists for site in one.sites)
+    assert "/in0 → /out:" in told
+
+
+def test_a_fixture_does_not_differ_from_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = saved(example(), tmp_path / "a.npz")
+    assert main(["diff", path, path, "--fail-if-worse"]) == 0
+    told = capsys.readouterr().out
+    assert "0 gone, 0 new" in told
+    assert not any(line.startswith(("  gone", "  new", "  moved")) for line in told.splitlines())
+
+
+def test_a_significant_loss_fails_when_asked_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    good = example()
+    bad = replace(good, sample=replace(good.sample, total=good.sample.total - 50.0))
+    paths = [saved(good, tmp_path / "a.npz"), saved(bad, tmp_path / "b.npz")]
+    assert main(["diff", *paths]) == 0
+    assert main(["diff", *paths, "--fail-if-worse"]) == 1
+    assert main(["diff", *reversed(paths), "--fail-if-worse"]) == 0
+    assert "reward" in capsys.readouterr().out
+
+
+def test_moved_gone_and_new_lines_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = example()
+    moved, gone, *rest = before.lists[0].sites
+    sites = (replace(moved, line=moved.line + 40), replace(gone, id="another", code="y = 1", line=77), *rest)
+    after = replace(before, lists=(replace(before.lists[0], sites=sites), *before.lists[1:]))
+    main(["diff", saved(before, tmp_path / "a.npz"), saved(after, tmp_path / "b.npz")])
+    told = capsys.readouterr().out
+    assert f"moved      {moved.code}  from node.py:{moved.line} to line {moved.line + 40}" in told
+    assert "new        node.py:77  y = 1" in told
+
+
+def test_what_cannot_be_read_is_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "a.npz").write_text("no fixture")
+    assert main(["show", str(tmp_path / "a.npz")]) == 2
+    assert main(["show", str(tmp_path / "b.npz")]) == 2
+    told = capsys.readouterr().err
+    assert "a.npz is damaged" in told
+    assert "no utility fixture" in told
