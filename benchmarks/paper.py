@@ -31,8 +31,8 @@ from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.learning import localize
 from pytest_tarl.learning.drift import compare
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.learning.statistics import aligned
-from pytest_tarl.learning.utility import Floats, batch
+from pytest_tarl.learning.merging import aligned
+from pytest_tarl.learning.utility import batch
 from pytest_tarl.model import Region
 from pytest_tarl.recording import Recorded, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.repairing import Repaired, RepairShop, repair
@@ -136,7 +136,7 @@ class Study:
         mud: list[bool],
     ) -> None:
         (drift,) = marked.drifts
-        tables = sarsa_tables(offline, sites.members, mean_flows(offline.sample))
+        tables = sarsa_tables(offline, mean_flows(offline.sample))
         fixture = Fixture(
             "paper", self.seed, marked.sensors, sites.lists, offline.topics, offline.sample, tables
         )
@@ -220,18 +220,11 @@ def _peaks(offline: Recorded, online: Recorded, sites: Plan, region: Region) -> 
         if name.startswith("batch"):
             tables = [batch(world.lists[0], len(before.cells), flow) for world in (before, after)]
         else:
-            tables = [_sarsa(world, sites, flow, before.cells) for world in (offline, online)]
+            tables = [world.sarsa[0].table(before.cells, flow) for world in (offline, online)]
         found = localize.slices(sites.lists[0], tables[0], tables[1], rows)
         peak = max(found, key=lambda one: abs(one.difference))
         peaks[name] = "publish" if peak.site.role == "publish" else peak.site.code
     return peaks
-
-
-def _sarsa(recorded: Recorded, sites: Plan, scale: float, cells: tuple[Cell, ...]) -> Floats:
-    (table,) = sarsa_tables(recorded, sites.members[:1], (scale,))
-    wide = np.full((len(cells), table.shape[1]), np.nan)
-    wide[[cells.index(cell) for cell in recorded.sample.cells]] = table
-    return wide
 
 
 def one(name: str, seed: int) -> dict[str, Any]:

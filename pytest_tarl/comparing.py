@@ -12,8 +12,9 @@ from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.learning import localize
 from pytest_tarl.learning.drift import compare, paper_region
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.learning.statistics import Sample, aligned
-from pytest_tarl.learning.utility import Floats, Ints, batch
+from pytest_tarl.learning.merging import aligned
+from pytest_tarl.learning.tables import Floats, Ints, Sample
+from pytest_tarl.learning.utility import batch
 from pytest_tarl.model import Comparison, ListComparison, Region, SitePlace, TaintList
 from pytest_tarl.recording import Progress, Recorded, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.rollout import Rollout
@@ -55,7 +56,7 @@ def run_online(
     )
     offline, online = aligned(fixture.sample, recorded.sample)
     scales = mean_flows(fixture.sample)
-    learned = sarsa_tables(recorded, members, scales)
+    learned = sarsa_tables(recorded, scales)
     tables = [
         (batch(before, len(offline.cells), scale), batch(after, len(offline.cells), scale))
         for before, after, scale in zip(offline.lists, online.lists, scales, strict=True)

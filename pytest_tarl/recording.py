@@ -13,8 +13,11 @@ from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.learning.statistics import Sample, event_sequence, merge, relabelled, sample
-from pytest_tarl.learning.utility import Floats, sarsa
+from pytest_tarl.learning.merging import merge
+from pytest_tarl.learning.sarsa import Sarsa
+from pytest_tarl.learning.sequences import event_sequences
+from pytest_tarl.learning.statistics import sample
+from pytest_tarl.learning.tables import Floats, Sample
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.settings import Designation, Options
@@ -30,10 +33,14 @@ NOT_REPRODUCIBLE = (
 
 @dataclass(frozen=True)
 class Recorded:
-    """Episodes of one world, in the order they ran: traces, their statistics, message types by sensor topic."""
+    """Episodes of one world: the first one's trace, the statistics of all, message types by sensor topic.
 
-    traces: tuple[Trace, ...]
+    `sarsa` has learned the paper's table of each taint list, in the order in which the episodes ran.
+    """
+
+    first: Trace
     sample: Sample
+    sarsa: tuple[Sarsa, ...]
     topics: dict[str, str]
     failures: tuple[str, ...]
 
@@ -65,7 +72,7 @@ def record(
     seeds = episode_seeds(options.seed, "offline", options.episodes or designation.episodes)
     recorded = run_episodes(rollout, seeds, None, plan.members, progress)
     again = rollout(EpisodePlan(seeds[0], record=True))
-    notes = [] if identical(recorded.traces[0], again.trace) else [NOT_REPRODUCIBLE]
+    notes = [] if identical(recorded.first, again.trace) else [NOT_REPRODUCIBLE]
     if recorded.success < designation.min_success:
         return RecordResult("", _unfinished(recorded, designation), tuple(notes))
     notes += _silent_lists(recorded.sample, plan)
@@ -77,7 +84,7 @@ def record(
         lists=plan.lists,
         topics=recorded.topics,
         sample=recorded.sample,
-        sarsa=sarsa_tables(recorded, plan.members, mean_flows(recorded.sample)),
+        sarsa=sarsa_tables(recorded, mean_flows(recorded.sample)),
     )
     fixtures.save(new, path)
     return RecordResult(_summary(new.sample, old), "", tuple(notes))
@@ -87,18 +94,24 @@ def run_episodes(
     rollout: Rollout, seeds: Sequence[int], drift: str | None, members: Members, progress: Progress
 ) -> Recorded:
     """Run one instrumented episode per seed. Raises RecordingError when the test itself is broken."""
-    traces: list[Trace] = []
+    learners = tuple(Sarsa(len(chosen)) for chosen in members)
+    first: Trace | None = None
     samples: list[Sample] = []
     failures: list[str] = []
     topics: dict[str, str] = {}
     for done, seed in enumerate(seeds):
         progress(done, len(seeds), drift or "off-line")
         run = sound(rollout(EpisodePlan(seed, drift, record=True)))
-        traces.append(run.trace)
+        first = first or run.trace
         samples.append(sample(run.trace, seed, run.passed, members))
+        for learner, chosen in zip(learners, members, strict=True):
+            for sequence in event_sequences(run.trace, chosen):
+                learner.learn(sequence, run.trace.cells)
         failures += [] if run.passed else [run.failure]
         topics.update(run.topics)
-    return Recorded(tuple(traces), merge(samples), topics, tuple(failures))
+    if first is None:
+        raise RecordingError("There is nothing to learn from: no episode was asked for.")
+    return Recorded(first, merge(samples), learners, topics, tuple(failures))
 
 
 def sound(run: EpisodeRun) -> EpisodeRun:
@@ -108,14 +121,10 @@ def sound(run: EpisodeRun) -> EpisodeRun:
     return run
 
 
-def sarsa_tables(recorded: Recorded, members: Members, scales: Sequence[float]) -> tuple[Floats, ...]:
-    """Learn the paper's table of every taint list, shape (cells, sites); `scales` holds each list's F."""
+def sarsa_tables(recorded: Recorded, scales: Sequence[float]) -> tuple[Floats, ...]:
+    """Return the paper's table of every taint list, shape (cells, sites); `scales` holds each list's F."""
     cells = recorded.sample.cells
-    traces = [relabelled(trace, cells) for trace in recorded.traces]
-    return tuple(
-        sarsa((event_sequence(trace, chosen) for trace in traces), len(cells), len(chosen), scale)
-        for chosen, scale in zip(members, scales, strict=True)
-    )
+    return tuple(learner.table(cells, scale) for learner, scale in zip(recorded.sarsa, scales, strict=True))
 
 
 def mean_flows(offline: Sample) -> tuple[float, ...]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.learning.statistics import START, ListSample
+from pytest_tarl.learning.tables import START, ListSample
 from pytest_tarl.model import TaintList
 from pytest_tarl.sensors import Sensor
 

@@ -16,8 +16,9 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
-from pytest_tarl.learning.statistics import END, Chain, Ints, Sample, aligned, sum_by
-from pytest_tarl.learning.utility import GAMMA_STEP, Floats, chain_utility
+from pytest_tarl.learning.merging import aligned
+from pytest_tarl.learning.tables import END, Chain, Floats, Ints, Sample, sum_by
+from pytest_tarl.learning.utility import GAMMA_STEP, chain_utility
 from pytest_tarl.model import Region, Result, Verdict
 from pytest_tarl.sensors import Cell
 

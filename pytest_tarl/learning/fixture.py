@@ -23,8 +23,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from pytest_tarl.errors import FixtureError
-from pytest_tarl.learning.statistics import Chain, Edges, ListSample, Sample, Visits
-from pytest_tarl.learning.utility import Floats
+from pytest_tarl.learning.tables import Chain, Edges, Floats, ListSample, Sample, Visits
 from pytest_tarl.model import SitePlace, TaintList
 from pytest_tarl.sensors import Sensor
 

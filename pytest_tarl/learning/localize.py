@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from pytest_tarl.learning.utility import Floats, Ints
+from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.model import Culprit, OperandEffect, SitePlace, Slice, TaintList
 
 

@@ -7,19 +7,14 @@ to, q = (I - γP)⁻¹ρ̄, straight from the counts.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
-from numpy.typing import NDArray
 
-from pytest_tarl.learning.statistics import END, START, Chain, EventSequence, ListSample, sum_by
-
-Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
+from pytest_tarl.learning.tables import START, Chain, Floats, Ints, ListSample, sum_by
 
 GAMMA_EVENT = 0.95
 GAMMA_STEP = 0.97
-ALPHA = 0.1
+DENSE = 1500  # states up to which the equations are solved at once
+PRECISE = 1e-12  # of the largest utility: the change in one sweep at which solving by sweeps ends
 
 
 def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamma: float) -> Floats:
@@ -33,12 +28,28 @@ def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamm
     place = np.full(states + 1, -1, dtype=np.int64)
     place[seen] = np.arange(seen.size)
     inside = place[next_state] >= 0  # END indexes the last entry, which stays -1
-    moves = np.zeros((seen.size, seen.size))
-    np.add.at(moves, (place[state[inside]], place[next_state[inside]]), count[inside])
-    mean = visits[seen]
-    solved = np.linalg.solve(np.eye(seen.size) - gamma * moves / mean[:, None], reward[seen] / mean)
+    start, end, mean = place[state[inside]], place[next_state[inside]], visits[seen]
+    weight = gamma * count[inside] / mean[start]
+    solve = _solved if gamma >= 1.0 or seen.size <= DENSE else _swept
     utility = np.full(states, np.nan)
-    utility[seen] = solved
+    utility[seen] = solve(start, end, weight, reward[seen] / mean)
+    return utility
+
+
+def _solved(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
+    """Solve q = ρ̄ + Wq at once, W being the sum of the weights of the transitions."""
+    system = np.eye(mean.size)
+    np.subtract.at(system, (start, end), weight)
+    return np.linalg.solve(system, mean).astype(np.float64, copy=False)
+
+
+def _swept(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
+    """Solve the same by sweeps, which contract by γ each: memory for the transitions only, not for all pairs."""
+    utility: Floats = mean.copy()
+    change = np.inf
+    while change > PRECISE * np.abs(utility).max():
+        swept: Floats = mean + sum_by(start, weight * utility[end], mean.size)
+        change, utility = float(np.abs(swept - utility).max()), swept
     return utility
 
 
@@ -48,37 +59,11 @@ def batch(recorded: ListSample, cells: int, scale: float, gamma: float = GAMMA_E
     states = 1 + cells * recorded.width
     signal = visits.reward + visits.scaled / scale
     reward = sum_by(visits.state, signal, states)
-    return _by_cell(fixed_point(edges.state, edges.next_state, edges.count, reward, gamma), cells)
-
-
-def sarsa(
-    sequences: Iterable[EventSequence],
-    cells: int,
-    sites: int,
-    scale: float,
-    gamma: float = GAMMA_EVENT,
-    alpha: float = ALPHA,
-) -> Floats:
-    """Learn q(x, n) event by event as in the paper, q(c) ← q(c) + α[ρ + γq(c') - q(c)]; shape (cells, sites)."""
-    q = [0.0] * (1 + cells * sites)
-    seen = set[int]()
-    for sequence in sequences:
-        states = sequence.state.tolist()
-        signal = (sequence.reward + sequence.scaled / scale).tolist()
-        seen.update(states)
-        for now, then, rho in zip(states, [*states[1:], END], signal, strict=True):
-            following = q[then] if then != END else 0.0
-            q[now] += alpha * (rho + gamma * following - q[now])
-    table = np.array(q)
-    table[[s for s in range(table.size) if s not in seen]] = np.nan
-    return _by_cell(table, cells)
+    solved = fixed_point(edges.state, edges.next_state, edges.count, reward, gamma)
+    return solved[START + 1 :].reshape(cells, recorded.width)
 
 
 def chain_utility(chain: Chain, cells: int, gamma: float = GAMMA_STEP) -> Floats:
     """Return U(x) on the chain of sensor cells, shape (cells,); NaN where never visited."""
     reward = sum_by(chain.cell, chain.reward, cells)
     return fixed_point(chain.cell, chain.next_cell, chain.count, reward, gamma)
-
-
-def _by_cell(states: Floats, cells: int) -> Floats:
-    return states[START + 1 :].reshape(cells, -1) if cells else states[1:].reshape(0, 0)

@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from pytest_tarl.learning.statistics import Sample
+from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Conjunct, Guard, Region
 from pytest_tarl.sensors import Cell, Sensor
 

@@ -6,7 +6,9 @@ import numpy as np
 
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning.drift import compare, max_statistic, paper_region, permuted_loss
-from pytest_tarl.learning.statistics import Sample, merge, sample
+from pytest_tarl.learning.merging import merge
+from pytest_tarl.learning.statistics import sample
+from pytest_tarl.learning.tables import Sample
 from pytest_tarl.seeds import generator
 
 LENGTH = 8

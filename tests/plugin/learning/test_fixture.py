@@ -10,7 +10,7 @@ import pytest
 
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.learning.fixture import Fixture, load, save
-from pytest_tarl.learning.statistics import merge
+from pytest_tarl.learning.merging import merge
 from pytest_tarl.model import SitePlace, TaintList
 from pytest_tarl.sensors import Sensor
 from tests.plugin.learning.test_statistics import MEMBERS, random_sample, same

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import hypothesis.strategies as st
 import numpy as np
 import pytest
 from hypothesis import given, settings
 
 from pytest_tarl.instrumentation.trace import Trace
-from pytest_tarl.learning.statistics import START, Sample, aligned, event_sequence, merge, sample
+from pytest_tarl.learning.merging import aligned, merge
+from pytest_tarl.learning.sequences import event_sequences
+from pytest_tarl.learning.statistics import sample
+from pytest_tarl.learning.tables import END, START, Sample
 
 MEMBERS = ((0, 1, 2), (3, 1))
 
@@ -48,11 +53,87 @@ def same(first: Sample, second: Sample) -> bool:
 def test_rewards_over_events_sum_to_the_episodes_total(seed: int) -> None:
     trace = random_trace(seed)
     for members in MEMBERS:
-        sequence = event_sequence(trace, members)
+        (sequence,) = event_sequences(trace, members)
         assert sequence.reward.sum() == pytest.approx(trace.reward.sum())
     one = random_sample(seed)
     for recorded in one.lists:
         assert recorded.visits.reward.sum() == pytest.approx(one.total[0])
+
+
+def threaded(seed: int, threads: int) -> Trace:
+    """Return a trace in which several threads did what they did; its events stand by step, then by thread."""
+    trace = random_trace(seed)
+    thread = np.random.default_rng([seed, 1]).integers(0, threads, trace.site.size).astype(np.int32)
+    order = np.lexsort((thread, trace.event_step))
+    columns = {name: getattr(trace, name)[order] for name in ("site", "flow", "event_cell", "event_step")}
+    return replace(trace, thread=thread[order], **columns)
+
+
+def only(trace: Trace, thread: int) -> Trace:
+    """Return what one of the threads did, as if there were no other."""
+    assert trace.thread is not None
+    own = trace.thread == thread
+    columns = {name: getattr(trace, name)[own] for name in ("site", "flow", "event_cell", "event_step")}
+    return replace(trace, thread=None, **columns)
+
+
+@given(st.integers(0, 10**6), st.integers(2, 4))
+def test_every_thread_has_a_sequence_of_its_own_and_rewards_still_sum_to_the_total(
+    seed: int, threads: int
+) -> None:
+    trace = threaded(seed, threads)
+    for members in MEMBERS:
+        found = event_sequences(trace, members)
+        assert sum(one.reward.sum() for one in found) == pytest.approx(trace.reward.sum())
+        alone = [event_sequences(only(trace, thread), members)[0] for thread in range(threads)]
+        expected = [one for one in alone if one.state.size > 1] or alone[:1]
+        assert [one.state.tolist() for one in found] == [one.state.tolist() for one in expected]
+        assert [one.scaled.tolist() for one in found] == [one.scaled.tolist() for one in expected]
+
+
+@given(st.integers(0, 10**6))
+def test_events_of_two_threads_never_follow_each_other(seed: int) -> None:
+    trace = threaded(seed, 2)
+    assert trace.thread is not None
+    apart = replace(trace, site=(trace.site + 4 * trace.thread).astype(np.int32))  # sites tell the thread
+    recorded = sample(apart, seed, True, (tuple(range(8)),)).lists[0]
+    inside = (recorded.edges.state != START) & (recorded.edges.next_state != END)
+    first, then = (
+        (column[inside] - 1) % 8 // 4 for column in (recorded.edges.state, recorded.edges.next_state)
+    )
+    assert (first == then).all()
+
+
+@given(st.integers(0, 10**6))
+def test_the_order_in_which_threads_are_numbered_does_not_matter(seed: int) -> None:
+    trace = threaded(seed, 2)
+    assert trace.thread is not None
+    swapped = replace(trace, thread=1 - trace.thread)
+    order = np.lexsort((swapped.thread, trace.event_step))
+    columns = ("site", "flow", "event_cell", "event_step", "thread")
+    swapped = replace(swapped, **{name: getattr(swapped, name)[order] for name in columns})
+    for one, other in zip(
+        sample(trace, 0, True, MEMBERS).lists, sample(swapped, 0, True, MEMBERS).lists, strict=True
+    ):
+        assert one.edges.count.tolist() == other.edges.count.tolist()
+        assert one.visits.reward == pytest.approx(other.visits.reward)
+
+
+def test_threads_that_act_in_one_step_share_its_reward() -> None:
+    trace = Trace(
+        cells=((0,),),
+        site=np.array([0, 1, 0], np.int32),
+        flow=np.ones(3),
+        event_cell=np.zeros(3, np.int32),
+        event_step=np.array([0, 0, 1], np.int32),
+        step_cell=np.zeros(3, np.int32),
+        reward=np.array([4.0, 6.0, 1.0]),
+        parts={},
+        thread=np.array([0, 1, 0], np.int32),
+    )
+    first, second = event_sequences(trace, (0, 1))
+    assert (first.state.tolist(), first.reward.tolist()) == ([START, 1, 1], [0.0, 2.0, 7.0])
+    assert (second.state.tolist(), second.reward.tolist()) == ([START, 2], [0.0, 2.0])
 
 
 @given(st.lists(st.integers(0, 50), min_size=1, max_size=8), st.randoms(use_true_random=False))
@@ -91,7 +172,7 @@ def test_a_step_without_events_gives_its_reward_to_the_latest_earlier_event() ->
         reward=np.array([1.0, 10.0, 100.0, 1000.0, 10000.0]),
         parts={},
     )
-    sequence = event_sequence(trace, (0, 1))
+    (sequence,) = event_sequences(trace, (0, 1))
     assert sequence.state.tolist() == [START, 1, 2, 1]
     assert sequence.reward.tolist() == [1.0, 0.0, 110.0, 11000.0]
     assert sequence.scaled.tolist() == [0.0, 20.0, 30.0, 1000.0]

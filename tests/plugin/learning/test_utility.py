@@ -6,8 +6,13 @@ import numpy as np
 import pytest
 
 from pytest_tarl.instrumentation.trace import Trace
-from pytest_tarl.learning.statistics import END, START, EventSequence, sample
-from pytest_tarl.learning.utility import batch, chain_utility, fixed_point, sarsa
+from pytest_tarl.learning import utility
+from pytest_tarl.learning.merging import merge
+from pytest_tarl.learning.sarsa import Sarsa
+from pytest_tarl.learning.sequences import EventSequence, event_sequences
+from pytest_tarl.learning.statistics import sample
+from pytest_tarl.learning.tables import END, START
+from pytest_tarl.learning.utility import batch, chain_utility, fixed_point
 
 WALK = 5  # Sutton & Barto, example 6.2: values 1/6 … 5/6
 
@@ -55,12 +60,13 @@ def test_a_state_never_left_has_no_utility() -> None:
 
 def test_batch_and_sarsa_agree_with_the_random_walk() -> None:
     traces = [walk_trace(seed) for seed in range(1500)]
-    from pytest_tarl.learning.statistics import event_sequence, merge
-
     whole = merge([sample(trace, seed, True, ((0,),)) for seed, trace in enumerate(traces)])
     learned = batch(whole.lists[0], WALK, scale=np.inf, gamma=1.0)[:, 0]
     assert learned == pytest.approx(np.arange(1, 6) / 6, abs=0.06)
-    walked = sarsa((event_sequence(t, (0,)) for t in traces), WALK, 1, np.inf, gamma=1.0, alpha=0.02)[:, 0]
+    learner = Sarsa(1, gamma=1.0, alpha=0.02)
+    for trace in traces:
+        learner.learn(event_sequences(trace, (0,))[0], trace.cells)
+    walked = learner.table(whole.cells, np.inf)[:, 0]
     assert walked == pytest.approx(learned, abs=0.08)
     steps = chain_utility(whole.chain, WALK, gamma=1.0)
     assert steps == pytest.approx(learned, abs=1e-9)
@@ -73,7 +79,10 @@ def test_sarsa_follows_the_update_rule_by_hand() -> None:
         scaled=np.array([0.0, 4.0, 0.0]),
         flow=np.array([0.0, 4.0, 0.0]),
     )
-    table = sarsa([sequence, sequence], cells=1, sites=2, scale=2.0, gamma=0.5, alpha=0.1)
+    learner = Sarsa(2, gamma=0.5, alpha=0.1)
+    learner.learn(sequence, [(7,)])
+    learner.learn(sequence, [(7,)])
+    table = learner.table([(7,)], scale=2.0)
     first = 0.1 * 3.0  # ρ = 1 + 4/2
     assert table[0, 0] == pytest.approx(first + 0.1 * (3.0 + 0.5 * 0.2 - first))
     assert table[0, 1] == pytest.approx(0.2 + 0.1 * (2.0 - 0.2))
@@ -94,3 +103,47 @@ def test_the_flow_term_can_be_switched_off() -> None:
     assert recorded.mean_flow == 2.5
     assert batch(recorded, 1, scale=np.inf, gamma=0.5).tolist() == [[0.5, 1.0]]
     assert batch(recorded, 1, scale=2.5, gamma=0.5).tolist() == [[2.5, 1.0]]
+
+
+def test_sarsa_knows_cells_by_what_they_are_and_not_by_their_number_in_a_trace() -> None:
+    learner = Sarsa(1, gamma=0.5, alpha=0.1)
+    for cells, state in (([(4,)], 1), ([(9,), (4,)], 2)):
+        sequence = EventSequence(np.array([START, state]), np.array([0.0, 1.0]), np.zeros(2), np.zeros(2))
+        learner.learn(sequence, cells)
+    table = learner.table([(4,), (9,), (5,)], np.inf)
+    assert table[0, 0] == pytest.approx(0.1 + 0.1 * 0.9)
+    assert np.isnan(table[1:, 0]).all()
+
+
+def test_solving_by_sweeps_agrees_with_solving_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    draws = np.random.default_rng(3)
+    state, following = np.repeat(np.arange(40), 5), draws.integers(-1, 40, 200)
+    arguments = (state, following, draws.integers(1, 9, 200), draws.normal(size=40))
+    at_once = fixed_point(*arguments, gamma=0.95)
+    monkeypatch.setattr(utility, "DENSE", 10)
+    assert fixed_point(*arguments, gamma=0.95) == pytest.approx(at_once, abs=1e-9)
+
+
+def test_a_hundred_thousand_states_need_no_table_of_all_their_pairs() -> None:
+    state = np.arange(100_000)
+    following = np.append(state[1:], END)
+    values = fixed_point(state, following, np.ones_like(state), np.ones(state.size), gamma=0.5)
+    assert values[0] == pytest.approx(2.0)
+
+
+def test_a_world_without_any_cell_has_an_empty_utility() -> None:
+    trace = Trace(
+        cells=(),
+        site=np.zeros(1, np.int32),
+        flow=np.ones(1),
+        event_cell=np.full(1, -1, np.int32),
+        event_step=np.zeros(1, np.int32),
+        step_cell=np.full(1, -1, np.int32),
+        reward=np.ones(1),
+        parts={},
+    )
+    learner = Sarsa(2)
+    (sequence,) = event_sequences(trace, (0, 1))
+    learner.learn(sequence, trace.cells)
+    assert learner.table((), 1.0).shape == (0, 2)
+    assert batch(sample(trace, 0, True, ((0, 1),)).lists[0], 0, 1.0).shape == (0, 2)

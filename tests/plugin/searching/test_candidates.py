@@ -9,7 +9,9 @@ import pytest
 
 from pytest_tarl import Sensor
 from pytest_tarl.instrumentation.trace import Trace
-from pytest_tarl.learning.statistics import Sample, merge, sample
+from pytest_tarl.learning.merging import merge
+from pytest_tarl.learning.statistics import sample
+from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Conjunct, Guard, Region
 from pytest_tarl.searching.candidates import (
     ALWAYS,

@@ -1,0 +1,76 @@
+"""One episode as one taint list sees it: its events in order, each with its share of the reward."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pytest_tarl.learning.tables import START, Floats, Ints, sum_by
+
+if TYPE_CHECKING:
+    from pytest_tarl.instrumentation.trace import Trace
+
+
+@dataclass(frozen=True)
+class EventSequence:
+    """What one thread did for a taint list: the start and then every event; columns of shape (events + 1,).
+
+    `reward` holds what an event is given in full (it is the last of its step), `scaled` is r·|f|.
+    """
+
+    state: Ints
+    reward: Floats
+    scaled: Floats
+    flow: Floats
+
+
+def event_sequences(trace: Trace, members: Sequence[int]) -> tuple[EventSequence, ...]:
+    """Return the events of a taint list whose n-th site has the global number `members[n]`, -1 for none.
+
+    One sequence per thread, at least one: what two threads did in one step has no order. A step's reward goes to its
+    last event, in equal shares where several threads have one; that of a step without events to those of the latest
+    earlier step, else to the first start. So rewards sum to the episode's total. Events before the first cell are
+    left out.
+    """
+    index = _places(trace, members)
+    chosen = (index >= 0) & (trace.event_cell >= 0)
+    step = trace.event_step[chosen].astype(np.int64)
+    thread = np.zeros_like(step) if trace.thread is None else trace.thread[chosen].astype(np.int64)
+    flow = np.abs(trace.flow[chosen])
+    state = 1 + trace.event_cell[chosen].astype(np.int64) * len(members) + index[chosen]
+    unclaimed, given = _given(step, thread, trace.reward)
+    scaled = (trace.reward[step] if trace.reward.size else np.zeros(step.shape)) * flow
+    threads = np.unique(thread) if thread.size else np.zeros(1, np.int64)
+    return tuple(
+        EventSequence(
+            state=np.append(START, state[own]),
+            reward=np.append(0.0 if place else unclaimed, given[own]),
+            scaled=np.append(0.0, scaled[own]),
+            flow=np.append(0.0, flow[own]),
+        )
+        for place, own in enumerate(thread == one for one in threads)
+    )
+
+
+def _places(trace: Trace, members: Sequence[int]) -> Ints:
+    """Return the place in the taint list of every event's site, -1 where it has none; shape (events,)."""
+    place = np.full(max([*members, int(trace.site.max(initial=-1)), 0]) + 1, -1, dtype=np.int64)
+    for n, site in enumerate(members):
+        if site >= 0:
+            place[site] = n
+    return place[trace.site]
+
+
+def _given(step: Ints, thread: Ints, reward: Floats) -> tuple[float, Floats]:
+    """Return the reward of the steps before any event, and what each event is given, shape (events,)."""
+    given = np.zeros(step.size)
+    changes = (step[1:] != step[:-1]) | (thread[1:] != thread[:-1])
+    last = np.flatnonzero(np.append(changes, True)) if step.size else np.empty(0, np.int64)
+    eventful, sharing = np.unique(step[last], return_counts=True)
+    owner = np.searchsorted(eventful, np.arange(reward.size), side="right")
+    earned = sum_by(owner, reward, eventful.size + 1)
+    given[last] = np.repeat(earned[1:] / sharing, sharing)
+    return float(earned[0]), given

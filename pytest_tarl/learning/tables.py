@@ -1,0 +1,96 @@
+"""The columns that recorded episodes become: one row per (episode, transition) or (episode, state).
+
+States of a taint list with `width` sites are numbered 0 for the start of an episode and 1 + cell·width + n for site n
+in a cell; `END` is where an episode goes after its last event.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.sensors import Cell
+
+Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
+
+START = 0
+END = -1
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Transitions of the sensor cell, one per simulation step; columns of shape (rows,), `parts` (rows, parts)."""
+
+    episode: Ints
+    cell: Ints
+    next_cell: Ints
+    count: Ints
+    reward: Floats
+    parts: Floats
+
+
+@dataclass(frozen=True)
+class Edges:
+    """Transitions between states of one taint list; columns of shape (rows,)."""
+
+    episode: Ints
+    state: Ints
+    next_state: Ints
+    count: Ints
+
+
+@dataclass(frozen=True)
+class Visits:
+    """Sums per state of one taint list: of r, of r·|f|, of |f|, and of the first two's squares; shape (rows,)."""
+
+    episode: Ints
+    state: Ints
+    count: Ints
+    reward: Floats
+    scaled: Floats
+    flow: Floats
+    reward_squared: Floats
+    scaled_squared: Floats
+
+
+@dataclass(frozen=True)
+class ListSample:
+    """What was recorded of one taint list with `width` sites."""
+
+    width: int
+    edges: Edges
+    visits: Visits
+
+    @property
+    def mean_flow(self) -> float:
+        """Return F, the mean |f| per event; 1 where nothing flowed."""
+        events = self.visits.count[self.visits.state != START].sum()
+        mean = float(self.visits.flow.sum()) / events if events else 0.0
+        return mean or 1.0
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Episodes in order of their seeds. `total` and `passed` have shape (episodes,); cells are sorted."""
+
+    cells: tuple[Cell, ...]
+    seeds: tuple[int, ...]
+    passed: NDArray[np.bool_]
+    total: Floats
+    steps: Ints
+    part_names: tuple[str, ...]
+    chain: Chain
+    lists: tuple[ListSample, ...]
+
+    @property
+    def episodes(self) -> int:
+        """Return how many episodes there are."""
+        return len(self.seeds)
+
+
+def sum_by(index: Ints, weights: Floats | Ints, size: int) -> Floats:
+    """Return the sum of the weights at each index, shape (size,)."""
+    return np.bincount(index, weights=weights, minlength=size).astype(np.float64, copy=False)
