@@ -13,8 +13,14 @@ FORMATS: Final[Mapping[str, str]] = {
     "text": "tarl_lint.report.text:report",
     "concise": "tarl_lint.report.text:concise",
     "json": "tarl_lint.report.json:report",
+    "sarif": "tarl_lint.report.sarif:report",
+    "github": "tarl_lint.report.github:report",
+    "gitlab": "tarl_lint.report.gitlab:report",
+    "junit": "tarl_lint.report.junit:report",
+    "dot": "tarl_lint.report.dot:report",
+    "mermaid": "tarl_lint.report.mermaid:report",
 }
-FOR_PEOPLE: Final = frozenset({"text", "concise"})
+FOR_PEOPLE: Final = frozenset({"text", "concise", "github"})
 
 
 def render(name: str, result: Result, view: View) -> Iterator[Line]:

@@ -34,7 +34,7 @@ def publish_call(
     for name, (finding, flow) in zip(names, group, strict=True):
         yield _flow(finding, flow, name)
         if paths:
-            yield from _taint_list(flow, view)
+            yield from taint_list(flow, view)
             yield ()
     if not paths:
         yield ()
@@ -68,19 +68,19 @@ def _flow(finding: Finding, flow: Flow, name: str) -> Line:
         (f"{finding.code} {flow.kind}", flow.kind),
         (" from ", ""),
         (name, "strong"),
-        (f"  {_subscription(flow.source, flow.sink.span.path)}", "quiet"),
+        (f"  {subscription(flow.source, flow.sink.span.path)}", "quiet"),
     )
 
 
-def _subscription(source: Source, beside: str) -> str:
-    """Say where a message comes in: `line 36, callback`."""
+def subscription(source: Source, beside: str) -> str:
+    """Say where a message comes in, as seen from a file: `line 36, callback`."""
     place = f"line {source.span.line}"
     if source.span.path != beside:
         place = f"{source.span.path}:{source.span.line}"
     return f"{place}, {source.callback}" if source.callback else place
 
 
-def _taint_list(flow: Flow, view: View) -> Iterator[Line]:
+def taint_list(flow: Flow, view: View) -> Iterator[Line]:
     """Yield the steps of a flow: where, what the step does, how it depends on the source, code."""
     beside = flow.sink.span.path
     places = [_where(step, beside) for step in flow.steps]

@@ -1,0 +1,60 @@
+"""A picture for Graphviz: `tarl-lint --format dot | dot -Tsvg -o flows.svg`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.report.line import Line, View
+from tarl_lint.report.topics import Part, Picture, picture
+from tarl_lint.runner import Result
+
+_HEAD: Final = (
+    "digraph flows {",
+    " rankdir=LR; ranksep=0.9; nodesep=0.15; concentrate=false;",
+    ' fontname="Helvetica"; fontsize=11; labeljust=l;',
+    ' label="Solid: data of the topic is published. Dashed: it only decides. Each way through a box is a flow.";',
+    ' node [fontname="Helvetica", fontsize=11, height=0.3, margin="0.12,0.05"];',
+    ' edge [color="#555555", arrowsize=0.6];',
+)
+_TOPIC: Final = 'shape=ellipse, style=filled, fillcolor="#dbeafe", color="#3b82f6"'
+_PART: Final = 'shape=box, style="rounded,filled", fillcolor=white, color="#777777"'
+_NEW: Final = 'shape=box, style="rounded,filled", fillcolor="#fee2e2", color="#dc2626", penwidth=2'
+
+
+def report(result: Result, _view: View) -> Iterator[Line]:
+    """Yield the graph, the same text for the same flows."""
+    for text in _graph(picture(result)):
+        yield ((text, ""),)
+
+
+def _graph(drawn: Picture) -> Iterator[str]:
+    yield from _HEAD
+    numbers = {topic.key: f"t{number}" for number, topic in enumerate(drawn.topics)}
+    labels = {topic.key: topic.label for topic in reversed(drawn.topics)}
+    for key, number in numbers.items():
+        yield f" {number} [label={_quoted(labels[key])}, {_TOPIC}];"
+    count = 0
+    edges: list[str] = []
+    for index, (title, parts) in enumerate(drawn.files):
+        yield f" subgraph cluster{index} {{"
+        yield f'  label={_quoted(title)}; style="rounded,filled"; color="#dddddd"; fillcolor="#f8f8f8";'
+        for part in parts:
+            yield f"  p{count} [label={_quoted(part.label)}, {_NEW if part.new else _PART}];"
+            edges.extend(_edges(part, f"p{count}", numbers))
+            count += 1
+        yield " }"
+    yield from edges
+    yield "}"
+
+
+def _edges(part: Part, name: str, numbers: dict[str, str]) -> Iterator[str]:
+    for topic, kind in part.inputs:
+        yield f" {numbers[topic.key]} -> {name}{' [style=dashed]' if kind == 'implicit' else ''};"
+    for topic in part.outputs:
+        yield f" {name} -> {numbers[topic.key]};"
+
+
+def _quoted(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+    return f'"{escaped}"'

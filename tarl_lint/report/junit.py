@@ -1,0 +1,109 @@
+"""JUnit XML, for Jenkins and others: a suite for each file, a case for each finding."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from itertools import groupby
+from typing import Final, NamedTuple
+
+from tarl_lint.model import Finding
+from tarl_lint.report.flows import location, taint_list
+from tarl_lint.report.line import ASCII, Line, View, plain
+from tarl_lint.runner import UNREADABLE, Result
+
+_ILLEGAL: Final = r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"  # in XML 1.0
+_ENTITIES: Final = {
+    "&": "&amp;",
+    "<": "&lt;",
+    ">": "&gt;",
+    '"': "&quot;",
+    "\n": "&#10;",
+    "\t": "&#9;",
+    "\r": "&#13;",
+}
+
+
+class _Case(NamedTuple):
+    """One test case. `outcome` is failure, skipped or passed."""
+
+    path: str
+    name: str
+    outcome: str
+    message: str
+    text: str
+
+
+def report(result: Result, _view: View) -> Iterator[Line]:
+    """Yield the document. What makes the run fail has failed, what is accepted or unreadable was skipped."""
+    cases = _numbered([*_errors(result), *(_case(finding, result) for finding in result.findings)])
+    cases = cases or [_Case("tarl-lint", "no findings", "passed", "", "")]
+    yield (('<?xml version="1.0" encoding="utf-8"?>', ""),)
+    yield ((f"<testsuites{_attributes({'name': 'tarl-lint', **_counts(cases)})}>", ""),)
+    for path, group in groupby(sorted(cases, key=lambda case: case.path), key=lambda case: case.path):
+        yield from _suite(path, list(group))
+    yield (("</testsuites>", ""),)
+
+
+def _errors(result: Result) -> Iterator[_Case]:
+    for error in result.errors if result.names_errors else ():
+        yield _Case(error.path, f"{UNREADABLE} the file can be analysed", "skipped", error.message, "")
+
+
+def _case(finding: Finding, result: Result) -> _Case:
+    name = f"{finding.code} {finding.message}"
+    steps = taint_list(finding.flow, View(glyphs=ASCII)) if finding.flow else ()
+    text = "\n".join([f"{location(finding.span)}: {finding.message}", *map(plain, steps)])
+    if finding.status == "accepted":
+        return _Case(finding.span.path, name, "skipped", "accepted in the baseline", text)
+    outcome = "failure" if finding.code in result.failing else "passed"
+    return _Case(finding.span.path, name, outcome, finding.message, text)
+
+
+def _numbered(cases: list[_Case]) -> list[_Case]:
+    """Tell cases of one name apart without lines, which would make them other cases after every edit."""
+    seen: Counter[tuple[str, str]] = Counter()
+    made = []
+    for case in cases:
+        seen[case[:2]] += 1
+        number = seen[case[:2]]
+        made.append(case._replace(name=f"{case.name} #{number}") if number > 1 else case)
+    return made
+
+
+def _suite(path: str, cases: list[_Case]) -> Iterator[Line]:
+    yield ((f" <testsuite{_attributes({'name': path, **_counts(cases)})}>", ""),)
+    for case in cases:
+        yield ((f"  <testcase{_attributes({'classname': path, 'name': case.name, 'file': path})}>", ""),)
+        if case.outcome == "passed":
+            yield ((f"   <system-out>{_escaped(case.text)}</system-out>", ""),)
+        else:
+            attributes = _attributes({"message": case.message})
+            yield ((f"   <{case.outcome}{attributes}>{_escaped(case.text)}</{case.outcome}>", ""),)
+        yield (("  </testcase>", ""),)
+    yield ((" </testsuite>", ""),)
+
+
+def _counts(cases: list[_Case]) -> dict[str, str]:
+    outcomes = Counter(case.outcome for case in cases)
+    numbers = {
+        "tests": len(cases),
+        "failures": outcomes["failure"],
+        "errors": 0,
+        "skipped": outcomes["skipped"],
+    }
+    return {key: str(number) for key, number in numbers.items()}
+
+
+def _attributes(values: Mapping[str, str]) -> str:
+    return "".join(f' {key}="{_quoted(value)}"' for key, value in values.items())
+
+
+def _quoted(text: str) -> str:
+    return "".join(_ENTITIES.get(character, character) for character in re.sub(_ILLEGAL, "?", text))
+
+
+def _escaped(text: str) -> str:
+    legal = re.sub(_ILLEGAL, "?", text)
+    return legal.replace("&", "&amp;").replace("<", "&lt;").replace("]]>", "]]&gt;")

@@ -1,0 +1,55 @@
+"""A picture for Mermaid, which GitHub and GitLab draw in comments, summaries and Markdown files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.report.line import Line, View
+from tarl_lint.report.topics import Part, Picture, picture
+from tarl_lint.runner import Result
+
+_CLASSES: Final = (
+    "  classDef topic fill:#dbeafe,stroke:#3b82f6,color:#111",
+    "  classDef part fill:#fff,stroke:#777,color:#111",
+    "  classDef new fill:#fee2e2,stroke:#dc2626,color:#111,stroke-width:2px",
+)
+
+
+def report(result: Result, _view: View) -> Iterator[Line]:
+    """Yield the graph, the same text for the same flows."""
+    for text in _graph(picture(result)):
+        yield ((text, ""),)
+
+
+def _graph(drawn: Picture) -> Iterator[str]:
+    yield "flowchart LR"
+    yield "  %% solid: data of the topic is published; dotted: it only decides; each way through a box is a flow"
+    numbers = {topic.key: f"t{number}" for number, topic in enumerate(drawn.topics)}
+    labels = {topic.key: topic.label for topic in reversed(drawn.topics)}
+    for key, number in numbers.items():
+        yield f"  {number}([{_quoted(labels[key])}]):::topic"
+    count = 0
+    edges: list[str] = []
+    for index, (title, parts) in enumerate(drawn.files):
+        yield f"  subgraph s{index} [{_quoted(title)}]"
+        for part in parts:
+            yield f"    p{count}[{_quoted(part.label)}]:::{'new' if part.new else 'part'}"
+            edges.extend(_edges(part, f"p{count}", numbers))
+            count += 1
+        yield "  end"
+    yield from edges
+    yield from _CLASSES
+
+
+def _edges(part: Part, name: str, numbers: dict[str, str]) -> Iterator[str]:
+    for topic, kind in part.inputs:
+        yield f"  {numbers[topic.key]} {'-.->' if kind == 'implicit' else '-->'} {name}"
+    for topic in part.outputs:
+        yield f"  {name} --> {numbers[topic.key]}"
+
+
+def _quoted(text: str) -> str:
+    """Write a text so that nothing in it is taken for syntax or markup."""
+    escaped = text.replace("#", "#35;").replace('"', "#quot;").replace("<", "#lt;").replace(">", "#gt;")
+    return '"' + escaped.replace("`", "#96;").replace("\n", "<br/>") + '"'

@@ -1,0 +1,172 @@
+"""SARIF 2.1.0, for code scanning: every flow with its taint list as a code flow, every rule with its help."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+from urllib.parse import quote
+
+from tarl_lint import __version__, explain
+from tarl_lint.config import shown
+from tarl_lint.model import Dependence, Finding, Flow, Sink, Source, Span, Step
+from tarl_lint.report import summary
+from tarl_lint.report.grading import of_error, own_level, told_apart
+from tarl_lint.report.line import Line, View, plain
+from tarl_lint.runner import UNREADABLE, Result
+from tarl_lint.source import SourceError
+
+SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+_IMPORTANCE: Final[Mapping[Dependence, str]] = {
+    "data": "essential",
+    "control": "important",
+    "context": "unimportant",
+}
+
+
+def report(result: Result, _view: View) -> Iterator[Line]:
+    """Yield the document, indented, in ASCII, so that no terminal or pipe can spoil it."""
+    yield ((json.dumps(document(result), indent=1), ""),)
+
+
+def document(result: Result) -> dict[str, Any]:
+    """Return the log of one run; paths are relative to the working directory."""
+    codes = list(explain.known_rules())
+    errors = [_unreadable(error, codes) for error in result.errors if result.names_errors]
+    found = [_result(finding, identity, codes, result) for finding, identity in told_apart(result.findings)]
+    driver = {"name": "tarl-lint", "version": __version__, "rules": [_rule(code) for code in codes]}
+    run = {
+        "tool": {"driver": driver},
+        "columnKind": "unicodeCodePoints",
+        "invocations": [{"executionSuccessful": True, "toolExecutionNotifications": _notifications(result)}],
+        "results": errors + found,
+    }
+    return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
+
+
+def _rule(code: str) -> dict[str, Any]:
+    page = explain.page(code)
+    text = "\n".join(plain(line) for line in explain.explanation(code))
+    title, _, rest = text.partition("\n")
+    description = rest.strip().partition("\n\n")[0].replace("\n", " ")
+    grade = own_level(code)
+    return {
+        "id": code,
+        "name": code,
+        "shortDescription": {"text": title.partition(": ")[2] or title},
+        "fullDescription": {"text": description},
+        "help": {"text": text, "markdown": page},
+        "defaultConfiguration": {"level": grade},
+        "properties": {
+            "tags": ["ros", "dataflow"],
+            "precision": "high",
+            "problem.severity": "recommendation" if grade == "note" else grade,
+        },
+    }
+
+
+def _notifications(result: Result) -> list[dict[str, Any]]:
+    return [
+        {"level": "note", "message": {"text": plain(line)}, "descriptor": {"id": "not-analysed"}}
+        for line in summary.not_analysed(result)
+    ]
+
+
+def _unreadable(error: SourceError, codes: Sequence[str]) -> dict[str, Any]:
+    region = {"startLine": error.line}
+    return {
+        "ruleId": UNREADABLE,
+        "ruleIndex": codes.index(UNREADABLE),
+        "level": own_level(UNREADABLE),
+        "message": {"text": _escaped(error.message)},
+        "locations": [{"physicalLocation": {"artifactLocation": _artifact(error.path), "region": region}}],
+        "partialFingerprints": {"primaryLocationLineHash": f"{of_error(error)}:1"},
+    }
+
+
+def _result(finding: Finding, identity: str, codes: Sequence[str], result: Result) -> dict[str, Any]:
+    flow = finding.flow
+    made: dict[str, Any] = {
+        "ruleId": finding.code,
+        "ruleIndex": codes.index(finding.code) if finding.code in codes else -1,
+        "level": own_level(finding.code),
+        "message": {"text": _escaped(finding.message) + (" ([subscription](1))" if flow else "")},
+        "locations": [_location(finding.span, flow.sink if flow else None)],
+        "partialFingerprints": _fingerprints(finding, identity),
+    }
+    if flow:
+        made |= _of_flow(flow)
+    if result.baseline:
+        made["baselineState"] = "unchanged" if finding.status == "accepted" else "new"
+    if finding.status == "accepted":
+        place = shown(result.baseline) if result.baseline else "the baseline"
+        made["suppressions"] = [
+            {"kind": "external", "status": "accepted", "justification": f"Accepted in {place}."}
+        ]
+    return made
+
+
+def _fingerprints(finding: Finding, identity: str) -> dict[str, str]:
+    """Return how a result is known again. GitHub looks at the first, which must differ within a file."""
+    own = {"tarlFlow/v1": finding.fingerprint} if finding.fingerprint else {}
+    return {"primaryLocationLineHash": identity, **own}
+
+
+def _of_flow(flow: Flow) -> dict[str, Any]:
+    source = _location(flow.source.span, flow.source)
+    related = [{"id": 1, "message": {"text": "subscription"}, **source}]
+    for number, span in enumerate(flow.source.via, 2):
+        related.append({"id": number, "message": {"text": "through this call"}, **_location(span)})
+    return {
+        "relatedLocations": related,
+        "codeFlows": [{"threadFlows": [{"locations": [_step(step) for step in flow.steps]}]}],
+        "properties": {
+            "kind": flow.kind,
+            "sourceTopics": list(flow.source.topics),
+            "sinkTopics": list(flow.sink.topics),
+        },
+    }
+
+
+def _step(step: Step) -> dict[str, Any]:
+    location = _location(step.span)
+    location["physicalLocation"]["region"]["snippet"] = {"text": step.code}
+    location["message"] = {"text": _escaped(f"{step.role} ({step.dependence}): {step.code}")}
+    return {
+        "location": location,
+        "kinds": [step.role, step.dependence],
+        "importance": _IMPORTANCE[step.dependence],
+        "properties": {
+            "role": step.role,
+            "dependence": step.dependence,
+            "code": step.code,
+            "site": str(step.site),
+        },
+    }
+
+
+def _location(span: Span, end: Source | Sink | None = None) -> dict[str, Any]:
+    region = {
+        "startLine": span.line,
+        "startColumn": span.column,
+        "endLine": span.end_line,
+        "endColumn": span.end_column,
+    }
+    made: dict[str, Any] = {"physicalLocation": {"artifactLocation": _artifact(span.path), "region": region}}
+    if end is not None and end.qualname:
+        name = ".".join(filter(None, (end.module, end.qualname)))
+        made["logicalLocations"] = [{"fullyQualifiedName": name, "kind": "function"}]
+    return made
+
+
+def _artifact(path: str) -> dict[str, str]:
+    """Name a file: relative to the root of the sources, or absolute where it lies elsewhere."""
+    if Path(path).is_absolute():
+        return {"uri": Path(path).as_uri()}
+    return {"uri": quote(path.encode("utf-8", "surrogateescape")), "uriBaseId": "%SRCROOT%"}
+
+
+def _escaped(text: str) -> str:
+    """Keep brackets from being read as links."""
+    return text.replace("\\", "\\\\").replace("[", "\\[").replace("]", "\\]")

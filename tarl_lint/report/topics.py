@@ -1,0 +1,111 @@
+"""The picture of a run as a graph: topics, what lies between them, and the flows that pass through it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+from tarl_lint.baseline import UNKNOWN
+from tarl_lint.model import Finding, Flow, Kind, Sink, Source
+from tarl_lint.runner import Result
+
+_NAMED: Final = 3  # functions named in one part
+
+
+@dataclass(frozen=True, order=True)
+class Topic:
+    """A topic, known by its name without the leading slash; one of unknown name by where it is used."""
+
+    key: str
+    label: str
+
+
+@dataclass(frozen=True)
+class Part:
+    """What publishes in one file under the same inputs: every input reaches every output, by `kind`.
+
+    So the picture has one box for many flows, and yet each way through a box is a flow and no other is.
+    """
+
+    path: str
+    label: str
+    inputs: tuple[tuple[Topic, Kind], ...]
+    outputs: tuple[Topic, ...]
+    new: bool
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Parts by the title of their file, and all topics, both sorted."""
+
+    files: tuple[tuple[str, tuple[Part, ...]], ...]
+    topics: tuple[Topic, ...]
+
+
+def picture(result: Result) -> Picture:
+    """Draw the flows of a run, the accepted ones too; with a baseline, new ones are marked."""
+    flows = [(f, f.flow) for f in result.findings if f.flow]
+    parts = sorted(
+        _parts(flows, marked=result.baseline is not None), key=lambda p: (p.path, p.label, p.inputs)
+    )
+    paths = sorted({part.path for part in parts})
+    titles = short_names(paths)
+    files = tuple((titles[path], tuple(p for p in parts if p.path == path)) for path in paths)
+    topics = {t for p in parts for t in (*(i for i, _ in p.inputs), *p.outputs)}
+    return Picture(files, tuple(sorted(topics, key=lambda t: t.key)))
+
+
+def _parts(flows: Sequence[tuple[Finding, Flow]], *, marked: bool) -> Iterator[Part]:
+    """Merge the publish calls of a class or file that the same sources reach."""
+    calls: dict[Sink, list[tuple[Finding, Flow]]] = {}
+    for finding, flow in flows:
+        calls.setdefault(flow.sink, []).append((finding, flow))
+    alike: dict[_Likeness, list[Sink]] = {}
+    for sink, pairs in calls.items():
+        inputs = {(topic, flow.kind) for _, flow in pairs for topic in _topics(flow.source)}
+        new = marked and any(finding.status == "new" for finding, _ in pairs)
+        owner = sink.qualname.rpartition(".")[0]
+        alike.setdefault(_Likeness(sink.span.path, owner, frozenset(inputs), new), []).append(sink)
+    for key, sinks in alike.items():
+        outputs = sorted({topic for sink in sinks for topic in _topics(sink)}, key=lambda t: t.key)
+        ordered = sorted(key.inputs, key=lambda i: (i[0].key, i[0].label, i[1]))
+        yield Part(key.path, _label(sinks), tuple(ordered), tuple(outputs), key.new)
+
+
+class _Likeness(NamedTuple):
+    """What publish calls have in common that are drawn as one."""
+
+    path: str
+    owner: str
+    inputs: frozenset[tuple[Topic, Kind]]
+    new: bool
+
+
+def _label(sinks: Sequence[Sink]) -> str:
+    """Name the functions that publish."""
+    names = sorted({sink.qualname or "<module>" for sink in sinks})
+    more = [f"and {len(names) - _NAMED} more"] if len(names) > _NAMED else []
+    return "\n".join([*names[:_NAMED], *more])
+
+
+def _topics(end: Source | Sink) -> Iterator[Topic]:
+    for name in end.topics:
+        yield Topic(name.lstrip("/") or name, name)
+    if not end.topics:
+        label = f"{UNKNOWN} ({end.type})" if end.type else UNKNOWN
+        yield Topic(f"{UNKNOWN} {end.id}", label)
+
+
+def short_names(paths: Sequence[str]) -> dict[str, str]:
+    """Return the shortest ends of paths that tell them apart."""
+    names = {path: path.rpartition("/")[2] for path in paths}
+    while True:
+        counts = Counter(names.values())
+        unclear = [path for path, name in names.items() if counts[name] > 1 and name != path]
+        if not unclear:
+            return names
+        for path in unclear:
+            depth = names[path].count("/") + 2
+            names[path] = "/".join(path.split("/")[-depth:])
