@@ -11,12 +11,12 @@ from tarl_lint.config import Config
 from tarl_lint.evidence import Evidence
 from tarl_lint.model import Finding, Flow
 from tarl_lint.relevance import relevant
-from tarl_lint.rules import tarl101, tarl102, tarl203, tarl204
+from tarl_lint.rules import tarl101, tarl102, tarl201, tarl202, tarl203, tarl204
 from tarl_lint.source import Module
 from tarl_lint.taint import Tracer
 from tarl_lint.valueflow.link import Linker
 
-HAZARDS: Final = (tarl203, tarl204)
+HAZARDS: Final = (tarl201, tarl202, tarl203, tarl204)
 
 
 def lint(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
@@ -51,7 +51,7 @@ def hazards(machine: Linker, flows: Sequence[Flow], config: Config) -> tuple[Fin
     wanted = [rule for rule in HAZARDS if config.enabled(rule.CODE)]
     if not wanted or not machine.modules:
         return ()
-    evidence = Evidence(machine, flows, Tracer(machine))
+    evidence = Evidence(machine, flows)
     found = {finding for rule in wanted for finding in rule.findings(evidence)}
     return tuple(sorted(found, key=lambda f: (f.span, f.code, f.message)))
 

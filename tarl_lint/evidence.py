@@ -6,8 +6,10 @@ import ast
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Final
 
+from tarl_lint.bounds import limits
 from tarl_lint.model import Finding, Flow, Source, Span
 from tarl_lint.taint import Tracer
 from tarl_lint.valueflow.ir import Pos
@@ -15,6 +17,7 @@ from tarl_lint.valueflow.link import Linker
 
 PROGRAM: Final = re.compile(r"__main__|\bdef main\(|\binit_node\(|\brclpy\.init\(")
 BY_TEXT: Final = frozenset(["getattr", "hasattr", "vars", "globals", "locals", "eval", "exec"])
+LOCKS: Final = frozenset(["Lock", "RLock", "Condition", "Semaphore", "BoundedSemaphore"])
 
 
 @dataclass(slots=True)
@@ -33,6 +36,7 @@ class Outline:
     tree: ast.Module
     parents: dict[ast.AST, ast.AST] = field(default_factory=dict)
     calls: dict[tuple[int, int], list[ast.Call]] = field(default_factory=dict)
+    locks: dict[str, str] = field(default_factory=dict)  # name of a lock → the lock, which a condition shares
     by_text: bool = False  # names may be looked up by texts made at run time
 
     def __post_init__(self) -> None:
@@ -44,6 +48,16 @@ class Outline:
                 self.by_text |= _by_text(node)
             elif isinstance(node, ast.Attribute):
                 self.by_text |= node.attr == "__dict__"
+            elif isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
+                self._lock(node.targets, node.value)
+
+    def _lock(self, targets: Sequence[ast.expr], call: ast.Call) -> None:
+        if _last(call.func) not in LOCKS:
+            return
+        shared = _last(call.args[0]) if call.args else ""
+        for target in targets:
+            name = _last(target)
+            self.locks[name] = self.locks.get(shared, shared) or name
 
     def around(self, node: ast.AST) -> Iterator[ast.AST]:
         """Yield what is around a node, from the inside out."""
@@ -64,11 +78,24 @@ class Outline:
 class Evidence:
     """Everything that a rule about hazards may ask."""
 
-    def __init__(self, machine: Linker, flows: Sequence[Flow], tracer: Tracer) -> None:
+    def __init__(self, machine: Linker, flows: Sequence[Flow]) -> None:
         self.machine = machine
         self.flows = flows
-        self.tracer = tracer
+        self.ours = frozenset(f.function.name for f in machine.frames.values())
         self._outlines: dict[str, Outline] = {}
+        self._limited: dict[int, bool] = {}
+
+    @cached_property
+    def tracer(self) -> Tracer:
+        """Return who follows the graph."""
+        return Tracer(self.machine)
+
+    def limited(self, statement: ast.AST) -> bool:
+        """Tell whether what a statement computes stays within limits, as far as its text says."""
+        known = self._limited.get(id(statement))
+        if known is None:
+            known = self._limited[id(statement)] = limits(statement, self.ours)
+        return known
 
     def outline(self, path: str) -> Outline:
         """Return the outline of a module."""
@@ -124,6 +151,11 @@ def _reads(node: ast.expr, name: str, attribute: bool) -> bool:
     if isinstance(node, ast.Name):
         return not attribute and node.id == name and not isinstance(node.ctx, ast.Store)
     return isinstance(node, ast.Constant) and node.value == name
+
+
+def _last(expr: ast.expr) -> str:
+    """Return the last part of a dotted name."""
+    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""
 
 
 def _by_text(call: ast.Call) -> bool:

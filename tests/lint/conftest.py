@@ -33,7 +33,7 @@ def travel(goal, pub):
 
 if __name__ == "__main__":
     rospy.Subscriber("odom", Odometry, callback)
-    travel(10.0, rospy.Publisher("velocity", Float64, queue_size=1))
+    travel(10.0, rospy.Publisher("progress", Float64, queue_size=1))
 """
 
 
@@ -68,7 +68,7 @@ class Example:
     def sink(self) -> Sink:
         span = self.span("pub.publish(vel)")
         return Sink(
-            "node:travel:publish", span, ("velocity",), "Float64", "rospy.Publisher.publish", "node", "travel"
+            "node:travel:publish", span, ("progress",), "Float64", "rospy.Publisher.publish", "node", "travel"
         )
 
     def flow(self, kind: Kind = "explicit", topic: str = "odom", callback: str = "callback") -> Flow:
@@ -86,7 +86,7 @@ class Example:
     def finding(self, kind: Kind = "explicit", topic: str = "odom", callback: str = "callback") -> Finding:
         flow = self.flow(kind, topic, callback)
         code = "TARL101" if kind == "explicit" else "TARL102"
-        return Finding(code, flow.sink.span, f"{topic} reaches velocity", flow, fingerprint=f"{topic}-{kind}")
+        return Finding(code, flow.sink.span, f"{topic} reaches progress", flow, fingerprint=f"{topic}-{kind}")
 
 
 @pytest.fixture

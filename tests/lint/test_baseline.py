@@ -96,9 +96,9 @@ def test_the_file_has_one_flow_a_line_in_words_and_the_same_bytes_in_any_order(e
     assert text == dumps(merged([other, entry], ()))
     assert text == (
         '{"format": 1, "tool": "tarl-lint",\n "flows": [\n'
-        '  {"kind": "explicit", "source": "odom", "callback": "callback", "sink": "velocity", "in": "travel", '
+        '  {"kind": "explicit", "source": "odom", "callback": "callback", "sink": "progress", "in": "travel", '
         '"class": "", "package": "shuttle", "count": 1, "files": ["node.py"]},\n'
-        '  {"kind": "explicit", "source": "scan", "callback": "callback", "sink": "velocity", "in": "travel", '
+        '  {"kind": "explicit", "source": "scan", "callback": "callback", "sink": "progress", "in": "travel", '
         '"class": "", "package": "shuttle", "count": 1, "files": ["node.py"]}\n ]}\n'
     )
     assert json.loads(dumps(Baseline())) == {"format": 1, "tool": "tarl-lint", "flows": []}

@@ -27,7 +27,7 @@ def lint(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str,
 def test_an_explicit_flow_is_shown_and_fails(node, capsys):
     code, out, err = lint(capsys, "node.py")
     assert code == 1
-    assert out.startswith("node.py:18:9 publishes velocity (Float64) in travel\n")
+    assert out.startswith("node.py:18:9 publishes progress (Float64) in travel\n")
     assert "1 flow in 1 file: 1 explicit.\n" in out
     assert err == ""
 
@@ -79,10 +79,10 @@ def test_accepted_flows_pass_until_the_baseline_is_left_out(node, capsys):
     node.write_text("x = 1\n")
     code, out, err = lint(capsys)
     assert code == 0
-    assert "No longer there, though accepted in tarl-flows.json:\n  odom → velocity, explicit" in out
+    assert "No longer there, though accepted in tarl-flows.json:\n  odom → progress, explicit" in out
     code, out, err = lint(capsys, "--format", "json")
     assert json.loads(out)["diagnostics"] == []
-    assert "odom → velocity" in err
+    assert "odom → progress" in err
     assert lint(capsys, "--write-baseline")[1] == "tarl-flows.json: 0 flows accepted (0 new, 1 forgotten).\n"
 
 
@@ -201,7 +201,7 @@ def test_a_terminal_that_only_knows_ascii_is_no_problem(node):
     node.rename(node.parent / "nöde.py")
     done = run(node, PYTHONIOENCODING="ascii", NO_COLOR="1")
     assert done.returncode == 1
-    assert done.stdout.startswith(b"n\\xf6de.py:18:9 publishes velocity")
+    assert done.stdout.startswith(b"n\\xf6de.py:18:9 publishes progress")
     assert done.stderr == b""
 
 

@@ -70,7 +70,7 @@ def test_the_hook_stops_a_commit_with_a_new_flow_and_lets_accepted_ones_pass(exa
 
     stopped = call(PRE_COMMIT, "run", "--all-files", cwd=scratch, **home)
     assert stopped.returncode == 1
-    assert "node.py:18:9 publishes velocity (Float64) in travel" in stopped.stdout
+    assert "node.py:18:9 publishes progress (Float64) in travel" in stopped.stdout
 
     accepted = call(sys.executable, "-m", "tarl_lint", "--write-baseline", cwd=scratch)
     assert accepted.returncode == 0, accepted.stderr

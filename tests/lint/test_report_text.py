@@ -13,7 +13,7 @@ from tarl_lint.source import SourceError
 from tarl_lint.suppress import Suppression
 
 ONE_FLOW = """\
-node.py:18:9 publishes velocity (Float64) in travel
+node.py:18:9 publishes progress (Float64) in travel
    16 │         delta = goal - pos
    17 │         vel = 5 * delta
    18 │         pub.publish(vel)
@@ -87,7 +87,7 @@ def test_nothing_found_is_said_in_words(result_of):
 def test_vanished_flows_are_named(example, result_of):
     gone = Accepted(fingerprint(example.flow(), "shuttle"), 2, ("node.py",))
     text = shown(result_of(vanished=(gone,), baseline=Path("tarl-flows.json")))
-    assert "  odom → velocity, explicit, heard by callback, published in travel (shuttle), 2 times\n" in text
+    assert "  odom → progress, explicit, heard by callback, published in travel (shuttle), 2 times\n" in text
     many = tuple(replace(gone, fingerprint=replace(gone.fingerprint, source=f"topic{i}")) for i in range(25))
     assert "  and 5 more\n" in shown(result_of(vanished=many, baseline=Path("tarl-flows.json")))
 
@@ -192,7 +192,7 @@ def test_a_call_over_many_lines_is_shown_by_its_ends(result_of):
 
 def test_a_file_that_is_gone_meanwhile_costs_only_the_frame(example, result_of):
     text = shown(replace(result_of(example.finding()), texts={}))
-    assert text.startswith("node.py:18:9 publishes velocity (Float64) in travel\n\n    TARL101")
+    assert text.startswith("node.py:18:9 publishes progress (Float64) in travel\n\n    TARL101")
 
 
 def test_concise_has_one_line_for_each_finding(example, result_of):
@@ -201,8 +201,8 @@ def test_concise_has_one_line_for_each_finding(example, result_of):
     )
     assert shown(result, name="concise").splitlines() == [
         "a.py:2:1 TARL001 No.",
-        "node.py:18:9 TARL101 odom reaches velocity",
-        "node.py:18:9 TARL102 scan reaches velocity",
+        "node.py:18:9 TARL101 odom reaches progress",
+        "node.py:18:9 TARL102 scan reaches progress",
         "2 flows in 1 file: 1 explicit, 1 implicit.",
         "Not analysed: 1 file that is not readable as Python 3 (TARL001).",
     ]

@@ -43,7 +43,7 @@ def test_a_finding_stands_at_the_publish_call_and_names_both_topics():
 
     module = parse("snippet.py", cleandoc(text).encode(), "snippet")
     assert isinstance(module, Module)
-    (finding,) = engine.lint([module], Config())
+    (finding,) = engine.lint([module], Config(select=("TARL101",)))
     assert finding.message == "/range (Range) reaches /brake (Float64)"
     assert finding.flow is not None
     assert finding.span == finding.flow.sink.span

@@ -55,5 +55,5 @@ assert main(["--format", "json", "--write-baseline"]) == 0
 assert main([]) == 0
 """
     out = python(place, program)
-    assert out.startswith("node.py:18:9 publishes velocity")
+    assert out.startswith("node.py:18:9 publishes progress")
     assert "\x1b" not in out

@@ -1,0 +1,141 @@
+"""What keeps a number within limits, read off the text of a statement or condition."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from typing import Final, Literal
+
+# Names of functions, ours or a library's, that promise a value within limits.
+LIMITING: Final = re.compile(
+    r"clamp|clip|limit|saturat|constrain|bound|restrict|normali[sz]e|wrap|thresh|sigmoid|squash|(^|_)sat(_|$)",
+    re.I,
+)
+BOUNDED: Final = frozenset(
+    [
+        "min", "max", "minimum", "maximum", "fmin", "fmax", "nanmin", "nanmax", "sin", "cos", "tanh",
+        "atan", "atan2", "asin", "acos", "arctan", "arctan2", "arcsin", "arccos", "sign", "copysign",
+        "heaviside", "argmin", "argmax", "len", "bool", "euler_from_quaternion", "quat2euler",
+        "as_euler", "fmod", "remainder", "mod", "interp", "isnan", "isinf", "isfinite",
+    ]
+)  # fmt: skip
+# Functions that hand a magnitude on; whatever else is not among the files may limit it.
+PASSING: Final = frozenset(
+    [
+        "abs", "fabs", "absolute", "sqrt", "hypot", "pow", "exp", "log", "square", "float", "int",
+        "round", "floor", "ceil", "sum", "mean", "nanmean", "average", "median", "norm", "dot", "matmul",
+        "array", "asarray", "list", "tuple", "deepcopy", "copy", "append", "float32", "float64",
+        "subtract", "add", "multiply", "divide", "diff", "publish", "replace", "str", "radians",
+        "degrees", "dist", "fsum", "get", "item", "tolist", "reshape", "flatten", "zip", "enumerate",
+        "range",
+    ]
+)  # fmt: skip
+ARITHMETIC: Final = frozenset(
+    ["sqrt", "hypot", "pow", "exp", "log", "square", "sum", "mean", "norm", "dot", "dist"]
+)
+# Fields of messages whose magnitude is limited, or means nothing.
+HARMLESS_FIELDS: Final = frozenset(
+    [
+        "header", "stamp", "frame_id", "seq", "covariance", "orientation", "axes", "buttons", "status",
+        "width", "height", "encoding", "layout", "angle_min", "angle_max", "angle_increment",
+        "range_min", "range_max",
+    ]
+)  # fmt: skip
+
+Side = Literal["above", "below", "both"]
+
+
+def limits(statement: ast.AST, ours: frozenset[str]) -> bool:
+    """Tell whether what a statement computes is limited, or may be by code that is not here."""
+    for node in ast.walk(statement):
+        if isinstance(node, ast.Call) and _limiting(node, ours):
+            return True
+        if isinstance(node, ast.Attribute) and node.attr in HARMLESS_FIELDS:
+            return True
+        if isinstance(node, ast.keyword) and node.arg in HARMLESS_FIELDS:
+            return True
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mod):
+            return True
+        if isinstance(node, (ast.Compare, ast.JoinedStr)):
+            return True
+        if isinstance(node, ast.Subscript) and _looked_up(node):
+            return True
+    return False
+
+
+def computes(statement: ast.AST) -> bool:
+    """Tell whether a statement makes a new number rather than handing one on."""
+    return any(
+        isinstance(node, (ast.BinOp, ast.AugAssign))
+        or (isinstance(node, ast.Call) and call_name(node) in ARITHMETIC)
+        for node in ast.walk(statement)
+    )
+
+
+def _limiting(call: ast.Call, ours: frozenset[str]) -> bool:
+    name = call_name(call)
+    if name in BOUNDED or LIMITING.search(name):
+        return True
+    return not (name in PASSING or name in ours or name[:1].isupper())
+
+
+def call_name(call: ast.Call) -> str:
+    """Return the last part of the name that is called."""
+    if isinstance(call.func, ast.Attribute):
+        return call.func.attr
+    return call.func.id if isinstance(call.func, ast.Name) else ""
+
+
+def _looked_up(node: ast.Subscript) -> bool:
+    """Tell whether an element is chosen by something computed, as out of a table of speeds."""
+    return isinstance(node.slice, (ast.Attribute, ast.Call, ast.BinOp))
+
+
+def side(test: ast.expr, *, holds: bool) -> Side:
+    """Tell where a value lies when a condition on it holds or not: only above something, below, or either.
+
+    `both` also stands for conditions that cannot be told, so that nothing is claimed of them.
+    """
+    if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
+        return side(test.operand, holds=not holds)
+    if isinstance(test, ast.BoolOp):
+        parts = [side(v, holds=holds) for v in test.values if list(comparisons(v))]
+        return parts[0] if parts and len(set(parts)) == 1 else "both"
+    if not isinstance(test, ast.Compare) or len(test.ops) != 1:
+        return "both"
+    operator = test.ops[0]
+    if not isinstance(operator, (ast.Lt, ast.LtE, ast.Gt, ast.GtE)):
+        return "both"
+    greater = isinstance(operator, (ast.Gt, ast.GtE))
+    flipped = _fixed(test.left) and not _fixed(test.comparators[0])
+    return "above" if (greater != flipped and holds) or (greater == flipped and not holds) else "below"
+
+
+def comparisons(test: ast.AST) -> Iterator[ast.Compare]:
+    """Yield the comparisons by size or equality in a condition."""
+    for node in ast.walk(test):
+        if isinstance(node, ast.Compare) and not any(isinstance(o, (ast.Is, ast.IsNot)) for o in node.ops):
+            yield node
+
+
+def dotted(test: ast.expr) -> Iterator[str]:
+    """Yield the fields that a condition asks for, in full: `msg.pose.position.x`."""
+    pending: list[ast.AST] = [test]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, ast.Attribute) and not _fixed(node):
+            yield ast.unparse(node)
+        else:
+            pending += ast.iter_child_nodes(node)
+
+
+def _fixed(node: ast.expr) -> bool:
+    """Tell whether an expression looks like a limit: a literal, or a name in capitals."""
+    if isinstance(node, ast.UnaryOp):
+        return _fixed(node.operand)
+    if isinstance(node, ast.Attribute):
+        return node.attr.isupper() or (
+            isinstance(node.value, ast.Name) and node.value.id in ("math", "np", "numpy")
+        )
+    return isinstance(node, ast.Constant) or (isinstance(node, ast.Name) and node.id.isupper())

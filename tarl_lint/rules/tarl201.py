@@ -1,0 +1,132 @@
+"""TARL201: state is shared between threads without the lock that guards it elsewhere.
+
+In rospy every subscriber, timer and service calls back in a thread of its own, beside the main loop. In rclpy this is
+so only with a MultiThreadedExecutor and callback groups that allow it, or with threads of one's own. An attribute that
+is accessed under a lock in one thread, and changed or read without it in another, may be seen half changed, or a
+change may be lost. Only attributes for which a lock is used somewhere are reported; flags that are set to constants,
+questions whether something is there yet, and what runs before the threads start are not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from tarl_lint.evidence import Evidence
+from tarl_lint.locking import Locking, Use
+from tarl_lint.model import Finding
+
+CODE: Final = "TARL201"
+SUMMARY: Final = "state is shared between threads without the lock that guards it elsewhere"
+
+INVALID: Final = (
+    """
+    import threading
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+
+    class Keeper:
+        def __init__(self):
+            self.lock = threading.Lock()
+            self.pose = None
+            self.pub = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+            rospy.Subscriber("/odom", Odometry, self.on_odom)
+
+        def on_odom(self, msg):
+            with self.lock:
+                self.pose = msg.pose.pose
+
+        def run(self):
+            while not rospy.is_shutdown():
+                cmd = Twist()
+                cmd.angular.z = max(-1.0, min(1.0, -self.pose.position.y))
+                self.pub.publish(cmd)
+
+    Keeper().run()
+    """,
+)
+
+VALID: Final = (
+    """
+    import threading
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+
+    class Keeper:
+        def __init__(self):
+            self.lock = threading.Lock()
+            self.pose = None
+            self.pub = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+            rospy.Subscriber("/odom", Odometry, self.on_odom)
+
+        def on_odom(self, msg):
+            with self.lock:
+                self.pose = msg.pose.pose
+
+        def run(self):
+            while not rospy.is_shutdown():
+                with self.lock:
+                    y = self.pose.position.y
+                cmd = Twist()
+                cmd.angular.z = max(-1.0, min(1.0, -y))
+                self.pub.publish(cmd)
+
+    Keeper().run()
+    """,
+    """
+    import threading
+    import rclpy
+    from nav_msgs.msg import Odometry
+    from rclpy.node import Node
+    from std_msgs.msg import Float64
+
+    class Keeper(Node):
+        def __init__(self):
+            super().__init__("keeper")
+            self.lock = threading.Lock()
+            self.y = 0.0
+            self.pub = self.create_publisher(Float64, "y", 1)
+            self.create_subscription(Odometry, "odom", self.on_odom, 10)
+            self.create_timer(0.1, self.on_timer)
+
+        def on_odom(self, msg):
+            with self.lock:
+                self.y = msg.pose.pose.position.y
+
+        def on_timer(self):
+            self.pub.publish(Float64(data=self.y))
+
+    rclpy.init()
+    rclpy.spin(Keeper())
+    """,
+)
+
+
+def findings(evidence: Evidence) -> Iterator[Finding]:
+    """Yield a hazard for each function that uses an attribute without its lock, beside another thread."""
+    for uses in Locking(evidence).uses().values():
+        written = [u for u in uses if u.writes]
+        if not written or all(u.constant for u in written):
+            continue
+        told: set[tuple[str, str]] = set()
+        for use in sorted((u for u in uses if not u.locks), key=lambda u: (u.path, u.pos)):
+            other = _conflict(use, uses)
+            if other is None or (use.path, use.function) in told:
+                continue
+            told.add((use.path, use.function))
+            yield evidence.finding(CODE, use.path, use.pos, _message(use, other))
+
+
+def _conflict(use: Use, uses: Sequence[Use]) -> Use | None:
+    """Return an access in another thread that holds a lock, when one of the two writes."""
+    others = (u for u in uses if u.locks and u.thread != use.thread and (u.writes or use.writes))
+    return min(others, key=lambda u: (not u.writes, u.path, u.pos), default=None)
+
+
+def _message(use: Use, other: Use) -> str:
+    done = "written" if use.writes else "read"
+    does = "writes" if other.writes else "reads"
+    lock = min(other.locks)
+    return f"self.{use.name} is {done} without {lock}, which {other.function} holds in another thread when it {does} it"

@@ -1,0 +1,164 @@
+"""TARL202: a command follows a sensor without limit.
+
+A number of a received message is computed into a command for actuators (a velocity, a throttle, an angle) and nothing
+on the way bounds it: no `min`, `max`, `clip` or function of such a name, no angle or sine, no comparison that replaces
+the value when it is too large. Sensors send infinity, jumps and nonsense sometimes, and the command then follows.
+Clamp it where it is computed; that is the line that is named. Conditions that only ask whether the value is large
+enough (`while distance > tolerance`) do not bound it. What passes through code that is not here is not reported.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.evidence import Evidence
+from tarl_lint.model import Finding, Sink, Source, Span
+from tarl_lint.rules.wording import end
+from tarl_lint.unbounded import Magnitudes
+from tarl_lint.valueflow.machine import SinkRecord, SourceRecord
+
+CODE: Final = "TARL202"
+SUMMARY: Final = "a command follows a sensor without limit"
+
+INVALID: Final = (
+    """
+    import math
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+
+    class GoTo:
+        def __init__(self):
+            self.x = self.y = 0.0
+            self.pub = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+            rospy.Subscriber("/odom", Odometry, self.on_odom)
+
+        def on_odom(self, msg):
+            self.x = msg.pose.pose.position.x
+            self.y = msg.pose.pose.position.y
+
+        def go(self, x, y):
+            distance = math.hypot(x - self.x, y - self.y)
+            while distance > 0.1:
+                distance = math.hypot(x - self.x, y - self.y)
+                cmd = Twist()
+                cmd.linear.x = 0.8 * distance
+                self.pub.publish(cmd)
+                rospy.sleep(0.1)
+
+    GoTo().go(1.0, 2.0)
+    """,
+)
+
+VALID: Final = (
+    """
+    import rospy
+    from geometry_msgs.msg import Twist
+    from sensor_msgs.msg import Range
+
+    pub = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+
+    def on_range(msg):
+        cmd = Twist()
+        cmd.linear.x = min(0.5, 0.3 * msg.range)
+        pub.publish(cmd)
+
+    rospy.Subscriber("/range", Range, on_range)
+    """,
+    """
+    import rospy
+    from geometry_msgs.msg import Twist
+    from sensor_msgs.msg import Range
+
+    LIMIT = 0.5
+    pub = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+
+    def on_range(msg):
+        speed = 0.3 * msg.range
+        if speed > LIMIT:
+            speed = LIMIT
+        cmd = Twist()
+        cmd.linear.x = speed
+        pub.publish(cmd)
+
+    rospy.Subscriber("/range", Range, on_range)
+    """,
+    """
+    import rospy
+    from sensor_msgs.msg import Range
+    from std_msgs.msg import Float64
+
+    pub = rospy.Publisher("/distance_in_feet", Float64, queue_size=1)
+
+    def on_range(msg):
+        pub.publish(3.28 * msg.range)
+
+    rospy.Subscriber("/range", Range, on_range)
+    """,
+)
+
+COMMAND_TYPES: Final = re.compile(
+    r"^(Twist|TwistStamped|Ackermann\w*|Wrench|\w*(Cmd|Command|Control|Thrust)\w*)$"
+)
+PLAIN_TYPES: Final = frozenset(["Float32", "Float64", "Int16", "Int32", "Int64"])
+COMMAND_TOPICS: Final = re.compile(
+    r"cmd|command|ctrl|control|vel|speed|steer|throttle|brake|effort|torque|thrust|motor|servo|pwm|setpoint",
+    re.I,
+)
+NO_COMMAND: Final = re.compile(
+    r"estimat|measur|actual|current|state|feedback|error|odom|debug|filter|status", re.I
+)
+NO_SENSOR: Final = re.compile(
+    r"^(Bool|Empty|String|Char|Byte|U?Int8|Joy\w*|\w*Image|CameraInfo|Twist|TwistStamped|Ackermann\w*|\w*Trajectory|Path"
+    r"|\w*(Cmd|Command|Control|Goal|Request)\w*|)$"
+)
+ASKED_FOR: Final = re.compile(r"cmd|command|setpoint|target|goal|desired|joy|teleop|key", re.I)
+
+
+def findings(evidence: Evidence) -> Iterator[Finding]:
+    """Yield a hazard for each statement that computes an unlimited part of a command."""
+    pairs = {
+        (f.source.span, f.sink.span)
+        for f in evidence.flows
+        if f.kind == "explicit" and _hazardous(f.source, f.sink)
+    }
+    if not pairs:
+        return
+    found: dict[Span, tuple[set[str], set[str]]] = {}
+    for origin in evidence.machine.sources.values():
+        span = evidence.span(origin.path, origin.pos)
+        sinks = [s for s in evidence.machine.sinks.values() if (span, evidence.span(s.path, s.pos)) in pairs]
+        if sinks:
+            _add(found, evidence, origin, sinks)
+    for place, (sources, commands) in found.items():
+        message = f"{', '.join(sorted(commands))} follows {', '.join(sorted(sources))} without limit: clamp this value"
+        yield Finding(CODE, place, message)
+
+
+def _add(
+    found: dict[Span, tuple[set[str], set[str]]],
+    evidence: Evidence,
+    origin: SourceRecord,
+    sinks: list[SinkRecord],
+) -> None:
+    magnitudes = Magnitudes(evidence, origin)
+    for record in sinks:
+        for place in magnitudes.computed(record):
+            sources, named = found.setdefault(place, (set(), set()))
+            sources.add(end(evidence.tracer.source(origin)))
+            named.add(end(evidence.tracer.sink(record)))
+
+
+def _hazardous(source: Source, sink: Sink) -> bool:
+    """Tell whether a sensor's numbers would act on a robot here."""
+    topic = ", ".join(sink.topics)
+    if any(NO_SENSOR.match(t) for t in (source.type or "").split(" | ")) or NO_COMMAND.search(topic):
+        return False
+    if any(ASKED_FOR.search(t) for t in source.topics):
+        return False
+    types = sink.type.split(" | ")
+    if any(COMMAND_TYPES.match(t) for t in types):
+        return True
+    return bool(PLAIN_TYPES & set(types)) and bool(COMMAND_TOPICS.search(topic))
