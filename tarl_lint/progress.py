@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable
 from types import TracebackType
@@ -27,6 +26,8 @@ class Progress:
         self._text = ""
         self._patience = patience
         self._every = every
+        import threading  # only terminals need it
+
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._paint, daemon=True)
 

@@ -11,10 +11,23 @@ from tarl_lint.names import Index
 from tarl_lint.source import Module
 
 
+def concerned(modules: Sequence[Module], config: Config) -> bool:
+    """Tell whether any module subscribes or publishes, as far as words tell: if none does, nothing is found."""
+    sources, sinks = _words(config)
+    return any(_mentions(module, (*sources, *sinks)) for module in modules)
+
+
+def _words(config: Config) -> tuple[list[str], list[str]]:
+    """Return words without which a module neither subscribes nor publishes. A wrapper may do either."""
+    wrappers = [w.name.rpartition(".")[2] for w in config.wrappers]
+    sources = [*catalog.SOURCE_WORDS, *wrappers, *(s.rpartition(".")[2] for s in config.sources)]
+    sinks = [*catalog.SINK_WORDS, *wrappers, *(s.rpartition(".")[2] for s in config.sinks)]
+    return sources, sinks
+
+
 def relevant(modules: Sequence[Module], config: Config) -> list[Module]:
     """Return the modules that a flow may pass through, or a subscription or publisher that leads nowhere."""
-    sources = [*catalog.SOURCE_WORDS, *(s.rpartition(".")[2] for s in config.sources)]
-    sinks = [*catalog.SINK_WORDS, *(s.rpartition(".")[2] for s in config.sinks)]
+    sources, sinks = _words(config)
     receiving = [m for m in modules if _mentions(m, sources)]
     sending = [m for m in modules if _mentions(m, sinks)]
     if not receiving and not sending:

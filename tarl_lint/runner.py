@@ -149,7 +149,11 @@ def _read(file: SourceFile, stdin: Stdin | None) -> Module | SourceError:
 
 
 def _analyse(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
-    from tarl_lint import engine  # --help and mistyped commands need not wait for it
+    from tarl_lint.relevance import concerned
+
+    if not concerned(modules, config):
+        return ()
+    from tarl_lint import engine  # takes longer to import than most files to check
 
     try:
         return engine.lint(modules, config)

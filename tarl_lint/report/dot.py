@@ -17,6 +17,17 @@ _HEAD: Final = (
     ' node [fontname="Helvetica", fontsize=11, height=0.3, margin="0.12,0.05"];',
     ' edge [color="#555555", arrowsize=0.6];',
 )
+_COLOURS: Final = (
+    "#1d4ed8",
+    "#b45309",
+    "#047857",
+    "#be123c",
+    "#6d28d9",
+    "#0e7490",
+    "#4d7c0f",
+    "#a21caf",
+    "#334155",
+)
 _TOPIC: Final = 'shape=ellipse, style=filled, fillcolor="#dbeafe", color="#3b82f6"'
 _PART: Final = 'shape=box, style="rounded,filled", fillcolor=white, color="#777777"'
 _NEW: Final = 'shape=box, style="rounded,filled", fillcolor="#fee2e2", color="#dc2626", penwidth=2'
@@ -50,7 +61,9 @@ def _graph(drawn: Picture) -> Iterator[str]:
 
 def _edges(part: Part, name: str, numbers: dict[str, str]) -> Iterator[str]:
     for topic, kind in part.inputs:
-        yield f" {numbers[topic.key]} -> {name}{' [style=dashed]' if kind == 'implicit' else ''};"
+        number = numbers[topic.key]
+        colour = _COLOURS[int(number[1:]) % len(_COLOURS)]
+        yield f' {number} -> {name} [color="{colour}"{", style=dashed" if kind == "implicit" else ""}];'
     for topic in part.outputs:
         yield f" {name} -> {numbers[topic.key]};"
 

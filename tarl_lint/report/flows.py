@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Final
 
-from tarl_lint.model import Dependence, Finding, Flow, Sink, Source, Span, Step
+from tarl_lint.model import Dependence, Finding, Flow, Sink, Source, Step
 from tarl_lint.report.frame import frame
-from tarl_lint.report.line import Glyphs, Line, Style, View, columns, crop, tabs
+from tarl_lint.report.line import Glyphs, Line, Style, View, columns, crop, location, tabs
 
 _WIDE: Final = 140  # columns of a statement where no terminal sets a limit
 _STYLES: Final[Mapping[Dependence, Style]] = {"data": "data", "control": "control", "context": "quiet"}
@@ -50,11 +50,6 @@ def _heading(sink: Sink) -> Line:
     place = f" in {sink.qualname}" if sink.qualname else ""
     name = describe(sink.topics, sink.type)
     return ((location(sink.span), "place"), (" publishes ", ""), (name, "strong"), (place, ""))
-
-
-def location(span: Span) -> str:
-    """Write where a span begins, so that terminals and editors can go there."""
-    return f"{span.path}:{span.line}:{span.column}"
 
 
 def _aligned(texts: Sequence[str]) -> list[str]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Literal
 
+from tarl_lint.model import Span
+
 Style = Literal["", "place", "strong", "explicit", "implicit", "hazard", "error", "data", "control", "quiet"]
 Line = tuple[tuple[str, Style], ...]
 
@@ -39,6 +41,11 @@ class View:
 def plain(line: Line) -> str:
     """Return a line without its meaning."""
     return "".join(text for text, _ in line)
+
+
+def location(span: Span) -> str:
+    """Write where a span begins, so that terminals and editors can go there."""
+    return f"{span.path}:{span.line}:{span.column}"
 
 
 def columns(text: str) -> int:

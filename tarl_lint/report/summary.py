@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
-from tarl_lint.baseline import Accepted
+from tarl_lint.baseline import Accepted, topic_text
 from tarl_lint.config import shown
-from tarl_lint.model import Finding
+from tarl_lint.model import Finding, Flow
 from tarl_lint.report.line import Line, View
 from tarl_lint.runner import UNREADABLE, Result
 
@@ -145,7 +145,21 @@ def statistics(result: Result) -> Iterator[Line]:
         ("files analysed", result.statistics.files),
         ("lines analysed", result.statistics.lines),
     ]
+    yield from _counted(rows)
+    if flows:
+        yield (("Publish calls reached, by subscribed topic:", ""),)
+        yield from _counted(_reach(flows))
+
+
+def _counted(rows: Sequence[tuple[str, int]]) -> Iterator[Line]:
     width = max(len(str(number)) for _, number in rows)
     for name, number in rows:
         yield ((f"{number:>{width}}", "strong"), (f"  {name}", ""))
     yield ()
+
+
+def _reach(flows: Sequence[Flow]) -> list[tuple[str, int]]:
+    """Return topic → number of publish calls that it reaches, the farthest reaching first."""
+    pairs = {(topic_text(flow.source.topics), flow.sink.id, flow.sink.span) for flow in flows}
+    counts = Counter(topic for topic, *_ in pairs)
+    return sorted(counts.items(), key=lambda item: (-item[1], item[0]))

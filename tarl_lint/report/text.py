@@ -6,9 +6,7 @@ from collections.abc import Iterator
 
 from tarl_lint.model import Finding
 from tarl_lint.report import summary
-from tarl_lint.report.flows import legend, location, publish_call, publish_calls
-from tarl_lint.report.frame import frame, lines_of
-from tarl_lint.report.line import Line, Style, View
+from tarl_lint.report.line import Line, Style, View, location
 from tarl_lint.runner import UNREADABLE, Result
 
 
@@ -20,9 +18,7 @@ def report(result: Result, view: View) -> Iterator[Line]:
     yield from _flows(result, view)
     for finding in result.new:
         if finding.flow is None:
-            yield _heading(finding)
-            yield from frame(lines_of(result.texts.get(finding.span.path, "")), finding.span, "hazard", view)
-            yield ()
+            yield from _hazard(finding, result, view)
     yield from summary.vanished(result, view)
     yield from summary.unused(result)
     if view.statistics:
@@ -52,13 +48,26 @@ def _errors(result: Result) -> Iterator[Line]:
 def _flows(result: Result, view: View) -> Iterator[Line]:
     """Yield every publish call; a flow that is the only one is shown with its taint list."""
     flows = [f for f in result.new if f.flow]
+    if not flows:
+        return
+    from tarl_lint.report.flows import legend, publish_call, publish_calls  # clean files need not wait for it
+    from tarl_lint.report.frame import lines_of
+
     paths = view.show_paths or len(flows) == 1
     for group in publish_calls(flows):
         source = lines_of(result.texts.get(group[0][1].sink.span.path, ""))
         yield from publish_call(group, source, view, paths=paths)
-    if flows and paths:
+    if paths:
         yield legend(view)
         yield ()
+
+
+def _hazard(finding: Finding, result: Result, view: View) -> Iterator[Line]:
+    from tarl_lint.report.frame import frame, lines_of
+
+    yield _heading(finding)
+    yield from frame(lines_of(result.texts.get(finding.span.path, "")), finding.span, "hazard", view)
+    yield ()
 
 
 def _heading(finding: Finding) -> Line:
