@@ -103,7 +103,7 @@ def test_unreadable_files_are_said_when_the_baseline_is_written(node, capsys):
         (["--show-path"], "There is no option --show-path: did you mean '--show-paths'?"),
         (
             ["--format", "jsno"],
-            "--format cannot be 'jsno': did you mean 'json'? It can be text, concise, json.",
+            "--format cannot be 'jsno': did you mean 'json'? It can be text, concise, json, sarif, ",
         ),
         (["--fail-on", "all"], "--fail-on cannot be 'all'. It can be never, hazard, explicit, implicit."),
         (["--baseline"], "--baseline needs a value."),
