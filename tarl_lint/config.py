@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Final, cast
 
@@ -66,6 +67,12 @@ class Config:
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] = ()
     file: Path | None = None
     origins: tuple[tuple[str, str], ...] = ()
+
+    @cached_property
+    def named(self) -> frozenset[str]:
+        """Return the qualified names of the functions that the settings speak of."""
+        wrappers = (wrapper.name for wrapper in self.wrappers)
+        return frozenset((*self.sources, *self.sinks, *self.sanitizers, *wrappers))
 
     def enabled(self, code: str) -> bool:
         """Tell whether findings of a rule are wanted."""

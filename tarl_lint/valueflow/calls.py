@@ -121,6 +121,8 @@ class Calls(Activations):
     def call_object(self, target: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
         """Call one object."""
         kind = target.kind
+        if qualified := self.named_by_settings(target):
+            return self.call_library(qualified, arguments, frame, call)
         if kind == "closure":
             return self.invoke(target, arguments, frame, call)
         if kind == "bound" and isinstance(target.info, tuple):

@@ -21,6 +21,7 @@ from tarl_lint.valueflow.values import (
     lineage,
     pointer,
 )
+from tarl_lint.wrapping import facts
 
 
 class Library(Containers):
@@ -44,10 +45,23 @@ class Library(Containers):
         return self.generic(qualified, arguments, frame, call)
 
     def _configured(self, qualified: str) -> Fact | None:
-        """Return what a source named in the settings does: it subscribes when it is given a callback."""
+        """Return what the settings say of a function: a source subscribes when it is given a callback."""
+        if self.config.wrappers and (fact := facts(self.config.wrappers).get(qualified)):
+            return fact
         if qualified not in self.config.sources:
             return None
         return Fact("configured", qualified, (0, "topic"), (1, "type"), (-1, "callback"))
+
+    def named_by_settings(self, target: Obj) -> str:
+        """Return the qualified name of a function or method of ours that the settings speak of, else ""."""
+        if not self.config.named:
+            return ""
+        closure = target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
+        if closure.kind != "closure" or not isinstance(closure.info, tuple):
+            return ""
+        function, _, program, _ = closure.info
+        qualified = f"{program.name}.{function.qualname}"
+        return qualified if qualified in self.config.named else ""
 
     def generic(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
         """Pass the arguments on to the result; write the argument that the catalog says is written."""

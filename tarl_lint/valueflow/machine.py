@@ -240,6 +240,10 @@ class Machine:
         """Call a function or class of a library."""
         raise NotImplementedError
 
+    def named_by_settings(self, target: Obj) -> str:
+        """Return the qualified name of a function of ours that the settings speak of, else ""."""
+        raise NotImplementedError
+
     def run(self, frame: Frame) -> Value:
         """Execute a frame's body and return its result."""
         raise NotImplementedError

@@ -2,6 +2,7 @@ from textwrap import dedent
 
 from tarl_lint.config import Config
 from tarl_lint.engine import analyse
+from tarl_lint.keys import Wrapper
 from tarl_lint.relevance import relevant
 from tarl_lint.source import Module, parse
 
@@ -116,3 +117,68 @@ def test_classes_that_only_others_start_are_started():
         """,
     )
     assert kinds(node) == [("explicit", ("a",), ("b",))]
+
+
+TOOLS = """
+    def checked(v):
+        return max(-1.0, min(1.0, v))
+    class Bus:
+        def listen(self, topic, callback):
+            self.callback = callback
+        def read(self, topic):
+            return self.kept
+        def send(self, v):
+            pass
+    """
+
+
+def test_settings_speak_of_functions_in_the_tree_too():
+    node = module("node", NODE.format(value="tools.checked(msg.data)").replace("import bus", "import tools"))
+    tools = module("tools", TOOLS)
+    assert kinds(node, tools) == [("explicit", ("a",), ("b",))]
+    assert kinds(node, tools, sanitizers=("tools.checked",)) == []
+
+
+def test_settings_speak_of_methods_by_the_class_that_defines_them():
+    text = """
+        from tools import Bus
+        class Radio(Bus):
+            pass
+        radio = Radio()
+        def on(msg):
+            radio.send(msg.data)
+        radio.listen("a", on)
+        """
+    modules = module("node", text), module("tools", TOOLS)
+    assert kinds(*modules) == []
+    found = kinds(*modules, sources=("tools.Bus.listen",), sinks=("tools.Bus.send",))
+    assert found == [("explicit", ("a",), ())]
+
+
+def test_wrappers_of_the_settings_do_what_they_are_like_wherever_their_arguments_stand():
+    text = """
+        import bus
+        from std_msgs.msg import Float64
+        out = bus.talk(Float64, "b")
+        def on(msg, gain):
+            out.publish(msg.data * gain)
+        bus.listen(on, where="a", what=Float64)
+        """
+    listen = Wrapper("bus.listen", "rospy.Subscriber", topic="where", type="what", callback=0)
+    talk = Wrapper("bus.talk", "rospy.Publisher", topic=1, type=0)
+    assert kinds(module("node", text)) == []
+    assert kinds(module("node", text), wrappers=(listen,)) == []
+    flows = analyse([module("node", text)], Config(wrappers=(listen, talk)))
+    (flow,) = flows
+    assert (flow.source.topics, flow.source.type, flow.source.api) == (("a",), "Float64", "bus.listen")
+    assert (flow.sink.topics, flow.sink.type) == (("b",), "Float64")
+
+
+def test_a_wrapper_may_be_like_a_method_of_a_node():
+    text = """
+        import bus
+        out = bus.talk(Float64, "b", 10)
+        bus.listen(Float64, "a", lambda msg: out.publish(msg.data), 10)
+        """
+    wrappers = Wrapper("bus.listen", "create_subscription"), Wrapper("bus.talk", "create_publisher")
+    assert kinds(module("node", text), wrappers=wrappers) == [("explicit", ("a",), ("b",))]
