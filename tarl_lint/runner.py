@@ -77,7 +77,7 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
     modules, errors = read(discovery.files, options.stdin, tell)
     texts = {module.path: module.text for module in modules}
     identities = _Identities(discovery.files, config)
-    tell(f"Following values through {len(modules)} files")
+    tell(f"Following values through {len(modules)} {'file' if len(modules) == 1 else 'files'}")
     wanted = tuple(identities.mark(f) for f in _analyse(modules, config) if config.enabled(f.code))
     heard, unused = suppress.apply(wanted, texts)
     elsewhere = FileIgnores(config.root or Path.cwd(), config.per_file_ignores)

@@ -10,7 +10,7 @@ import pytest
 
 from tarl_lint import __version__, runner
 from tarl_lint.cli import main
-from tarl_lint.report import paint
+from tarl_lint.report import FORMATS, paint
 
 
 @pytest.fixture
@@ -230,3 +230,61 @@ def test_the_installed_command_is_there(node):
     command = Path(sys.executable).parent / "tarl-lint"
     done = subprocess.run([str(command), "--version"], capture_output=True, check=False, text=True)
     assert done.stdout == f"tarl-lint {__version__}\n"
+
+
+def test_every_format_is_written(node, capsys):
+    for name in FORMATS:
+        code, out, _ = lint(capsys, "--format", name)
+        assert code == 1
+        assert "progress" in out
+
+
+def test_rules_can_be_ignored_in_some_files(node, capsys):
+    assert lint(capsys, "--per-file-ignores", "no*.py:TARL101,TARL2")[0] == 0
+    assert lint(capsys, "--per-file-ignores", "other.py:TARL101")[0] == 1
+    (node.parent / "pyproject.toml").write_text('[tool.tarl-lint.per-file-ignores]\n"node.py" = ["TARL1"]\n')
+    code, out, _ = lint(capsys)
+    assert (code, out) == (0, "No flow from a subscription to a publish call in 1 file.\n")
+
+
+@pytest.mark.parametrize(
+    ("value", "sentence"),
+    [
+        ("node.py", "--per-file-ignores: 'node.py' has no form PATTERN:CODES, such as 'tests/:TARL1'."),
+        ("node.py:TARL9", "--per-file-ignores names 'TARL9', which is no rule"),
+    ],
+)
+def test_per_file_ignores_that_cannot_be_meant_are_refused(node, capsys, value, sentence):
+    code, _, err = lint(capsys, "--per-file-ignores", value)
+    assert code == 2
+    assert err.startswith(f"tarl-lint: {sentence}")
+
+
+def test_shown_settings_read_back_as_the_same_settings(node, capsys):
+    text = (
+        '[tool.tarl-lint]\nsinks = ["bus.send"]\nper-file-ignores = {"tests/" = ["TARL1"]}\n'
+        '[tool.tarl-lint.wrappers]\n"bus.listen" = "rospy.Subscriber"\n'
+        '"bus.talk" = {like = "rospy.Publisher", topic = 1}\n'
+    )
+    (node.parent / "pyproject.toml").write_text(text)
+    _, shown, _ = lint(capsys, "--show-settings")
+    assert "# pyproject.toml" in shown
+    (node.parent / "again.toml").write_text(shown.replace('baseline = ""', ""))
+    _, again, _ = lint(capsys, "--show-settings", "--config", "again.toml")
+    values = [[line.split("  #")[0] for line in text.splitlines()[2:]] for text in (shown, again)]
+    assert values[0] == values[1]
+
+
+def test_statistics_count_what_each_topic_reaches(node, capsys):
+    _, out, _ = lint(capsys, "--statistics")
+    assert "Publish calls reached, by subscribed topic:\n1  odom\n" in out
+
+
+def test_progress_is_told_on_terminals_only(node, capsys, monkeypatch):
+    told = []
+    monkeypatch.setattr("tarl_lint.progress.Progress.tell", lambda self, text: told.append(text))
+    lint(capsys)
+    assert told == []
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    lint(capsys)
+    assert told == ["Looking for files", "Reading file 1 of 1", "Following values through 1 file"]

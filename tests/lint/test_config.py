@@ -4,6 +4,8 @@ import pytest
 
 from tarl_lint.config import Config, Options, resolve
 from tarl_lint.errors import BaselineError, ConfigError
+from tarl_lint.keys import Wrapper
+from tarl_lint.wrapping import facts
 
 
 def test_the_default_configuration_wants_every_rule_and_excludes_nothing():
@@ -121,3 +123,77 @@ def test_a_baseline_that_is_named_must_exist_unless_it_is_being_written(in_direc
     assert resolve(Options(write_baseline=True)).baseline == root / "ci/flows.json"
     with pytest.raises(BaselineError, match=r"other\.json does not exist"):
         resolve(Options(baseline=Path("other.json")))
+
+
+def settings(in_directory, text: str) -> Config:
+    in_directory({"pyproject.toml": f"[tool.tarl-lint]\n{text}\n"})
+    return resolve(Options())
+
+
+def test_functions_of_the_project_are_named_in_full(in_directory):
+    config = settings(
+        in_directory, 'sources = ["bus.listen"]\nsinks = ["robot.bus.Bus.send"]\nsanitizers = []'
+    )
+    assert (config.sources, config.sinks) == (("bus.listen",), ("robot.bus.Bus.send",))
+    assert config.named == {"bus.listen", "robot.bus.Bus.send"}
+
+
+def test_wrappers_say_what_they_are_like_and_where_arguments_stand(in_directory):
+    config = settings(
+        in_directory,
+        '[tool.tarl-lint.wrappers]\n"bus.listen" = "rospy.Subscriber"\n'
+        '"bus.talk" = {like = "rospy.Publisher", topic = 1, type = "kind"}',
+    )
+    assert config.wrappers == (
+        Wrapper("bus.listen", "rospy.Subscriber"),
+        Wrapper("bus.talk", "rospy.Publisher", topic=1, type="kind"),
+    )
+
+
+def test_per_file_ignores_are_patterns_with_codes(in_directory):
+    config = settings(in_directory, 'per-file-ignores = {"tests/" = ["tarl1"], "*_demo.py" = ["TARL102"]}')
+    assert config.per_file_ignores == (("tests/", ("TARL1",)), ("*_demo.py", ("TARL102",)))
+    typed = resolve(Options(per_file_ignores=(("a.py", ("TARL2",)),)))
+    assert typed.per_file_ignores == (("a.py", ("TARL2",)),)
+
+
+@pytest.mark.parametrize(
+    ("line", "complaint"),
+    [
+        ('sources = ["listen"]', r"'sources' .* must be a list of qualified names .* not \['listen'\]"),
+        ('sinks = "bus.send"', r"'sinks' .* must be a list of qualified names"),
+        ('sanitizers = ["bus.send()"]', r"'sanitizers' .* must be a list of qualified names"),
+        ('wrappers = ["bus.listen"]', r"'wrappers' .* must be a table"),
+        ('wrappers = {"listen" = "rospy.Subscriber"}', r"'wrappers' .* must be a table"),
+        ('wrappers = {"bus.listen" = {topic = 1}}', r"'wrappers' .* must be a table"),
+        (
+            'wrappers = {"bus.listen" = {like = "rospy.Subscriber", topik = 1}}',
+            r"'wrappers' .* must be a table",
+        ),
+        (
+            'wrappers = {"bus.listen" = {like = "rospy.Subscriber", topic = -1}}',
+            r"'wrappers' .* must be a table",
+        ),
+        (
+            'wrappers = {"bus.listen" = {like = "rospy.Subscriber", topic = true}}',
+            r"'wrappers' .* must be a table",
+        ),
+        (
+            'per-file-ignores = ["tests/"]',
+            r"'per-file-ignores' .* must be a table of patterns and rule codes",
+        ),
+        ('per-file-ignores = {"tests/" = "TARL1"}', r"'per-file-ignores' .* must be a table"),
+        ("sorces = []", r"no key 'sorces': did you mean 'sources'\?"),
+        ("per_file_ignores = {}", r"no key 'per_file_ignores': did you mean 'per-file-ignores'\?"),
+    ],
+)
+def test_names_and_tables_that_cannot_be_meant_are_refused(in_directory, line, complaint):
+    with pytest.raises(ConfigError, match=complaint):
+        settings(in_directory, line)
+
+
+def test_a_wrapper_of_what_ros_does_not_have_is_refused_with_what_was_meant():
+    with pytest.raises(
+        ConfigError, match=r"'bus\.listen' .* like 'rospy\.Subscribr', .* mean 'rospy\.Subscriber'\?"
+    ):
+        facts((Wrapper("bus.listen", "rospy.Subscribr"),))

@@ -57,3 +57,28 @@ assert main([]) == 0
     out = python(place, program)
     assert out.startswith("node.py:18:9 publishes progress")
     assert "\x1b" not in out
+
+
+def test_a_file_in_which_nothing_subscribes_or_publishes_needs_no_analysis(place):
+    program = """
+import sys
+from tarl_lint.cli import main
+assert main(["clean.py"]) == 0
+print(sorted(name for name in sys.modules if name.startswith(("tarl_lint.valueflow", "tarl_lint.engine"))))
+assert main(["node.py"]) == 1
+print("tarl_lint.engine" in sys.modules)
+"""
+    out = python(place, program).splitlines()
+    assert out[1] == "[]"
+    assert out[-1] == "True"
+
+
+@pytest.mark.parametrize("name", ["sarif", "gitlab", "junit", "github", "dot", "mermaid", "json"])
+def test_no_report_needs_anything_heavy(place, name):
+    program = f"""
+import sys
+from tarl_lint.cli import main
+main(["node.py", "--format", {name!r}, "--output-file", "report"])
+print(sorted(set({HEAVY!r}) & set(sys.modules)))
+"""
+    assert python(place, program).splitlines()[-1] == "[]"

@@ -1,0 +1,47 @@
+import io
+import threading
+
+from tarl_lint.progress import Progress
+
+
+class Terminal(io.StringIO):
+    """Lets a test wait until something was written."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.written = threading.Event()
+
+    def write(self, text: str) -> int:
+        count = super().write(text)
+        if "(" in text:
+            self.written.set()
+        return count
+
+
+def test_a_short_run_says_nothing():
+    terminal = Terminal()
+    with Progress(terminal, patience=60) as progress:
+        progress.tell("Reading")
+    assert terminal.getvalue() == ""
+
+
+def test_a_long_run_says_what_it_is_at_and_leaves_no_trace():
+    terminal = Terminal()
+    with Progress(terminal, patience=0, every=0.01) as progress:
+        progress.tell("Reading file 3 of 9")
+        terminal.written.clear()
+        assert terminal.written.wait(10)
+    text = terminal.getvalue()
+    assert "Reading file 3 of 9 (0 s)" in text
+    assert text.endswith("\r\x1b[K")
+
+
+def test_it_ends_when_the_run_fails():
+    terminal = Terminal()
+    before = threading.active_count()
+    try:
+        with Progress(terminal, patience=60):
+            raise KeyError("x")
+    except KeyError:
+        pass
+    assert threading.active_count() == before
