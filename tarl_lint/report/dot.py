@@ -42,9 +42,8 @@ def report(result: Result, _view: View) -> Iterator[Line]:
 def _graph(drawn: Picture) -> Iterator[str]:
     yield from _HEAD
     numbers = {topic.key: f"t{number}" for number, topic in enumerate(drawn.topics)}
-    labels = {topic.key: topic.label for topic in reversed(drawn.topics)}
-    for key, number in numbers.items():
-        yield f" {number} [label={_quoted(labels[key])}, {_TOPIC}];"
+    for topic in drawn.topics:
+        yield f" {numbers[topic.key]} [label={_quoted(topic.label)}, {_TOPIC}];"
     count = 0
     edges: list[str] = []
     for index, (title, parts) in enumerate(drawn.files):

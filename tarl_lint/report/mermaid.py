@@ -26,9 +26,8 @@ def _graph(drawn: Picture) -> Iterator[str]:
     yield "flowchart LR"
     yield "  %% solid: data of the topic is published; dotted: it only decides; each way through a box is a flow"
     numbers = {topic.key: f"t{number}" for number, topic in enumerate(drawn.topics)}
-    labels = {topic.key: topic.label for topic in reversed(drawn.topics)}
-    for key, number in numbers.items():
-        yield f"  {number}([{_quoted(labels[key])}]):::topic"
+    for topic in drawn.topics:
+        yield f"  {numbers[topic.key]}([{_quoted(topic.label)}]):::topic"
     count = 0
     edges: list[str] = []
     for index, (title, parts) in enumerate(drawn.files):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
@@ -47,31 +47,37 @@ class Picture:
 def picture(result: Result) -> Picture:
     """Draw the flows of a run, the accepted ones too; with a baseline, new ones are marked."""
     flows = [(f, f.flow) for f in result.findings if f.flow]
-    parts = sorted(
-        _parts(flows, marked=result.baseline is not None), key=lambda p: (p.path, p.label, p.inputs)
-    )
+    marked = result.baseline is not None
+    parts = sorted(_parts(flows, _names(flows), marked=marked), key=lambda p: (p.path, p.label, p.inputs))
     paths = sorted({part.path for part in parts})
     titles = short_names(paths)
     files = tuple((titles[path], tuple(p for p in parts if p.path == path)) for path in paths)
     topics = {t for p in parts for t in (*(i for i, _ in p.inputs), *p.outputs)}
-    return Picture(files, tuple(sorted(topics, key=lambda t: t.key)))
+    return Picture(files, tuple(sorted(topics)))
 
 
-def _parts(flows: Sequence[tuple[Finding, Flow]], *, marked: bool) -> Iterator[Part]:
+def _names(flows: Sequence[tuple[Finding, Flow]]) -> Mapping[str, Topic]:
+    """Return the topics by key; one that is written in several ways gets one label, with the slash if any has."""
+    every = {topic for _, flow in flows for end in (flow.source, flow.sink) for topic in _topics(end)}
+    return {topic.key: topic for topic in sorted(every, reverse=True)}
+
+
+def _parts(
+    flows: Sequence[tuple[Finding, Flow]], names: Mapping[str, Topic], *, marked: bool
+) -> Iterator[Part]:
     """Merge the publish calls of a class or file that the same sources reach."""
     calls: dict[Sink, list[tuple[Finding, Flow]]] = {}
     for finding, flow in flows:
         calls.setdefault(flow.sink, []).append((finding, flow))
     alike: dict[_Likeness, list[Sink]] = {}
     for sink, pairs in calls.items():
-        inputs = {(topic, flow.kind) for _, flow in pairs for topic in _topics(flow.source)}
+        inputs = {(names[topic.key], flow.kind) for _, flow in pairs for topic in _topics(flow.source)}
         new = marked and any(finding.status == "new" for finding, _ in pairs)
         owner = sink.qualname.rpartition(".")[0]
         alike.setdefault(_Likeness(sink.span.path, owner, frozenset(inputs), new), []).append(sink)
     for key, sinks in alike.items():
-        outputs = sorted({topic for sink in sinks for topic in _topics(sink)}, key=lambda t: t.key)
-        ordered = sorted(key.inputs, key=lambda i: (i[0].key, i[0].label, i[1]))
-        yield Part(key.path, _label(sinks), tuple(ordered), tuple(outputs), key.new)
+        outputs = sorted({names[topic.key] for sink in sinks for topic in _topics(sink)})
+        yield Part(key.path, _label(sinks), tuple(sorted(key.inputs)), tuple(outputs), key.new)
 
 
 class _Likeness(NamedTuple):
