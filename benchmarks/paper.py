@@ -35,10 +35,13 @@ from pytest_tarl.learning.merging import aligned
 from pytest_tarl.learning.utility import batch
 from pytest_tarl.model import Region
 from pytest_tarl.recording import Recorded, mean_flows, run_episodes, sarsa_tables
-from pytest_tarl.repairing import Repaired, RepairShop, repair
+from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repeating import Instruments, ItemRollout, designated, finish
 from pytest_tarl.rollout import EpisodePlan
 from pytest_tarl.searching import candidates
+from pytest_tarl.searching.search import Candidate
 from pytest_tarl.sensors import Cell
 from pytest_tarl.settings import Designation, Options
 from tarl_lint.api import Analysis, analyse
@@ -142,24 +145,22 @@ class Study:
         )
         options = Options(mode="repair", seed=self.seed)
         online = run_online(rollout, fixture, marked, options, sites, drift, _quiet)
-        shop = RepairShop(
-            rollout, analysis, root, fixture, online, options, _quiet, root / ".tarl" / "patches"
-        )
-        outcome: Repaired = repair(shop)
+        patches = root / ".tarl" / "patches"
+        order = Order(rollout, analysis, root, fixture, online, options, _quiet, patches)
+        outcome = repair(order)
         comparison = outcome.comparison
         fixed = comparison.repair
         self.found["repair"] = {
             "accepted": fixed is not None and fixed.accepted,
             "guard": fixed.guard if fixed else "",
             "edits": [f"{edit.code} → {edit.value:g}" for edit in fixed.edits] if fixed else [],
-            "episodes": dict(shop.spent),
+            "episodes": dict(outcome.episodes),
             "verdict": comparison.verdict.result,
             "culprit": comparison.culprits[0].site.code,
             **{name: fmean(totals) for name, totals in comparison.totals.items()},
         }
         if outcome.accepted is not None and self.variant.mud:
-            guard = outcome.accepted.candidate.guard
-            self.found["guard"] = _guard_hits(rollout, shop, outcome.accepted.candidate, guard, drift, mud)
+            self.found["guard"] = _guard_hits(order, outcome.accepted.candidate, mud)
 
 
 def _quiet(done: int, total: int, what: str) -> None:
@@ -195,16 +196,15 @@ def _in_mud(rollout: ItemRollout, online: Recorded, drift: str, mud: list[bool])
     )
 
 
-def _guard_hits(
-    rollout: ItemRollout, shop: RepairShop, candidate: Any, guard: Any, drift: str, mud: list[bool]
-) -> dict[str, float]:
+def _guard_hits(order: Order, candidate: Candidate, mud: list[bool]) -> dict[str, float]:
     """Return on which share of the steps in mud the guard is true, and on which of the others it is false."""
     hits: dict[bool, list[bool]] = {True: [], False: []}
-    for seed in seeds.episode_seeds(shop.options.seed, "guard", ONLINE):
+    patched = Mutants(order).source(candidate)
+    for seed in seeds.episode_seeds(order.options.seed, "guard", ONLINE):
         mud.clear()
-        trace = rollout(EpisodePlan(seed, drift, shop.mutant(candidate))).trace
+        trace = order.rollout(EpisodePlan(seed, order.drift, patched)).trace
         for cell, wet in zip(trace.step_cell, mud, strict=True):
-            on = cell >= 0 and candidates.holds(guard, trace.cells[cell], shop.comparison.sensors)
+            on = cell >= 0 and candidates.holds(candidate.guard, trace.cells[cell], order.comparison.sensors)
             hits[wet].append(on == wet)
     return {"in mud": fmean(hits[True]), "elsewhere": fmean(hits[False])}
 

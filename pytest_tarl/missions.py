@@ -15,7 +15,8 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison
 from pytest_tarl.patching import patch
 from pytest_tarl.recording import Progress, record
-from pytest_tarl.repairing import RepairShop, repair
+from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repeating import Instruments
 from pytest_tarl.report import json_result, terminal
 from pytest_tarl.rollout import Rollout
@@ -103,7 +104,7 @@ class Mission:
         comparison = online.comparison
         episodes = {"offline": fixture.sample.episodes, "online": online.recorded.sample.episodes}
         if self.options.mode == "repair" and comparison.verdict.result == "degraded":
-            shop = RepairShop(
+            order = Order(
                 rollout,
                 analysis,
                 self.root,
@@ -113,8 +114,9 @@ class Mission:
                 self.progress,
                 self.tarl / "patches",
             )
-            comparison = repair(shop).comparison
-            episodes |= shop.spent
+            repaired = repair(order)
+            comparison = repaired.comparison
+            episodes |= repaired.episodes
         return self._told(comparison, online, episodes)
 
     def _told(self, comparison: Comparison, online: Online, episodes: Mapping[str, int]) -> Account:

@@ -24,6 +24,8 @@ class EpisodePlan:
 class EpisodeRun:
     """What came of it. `failure` says why the test failed, one line; `topics` are message types by sensor topic.
 
+    `crashed` tells that the node ended it before its time.
+
     `broken` holds what is neither a pass nor a failed mission, such as an error in the test's own code, as text.
     """
 
@@ -33,7 +35,7 @@ class EpisodeRun:
     failure: str = ""
     broken: str = ""
     topics: Mapping[str, str] = field(default_factory=dict)
-    published: bool = True
+    crashed: bool = False
 
 
 class Rollout(Protocol):

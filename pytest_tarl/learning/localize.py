@@ -43,12 +43,13 @@ def culprits(
     effects: Mapping[str, Sequence[OperandEffect]],
     repaired: Sequence[str],
     loss: float,
+    method: str = "sweep",
 ) -> tuple[Culprit, ...]:
     """Rank sites: those of the confirmed repair, then by simulated effect, then by slice.
 
-    `effects` maps site ids to what simulation found; `loss` (reward per episode) is an effect of score 1.
+    `effects` maps site ids to what simulation by `method` found; `loss` (reward per episode) is an effect of score 1.
     """
-    found = [_simulated(site, effects[site.id], loss) for site, _ in ranked if effects.get(site.id)]
+    found = [_simulated(site, effects[site.id], loss, method) for site, _ in ranked if effects.get(site.id)]
     guessed = [Culprit(site, 0.0, "slices") for site, _ in ranked if not effects.get(site.id)]
     if not found:
         return tuple(Culprit(site, round(score, 4), "slices") for site, score in ranked)
@@ -56,7 +57,7 @@ def culprits(
     return (*found, *guessed)
 
 
-def _simulated(site: SitePlace, effects: Sequence[OperandEffect], loss: float) -> Culprit:
+def _simulated(site: SitePlace, effects: Sequence[OperandEffect], loss: float, method: str) -> Culprit:
     ordered = tuple(sorted(effects, key=lambda effect: -effect.effect))
     score = max(0.0, min(1.0, ordered[0].effect / loss)) if loss > 0 else 0.0
-    return Culprit(site, round(score, 4), "sweep", ordered)
+    return Culprit(site, round(score, 4), method, ordered)

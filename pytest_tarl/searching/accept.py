@@ -1,14 +1,15 @@
 """Does a repair hold? Sequentially, on seeds that nothing was chosen by.
 
-The lower confidence bound of (repaired - off-line) must lie above the margin -δ, in the drifted and in the nominal
-world, and the pass rate must not fall by more than five points.
+The lower confidence bound of (repaired - off-line) must not lie below the margin -δ, in the drifted and in the nominal
+world, and the pass rate must not fall by more than five points. Where a drift shows in some missions only, a few lucky
+ones prove nothing: nothing is accepted before so many episodes that it would have shown.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from math import sqrt
+from math import ceil, log, log1p, sqrt
 from statistics import NormalDist, fmean, variance
 
 from pytest_tarl.model import Reason
@@ -40,6 +41,17 @@ class Reference:
 
 
 @dataclass(frozen=True, slots=True)
+class World:
+    """Where a candidate is run, by seed; `exposure` is the share of missions in which there is something to see.
+
+    In the drifted world those that lose without repair, in the nominal one those in which the guard holds.
+    """
+
+    run: Callable[[int], Outcome]
+    exposure: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
 class Acceptance:
     """How the test ended; `drifted` and `nominal` are the episodes it took, nominal empty when none were needed."""
 
@@ -50,8 +62,8 @@ class Acceptance:
 
 
 def accept(
-    drifted: Callable[[int], Outcome],
-    nominal: Callable[[int], Outcome] | None,
+    drifted: World,
+    nominal: World | None,
     seeds: Sequence[int],
     reference: Reference,
     alpha: float,
@@ -61,20 +73,28 @@ def accept(
     `seeds` must be fresh, `LOOKS[-1]` of them; `alpha` is the whole risk, shared over looks and worlds.
     """
     worlds = [drifted] if nominal is None else [drifted, nominal]
-    risk = alpha / len(LOOKS)
     runs: list[tuple[Outcome, ...]] = []
     reasons: tuple[Reason, ...] = ("gain too small", "nominal gets worse")
     for world, reason in zip(worlds, reasons, strict=False):
-        held, outcomes = _holds(map(world, seeds), reference, risk)
+        first = episodes_to_see(world.exposure, alpha)
+        held, outcomes = _holds(map(world.run, seeds), reference, alpha / len(LOOKS), first)
         runs.append(outcomes)
         if not held:
             return Acceptance(False, reason, runs[0], runs[1] if len(runs) > 1 else ())
     return Acceptance(True, "", runs[0], runs[1] if len(runs) > 1 else ())
 
 
+def episodes_to_see(exposure: float, alpha: float) -> int:
+    """Return after how many episodes one that matters has been seen but for the risk α; at most all there are."""
+    if exposure >= 1.0:
+        return LOOKS[0]
+    return min(LOOKS[-1], ceil(log(alpha) / log1p(-exposure))) if exposure > 0.0 else LOOKS[-1]
+
+
 def _holds(
-    outcomes: Iterator[Outcome], reference: Reference, risk: float
+    outcomes: Iterator[Outcome], reference: Reference, risk: float, first: int
 ) -> tuple[bool, tuple[Outcome, ...]]:
+    """Look again and again until it is clear; nothing is accepted before `first` episodes."""
     seen: list[Outcome] = []
     for look in LOOKS:
         while len(seen) < look:
@@ -85,7 +105,7 @@ def _holds(
         allowed = 1 - reference.pass_rate + PASS_RATE_LOSS
         if upper < -reference.margin or failed > allowed * LOOKS[-1]:
             return False, tuple(seen)
-        if lower > -reference.margin and failed <= allowed * look:
+        if look >= first and lower >= -reference.margin and failed <= allowed * look:
             return True, tuple(seen)
     return False, tuple(seen)
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.searching.search import (
-    CONFIRMATIONS,
     FACTORS,
     BudgetSpentError,
     Candidate,
@@ -37,8 +36,8 @@ class EpsilonGreedy:
 
     @classmethod
     def episodes(cls, budget: int) -> int:
-        """Return how many episodes to learn for, so that some of the budget is left for confirming."""
-        return max(1, min(cls.EPISODES, budget - cls.CONFIRMED * CONFIRMATIONS))
+        """Return how many episodes to learn for, so that a third of the budget is left for confirming and guards."""
+        return max(1, min(cls.EPISODES, 2 * budget // 3))
 
     def __init__(
         self,
@@ -59,6 +58,7 @@ class EpsilonGreedy:
         self.generator = generator
         self.q: dict[tuple[int, int], float] = {}
         self.seen: dict[int, list[float]] = {}
+        self.refused = set[int]()  # what cannot be written into the source
 
     def candidates(self) -> Iterator[Candidate]:
         """Learn for all seeds, then yield the best mutations that confirm."""
@@ -66,18 +66,22 @@ class EpsilonGreedy:
             return
         self._learn()
         ranked = sorted(self.seen, key=lambda action: -fmean(self.seen[action]))
-        for action in ranked[: self.CONFIRMED]:
-            if confirmed(self.actions[action], self.trials, self.goal, 0):
-                yield self.actions[action]
+        for candidate in [self.actions[action] for action in ranked if action not in self.refused][
+            : self.CONFIRMED
+        ]:
+            first = self.trials(candidate, self.goal.pairs[0].seed)
+            if self.goal.reached(first) and confirmed(candidate, self.trials, self.goal, 0):
+                yield candidate
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, per site, the mean gain of the best mutation of each operand over the unmutated world."""
-        base = fmean(pair.total for pair in self.goal.pairs)
         best: dict[tuple[str, str], OperandEffect] = {}
         for action, totals in self.seen.items():
+            if action in self.refused:
+                continue
             mutation = self.actions[action].mutations[0]
             operand = mutation.operand
-            effect = operand_effect(mutation, fmean(totals) - base)
+            effect = operand_effect(mutation, fmean(totals) - self.goal.online)
             key = (str(operand.site), operand.code)
             if key not in best or effect.effect > best[key].effect:
                 best[key] = effect
@@ -93,6 +97,7 @@ class EpsilonGreedy:
                 total = self.trials(self.actions[action], seed).total
             except RepairError:
                 total = min(pair.total for pair in self.goal.pairs)
+                self.refused.add(action)
             except BudgetSpentError:
                 return
             self.seen.setdefault(action, []).append(total)

@@ -5,7 +5,7 @@ A search yields confirmed candidates, best first; whether one is accepted is dec
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from statistics import fmean
 from typing import Protocol
@@ -39,11 +39,21 @@ class Pair:
 
 @dataclass(frozen=True)
 class Goal:
-    """What the search is after. `near`: a total worth confirming; `enough`: a mean that confirms."""
+    """What the search is after. `near`: a total worth confirming; `enough`: a mean that confirms.
+
+    `online` is the mean reward of all on-line episodes, those that did not lose included. With `passing` a failed
+    mission is never near: ending early can earn more than carrying on.
+    """
 
     pairs: tuple[Pair, ...]
     near: float
     enough: float
+    online: float
+    passing: bool = False
+
+    def reached(self, outcome: Outcome) -> bool:
+        """Tell whether an episode is as good as one off-line."""
+        return outcome.total >= self.near and (outcome.passed or not self.passing)
 
 
 class BudgetSpentError(Exception):
@@ -52,10 +62,14 @@ class BudgetSpentError(Exception):
 
 @dataclass
 class Trials:
-    """Runs candidates in the drifted world, each seed once, and keeps count and history."""
+    """Runs candidates in the drifted world, each seed once, and keeps count and history.
+
+    `beside` counts the episodes of the same budget that were run elsewhere, in the nominal world.
+    """
 
     run: Callable[[Candidate, int], Outcome]
     budget: int
+    beside: int = 0
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
@@ -64,17 +78,30 @@ class Trials:
         """Run one episode, or remember it. Raises BudgetSpentError, or RepairError from writing the candidate."""
         key = (candidate, seed)
         if key not in self._known:
-            if len(self.totals) >= self.budget:
-                raise BudgetSpentError
+            self._afford()
             self._known[key] = self.run(candidate, seed)
             self.totals.append(self._known[key].total)
             self.labels.append(label(candidate))
         return self._known[key]
 
+    def charge(self) -> None:
+        """Count an episode that is about to be run elsewhere. Raises BudgetSpentError."""
+        self._afford()
+        self.beside += 1
+
+    def gain(self, candidate: Candidate, pairs: Iterable[Pair]) -> float:
+        """Return what a candidate gained over the unmutated runs of the same seeds, on average; it was run on one."""
+        known = ((self._known.get((candidate, pair.seed)), pair.total) for pair in pairs)
+        return fmean(outcome.total - total for outcome, total in known if outcome is not None)
+
     @property
     def spent(self) -> int:
         """Return how many episodes were run."""
-        return len(self.totals)
+        return len(self.totals) + self.beside
+
+    def _afford(self) -> None:
+        if self.spent >= self.budget:
+            raise BudgetSpentError
 
 
 def label(candidate: Candidate) -> str:
@@ -90,12 +117,12 @@ def label(candidate: Candidate) -> str:
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
     """Try further seeds, beginning after the pair `first`; drop the candidate at its second miss."""
     others = [goal.pairs[(first + i) % len(goal.pairs)] for i in range(1, len(goal.pairs))][:CONFIRMATIONS]
-    totals: list[float] = []
+    outcomes: list[Outcome] = []
     for pair in others:
-        totals.append(trials(candidate, pair.seed).total)
-        if sum(total < goal.near for total in totals) > 1:
+        outcomes.append(trials(candidate, pair.seed))
+        if sum(not goal.reached(outcome) for outcome in outcomes) > 1:
             return False
-    return not totals or fmean(totals) >= goal.enough
+    return not outcomes or fmean(outcome.total for outcome in outcomes) >= goal.enough
 
 
 class Strategy(Protocol):

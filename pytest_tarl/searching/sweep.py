@@ -27,7 +27,6 @@ class Sweep:
         self.trials = trials
         self.goal = goal
         self._gains: dict[tuple[Operand, Guard], dict[float, float]] = {}  # factor → gain in reward
-        self._best: dict[Operand, OperandEffect] = {}
         self._tried: set[Candidate] = set()
 
     def candidates(self) -> Iterator[Candidate]:
@@ -40,9 +39,15 @@ class Sweep:
             yield from self._refine(pair)
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, per site, what each operand's best value gained over the unmutated run of the same seed."""
+        """Return, per site, what each operand's best value gained over the unmutated runs of the same seeds."""
+        best: dict[Operand, OperandEffect] = {}
+        for (operand, _), gains in self._gains.items():
+            factor = max(gains.keys() - {1.0}, key=lambda one: (gains[one], -one))
+            mutation = self.mutate(operand, factor)
+            if mutation is not None and (operand not in best or gains[factor] > best[operand].effect):
+                best[operand] = operand_effect(mutation, gains[factor])
         found: dict[str, list[OperandEffect]] = {}
-        for operand, effect in self._best.items():
+        for operand, effect in best.items():
             found.setdefault(str(operand.site), []).append(effect)
         return found
 
@@ -56,15 +61,16 @@ class Sweep:
         self._tried.add(candidate)
         base = self.goal.pairs[pair]
         try:
-            total = self.trials(candidate, base.seed).total
+            near = self.goal.reached(self.trials(candidate, base.seed))
         except RepairError:
             return
-        gain = total - base.total
-        self._gains.setdefault((operand, guard), {1.0: 0.0})[factor] = gain
-        if operand not in self._best or gain > self._best[operand].effect:
-            self._best[operand] = operand_effect(mutation, gain)
-        if total >= self.goal.near and confirmed(candidate, self.trials, self.goal, pair):
-            yield candidate
+        gains = self._gains.setdefault((operand, guard), {1.0: 0.0})
+        gains[factor] = self.trials.gain(candidate, self.goal.pairs)
+        if near:
+            holds = confirmed(candidate, self.trials, self.goal, pair)
+            gains[factor] = self.trials.gain(candidate, self.goal.pairs)
+            if holds:
+                yield candidate
 
     def _refine(self, pair: int) -> Iterator[Candidate]:
         """Try the most improving operand between its best factor and that factor's neighbours, on a log scale."""

@@ -5,10 +5,21 @@ from __future__ import annotations
 import importlib
 import pkgutil
 
+import pytest
+
 import pytest_tarl
 import tarl_lint
+from tests.plugin.tank import NODE, TEST
 
 for package in (tarl_lint, pytest_tarl):
     for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
         if not module.name.endswith("__main__"):
             importlib.import_module(module.name)
+
+
+@pytest.fixture
+def tank(pytester: pytest.Pytester) -> pytest.Pytester:
+    """A project of its own: a node, and a simulation test of it."""
+    pytester.makefile(".py", keeper=NODE, test_tank=TEST)
+    pytester.makeini("[pytest]\nfilterwarnings = error\n")
+    return pytester

@@ -2,6 +2,15 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+RECORD = ("--tarl-record", "--tarl-episodes=16")
+ONLINE = ("--tarl-online", "--tarl-episodes=12")
+
 NODE = """\
 import rospy
 from std_msgs.msg import Float64
@@ -63,3 +72,24 @@ def test_fills(tarl, tarl_drift):
 def test_ordinary():
     pass
 """
+
+
+def changed(tank: pytest.Pytester, name: str, old: str, new: str) -> None:
+    """Replace some of a file's text."""
+    path = tank.path / f"{name}.py"
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new))
+
+
+def fixture_file(tank: pytest.Pytester) -> Path:
+    """Return the one utility fixture."""
+    (found,) = (tank.path / ".tarl" / "utility").glob("*.npz")
+    return found
+
+
+def result(tank: pytest.Pytester) -> dict[str, Any]:
+    """Return the one JSON result."""
+    (path,) = (tank.path / ".tarl" / "results").glob("*.json")
+    found: dict[str, Any] = json.loads(path.read_text())
+    return found

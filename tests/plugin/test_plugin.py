@@ -5,23 +5,12 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import jsonschema
 import pytest
 
 from pytest_tarl.report import json_result
-from tests.plugin.tank import NODE, TEST
-
-RECORD = ("--tarl-record", "--tarl-episodes=16")
-ONLINE = ("--tarl-online", "--tarl-episodes=12")
-
-
-@pytest.fixture
-def tank(pytester: pytest.Pytester) -> pytest.Pytester:
-    pytester.makefile(".py", keeper=NODE, test_tank=TEST)
-    pytester.makeini("[pytest]\nfilterwarnings = error\n")
-    return pytester
+from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
 
 
 @pytest.fixture(scope="module")
@@ -40,18 +29,6 @@ def recorded(tank: pytest.Pytester, record_once: dict[str, bytes]) -> pytest.Pyt
     for name, content in record_once.items():
         (folder / name).write_bytes(content)
     return tank
-
-
-def changed(tank: pytest.Pytester, name: str, old: str, new: str) -> None:
-    path = tank.path / f"{name}.py"
-    text = path.read_text()
-    assert old in text
-    path.write_text(text.replace(old, new))
-
-
-def fixture_file(tank: pytest.Pytester) -> Path:
-    (found,) = (tank.path / ".tarl" / "utility").glob("*.npz")
-    return found
 
 
 def test_without_flags_it_is_an_ordinary_test_that_writes_nothing(tank: pytest.Pytester) -> None:

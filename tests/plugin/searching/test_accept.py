@@ -8,18 +8,27 @@ import math
 import numpy as np
 import pytest
 
-from pytest_tarl.searching.accept import LOOKS, Outcome, Reference, accept, interval, student_quantile
+from pytest_tarl.searching.accept import (
+    LOOKS,
+    Outcome,
+    Reference,
+    World,
+    accept,
+    episodes_to_see,
+    interval,
+    student_quantile,
+)
 
 
-def world(mean: float, spread: float = 0.3, passing: float = 1.0, seed: int = 0):
+def world(mean: float, spread: float = 0.3, passing: float = 1.0, seed: int = 0) -> World:
     def run(episode: int) -> Outcome:
         draws = np.random.default_rng([seed, episode])
         return Outcome(float(draws.normal(mean, spread)), bool(draws.random() < passing))
 
-    return run
+    return World(run)
 
 
-REFERENCE = Reference([world(10.0)(i).total for i in range(1000, 1200)], 1.0, 0.5)
+REFERENCE = Reference([world(10.0).run(i).total for i in range(1000, 1200)], 1.0, 0.5)
 SEEDS = range(LOOKS[-1])
 
 
@@ -84,3 +93,35 @@ def test_rewards_that_never_vary_give_a_point() -> None:
 
 def test_looks_are_increasing() -> None:
     assert all(a < b for a, b in itertools.pairwise(LOOKS))
+
+
+def in_some_missions(share: float, lost: float, seed: int) -> World:
+    """A world as designed but for a share of the missions, which the candidate does not mend."""
+
+    def run(episode: int) -> Outcome:
+        draws = np.random.default_rng([seed, episode])
+        return Outcome(float(draws.normal(lost if draws.random() < share else 10.0, 0.3)), True)
+
+    return World(run, share)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.15])
+def test_a_drift_that_shows_in_few_missions_is_given_time_to_show(share: float) -> None:
+    accepted = [
+        accept(in_some_missions(share, -7.0, seed), None, SEEDS, REFERENCE, 0.025).accepted
+        for seed in range(200)
+    ]
+    assert sum(accepted) <= 10
+
+
+@pytest.mark.parametrize(
+    ("exposure", "alpha", "episodes"),
+    [(1.0, 0.025, 8), (0.5, 0.025, 6), (0.3, 0.025, 11), (0.01, 0.025, 40), (0, 0.1, 40)],
+)
+def test_so_many_episodes_show_what_there_is_to_see(exposure: float, alpha: float, episodes: int) -> None:
+    assert episodes_to_see(exposure, alpha) == episodes
+
+
+def test_a_world_without_any_chance_is_accepted_when_it_is_the_designed_one() -> None:
+    same = World(lambda episode: Outcome(0.0, True))
+    assert accept(same, same, SEEDS, Reference([0.0] * 20, 1.0, 0.0), 0.025).accepted

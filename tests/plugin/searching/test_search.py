@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from statistics import fmean
 
 import numpy as np
 import pytest
@@ -12,7 +14,15 @@ from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
-from pytest_tarl.searching.search import BudgetSpentError, Candidate, Goal, Pair, Trials, label
+from pytest_tarl.searching.search import (
+    CONFIRMATIONS,
+    BudgetSpentError,
+    Candidate,
+    Goal,
+    Pair,
+    Trials,
+    label,
+)
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.seeds import generator
 from tarl_lint.model import Operand, SiteId, Span
@@ -45,9 +55,8 @@ def run(candidate: Candidate, seed: int) -> Outcome:
     return Outcome(total, total > 5)
 
 
-GOAL = Goal(
-    tuple(Pair(seed, reward(None, seed)) for seed in range(10)), near=OFFLINE - 1.2, enough=OFFLINE - 1.0
-)
+PAIRS = tuple(Pair(seed, reward(None, seed)) for seed in range(10))
+GOAL = Goal(PAIRS, near=OFFLINE - 1.2, enough=OFFLINE - 1.0, online=fmean(pair.total for pair in PAIRS))
 
 
 def sweep(trials: Trials) -> Sweep:
@@ -84,7 +93,7 @@ def test_epsilon_greedy_finds_it_too_and_spends_more() -> None:
     search = EpsilonGreedy(
         OPERANDS, mutations, (ALWAYS,), trials, GOAL, seeds, generator(0, "epsilon-greedy")
     )
-    goal = Goal(GOAL.pairs, near=OFFLINE - 3.0, enough=OFFLINE - 3.0)  # it knows the seven factors only
+    goal = replace(GOAL, near=OFFLINE - 3.0, enough=OFFLINE - 3.0)  # it knows the seven factors only
     search.goal = goal
     found = next(search.candidates())
     assert found.mutations[0].operand == GAIN
@@ -135,3 +144,57 @@ def test_a_candidate_is_named_by_line_and_change() -> None:
     mutation = mutations(GAIN, 2.2)
     assert mutation is not None
     assert label(Candidate((mutation,), ALWAYS)) == "line 3: 2.0 → 4.4"
+
+
+def test_episodes_run_elsewhere_are_of_the_same_budget() -> None:
+    trials = Trials(run, 2)
+    mutation = mutations(GAIN, 2.2)
+    assert mutation is not None
+    trials.charge()
+    trials(Candidate((mutation,), ALWAYS), 1)
+    assert (trials.spent, len(trials.totals)) == (2, 1)
+    with pytest.raises(BudgetSpentError):
+        trials.charge()
+    with pytest.raises(BudgetSpentError):
+        trials(Candidate((mutation,), ALWAYS), 2)
+
+
+def test_ending_early_is_not_taken_for_doing_well() -> None:
+    failed = Outcome(OFFLINE, passed=False)
+    assert GOAL.reached(failed)
+    assert not replace(GOAL, passing=True).reached(failed)
+
+
+def test_an_effect_is_the_mean_over_all_seeds_that_were_tried() -> None:
+    trials = Trials(run, 300)
+    search = sweep(trials)
+    found = next(search.candidates())
+    gains = [trials(found, pair.seed).total - pair.total for pair in PAIRS[: CONFIRMATIONS + 1]]
+    (effect,) = search.effects()[str(GAIN.site)]
+    assert trials.gain(found, PAIRS) == pytest.approx(effect.effect)
+    assert len(gains) == CONFIRMATIONS + 1
+
+
+def test_epsilon_greedy_passes_over_what_cannot_be_written() -> None:
+    def refusing(candidate: Candidate, seed: int) -> Outcome:
+        if candidate.mutations[0].operand != GAIN:
+            raise RepairError("no way")
+        return run(candidate, seed)
+
+    trials = Trials(refusing, 300)
+    search = EpsilonGreedy(OPERANDS, mutations, (ALWAYS,), trials, GOAL, range(200), generator(1, "a"))
+    assert all(found.mutations[0].operand == GAIN for found in search.candidates())
+    assert set(search.effects()) == {str(GAIN.site)}
+
+
+def test_epsilon_greedy_measures_gains_from_all_on_line_episodes() -> None:
+    trials = Trials(run, 300)
+    goal = replace(
+        GOAL, online=GOAL.online + 3.0
+    )  # most missions do not lose: the lost ones are no yardstick
+    found = []
+    for one in (GOAL, goal):
+        search = EpsilonGreedy(OPERANDS, mutations, (ALWAYS,), trials, one, range(100), generator(1, "a"))
+        list(search.candidates())
+        found.append(search.effects()[str(GAIN.site)][0].effect)
+    assert found[0] - found[1] == pytest.approx(3.0)

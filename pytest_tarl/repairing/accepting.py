@@ -1,0 +1,120 @@
+"""From confirmed candidates to one that holds: under which guard, and does it on fresh seeds?"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from statistics import fmean
+
+from pytest_tarl import seeds
+from pytest_tarl.errors import RepairError
+from pytest_tarl.model import Guard, Reason
+from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.searching import candidates
+from pytest_tarl.searching.accept import LOOKS, Acceptance, World, accept
+from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
+
+QUICK = 3  # seeds on which a guard is looked at before it is tested on fresh ones
+MOST = 5  # candidates that are tested on fresh seeds
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """A repair that held: the candidate, and the episodes that show it."""
+
+    candidate: Candidate
+    acceptance: Acceptance
+
+
+@dataclass(frozen=True)
+class Refused:
+    """The best that did not hold, and why; `mean` is its reward on fresh seeds, -inf where it got none."""
+
+    candidate: Candidate | None
+    reason: Reason
+    mean: float = float("-inf")
+
+
+class Examiner:
+    """Tries guards on confirmed candidates and tests them at α/2ᵏ; remembers the best that was refused."""
+
+    def __init__(self, mutants: Mutants, guards: Sequence[Guard]) -> None:
+        self.mutants = mutants
+        self.order = mutants.order
+        self.guards = guards
+        self.tested = 0
+        self.spent = 0
+        self.refused = Refused(None, "no operand helps")
+
+    def first(self, confirmed: Iterator[Candidate], trials: Trials) -> Accepted | None:
+        """Take candidates until one is accepted, no more may be tested or the budget of the trials is spent."""
+        try:
+            for candidate in confirmed:
+                for guard in self.guards:
+                    if self.tested >= MOST:
+                        return None
+                    accepted = self._examined(replace(candidate, guard=guard), trials)
+                    if accepted is not None:
+                        return accepted
+        except BudgetSpentError:
+            if self.refused.candidate is None:
+                self.refused = replace(self.refused, reason="budget")
+        return None
+
+    def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | None:
+        """Look at a candidate on a few known seeds, then test it on fresh ones."""
+        try:
+            problem = self._known_to_fail(candidate, trials)
+        except RepairError:
+            return None
+        if problem:
+            self._refuse(Refused(candidate, problem))
+            return None
+        self.tested += 1
+        found = self._tested(candidate)
+        self.spent += len(found.drifted) + len(found.nominal)
+        if found.accepted:
+            return Accepted(candidate, found)
+        self._refuse(Refused(candidate, found.reason, fmean(outcome.total for outcome in found.drifted)))
+        return None
+
+    def _known_to_fail(self, candidate: Candidate, trials: Trials) -> Reason:
+        """Say why not, from on-line episodes that lost and off-line ones in which the candidate acts; "" if neither."""
+        goal, offline = self.order.goal, self.order.fixture.sample
+        known = dict(zip(offline.seeds, offline.total.tolist(), strict=True))
+        slack = self.order.reference.mean - goal.near
+        for pair in goal.pairs[:QUICK]:
+            if not goal.reached(trials(candidate, pair.seed)):
+                return "gain too small"
+        for seed in self._firing(candidate)[:QUICK]:
+            trials.charge()
+            if self.mutants.run(candidate, seed, None).total < known[seed] - slack:
+                return "nominal gets worse"
+        return ""
+
+    def _tested(self, candidate: Candidate) -> Acceptance:
+        """Test a candidate on fresh seeds, the k-th one at α/2ᵏ."""
+        order, mutants = self.order, self.mutants
+        firing = len(self._firing(candidate)) / order.fixture.sample.episodes
+        losing = sum(total < order.goal.near for total in order.comparison.totals["online"])
+        nominal = World(lambda seed: mutants.run(candidate, seed, None), firing) if firing else None
+        return accept(
+            World(
+                lambda seed: mutants.run(candidate, seed, order.drift),
+                losing / len(order.comparison.totals["online"]) or 1.0,
+            ),
+            nominal,
+            seeds.episode_seeds(order.options.seed, f"acceptance {self.tested}", LOOKS[-1]),
+            order.reference,
+            order.options.alpha / 2**self.tested,
+        )
+
+    def _firing(self, candidate: Candidate) -> tuple[int, ...]:
+        """Return the off-line episodes in which the guard holds."""
+        return candidates.firing_episodes(
+            candidate.guard, self.order.fixture.sample, self.order.comparison.sensors
+        )
+
+    def _refuse(self, refused: Refused) -> None:
+        if self.refused.candidate is None or refused.mean > self.refused.mean:
+            self.refused = refused

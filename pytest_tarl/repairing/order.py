@@ -1,0 +1,77 @@
+"""What is to be repaired, and what a repair has to reach."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from statistics import fmean, stdev
+
+from pytest_tarl.comparing import Online
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.model import Comparison
+from pytest_tarl.recording import Progress
+from pytest_tarl.rollout import Rollout
+from pytest_tarl.searching.accept import PASS_RATE_LOSS, Reference
+from pytest_tarl.searching.search import Goal, Pair
+from pytest_tarl.settings import Options
+from tarl_lint.api import Analysis
+
+
+@dataclass(frozen=True)
+class Order:
+    """One degraded test under one drift: how to run it, what was recorded of it, where patches go."""
+
+    rollout: Rollout
+    analysis: Analysis
+    root: Path  # what the analysis' paths are relative to
+    fixture: Fixture
+    online: Online
+    options: Options
+    progress: Progress
+    patches: Path
+
+    @property
+    def comparison(self) -> Comparison:
+        """Return what the on-line run found."""
+        return self.online.comparison
+
+    @property
+    def drift(self) -> str | None:
+        """Return the drift scenario that the repair is for."""
+        return self.comparison.drift
+
+    @cached_property
+    def reference(self) -> Reference:
+        """Return the off-line world that repairs are held against."""
+        offline = self.fixture.sample
+        return Reference(
+            offline.total.tolist(), float(offline.passed.mean()), self.comparison.verdict.tolerance
+        )
+
+    @cached_property
+    def goal(self) -> Goal:
+        """Return what the search is after."""
+        online = self.online.recorded.sample
+        pairs = [Pair(seed, total) for seed, total in zip(online.seeds, online.total.tolist(), strict=True)]
+        return goal(pairs, self.reference, self.comparison.verdict.loss)
+
+    @cached_property
+    def worst(self) -> float:
+        """Return the lowest reward that any recorded episode had: what a candidate earns that breaks the test."""
+        return float(min(self.fixture.sample.total.min(), self.online.recorded.sample.total.min()))
+
+
+def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:
+    """Pick the on-line episodes that lost, worst last, and say what a mutation must reach on them."""
+    spread = stdev(reference.totals) if len(reference.totals) > 1 else 0.0
+    near = reference.mean - max(reference.margin, 2 * spread, 0.1 * loss)
+    lost = sorted((pair for pair in online if pair.total < near), key=lambda pair: -pair.total)
+    return Goal(
+        pairs=tuple(lost) or tuple(online),
+        near=near,
+        enough=reference.mean - max(reference.margin, spread),
+        online=fmean(pair.total for pair in online),
+        passing=reference.pass_rate >= 1 - PASS_RATE_LOSS,
+    )
