@@ -30,6 +30,7 @@ class Tarl:
         self.drives_ros = False
         self._sensors = tuple(sensors)
         self._bins: dict[str, int | None] = {}
+        self._situated = False  # whether there ever was a cell
         self._folder = folder
         self._recorder = recorder
         self._imports = imports
@@ -117,8 +118,9 @@ class Tarl:
                 "tarl.reward needs a number, or parts such as tarl.reward(progress=0.2, clearance=-1)."
             )
         amount = sum(parts.values()) if total is None else float(total)
-        if not abs(amount) < float("inf"):
-            raise SettingsError(f"tarl.reward got {amount}: rewards must be finite numbers.")
+        for value in (amount, *parts.values()):
+            if not abs(value) < float("inf"):
+                raise SettingsError(f"tarl.reward got {value}: rewards must be finite numbers.")
         self._rewards += 1
         self._recorder.reward(float(amount), {name: float(value) for name, value in parts.items()})
 
@@ -136,6 +138,11 @@ class Tarl:
         silent = [sensor for sensor in self._sensors if sensor.name not in self._bins]
         if silent:
             return RecordingError(_silence(silent[0]))
+        if not self._situated:
+            return RecordingError(
+                f"Sensor {next(name for name, value in self._bins.items() if value is None)!r} was NaN whenever the "
+                "others were known, which tells nothing: look at what the world gives it."
+            )
         if self.drives_ros and not self.ros.published:
             heard = ", ".join(sorted(self.ros.subscribed)) or "no topic"
             return RecordingError(
@@ -159,6 +166,7 @@ class Tarl:
         bins = [self._bins.get(sensor.name) for sensor in self._sensors]
         known = [value for value in bins if value is not None]
         cell: Cell | None = tuple(known) if len(known) == len(bins) else None
+        self._situated = self._situated or cell is not None
         self._recorder.latch(cell)
 
 

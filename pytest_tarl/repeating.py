@@ -51,6 +51,7 @@ class Episode:
 
 
 EPISODE = pytest.StashKey[Episode]()
+INTERRUPTS = (pytest.exit.Exception, KeyboardInterrupt)  # what ends the whole run
 
 
 def designated(item: pytest.Item) -> Designation | None:
@@ -80,10 +81,12 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
     try:
         yield tarl
     finally:
-        episode.trace = recorder.finish()
-        episode.topics = dict(tarl.topics)
-        episode.problem = tarl.problem()
-        tarl.close()
+        try:
+            episode.trace = recorder.finish()
+            episode.topics = dict(tarl.topics)
+            episode.problem = tarl.problem()
+        finally:
+            tarl.close()
 
 
 def drift_value(item: pytest.Item) -> Any:
@@ -125,6 +128,7 @@ class ItemRollout:
         """Run one episode. Raises TarlError where the test cannot be run as asked, pytest's Exit on Ctrl-C."""
         episode = Episode(plan, self.designation, self.instruments if plan.record else NOTHING)
         self.item.stash[EPISODE] = episode
+        self.item._report_sections.clear()  # else the output of all episodes would be kept, and shown
         try:
             # An item's parent keeps all that is wider than the item itself; pytest asks it for no more than that.
             reports = runtestprotocol(self.item, log=False, nextitem=self.item.parent)  # type: ignore[arg-type]
@@ -137,7 +141,9 @@ def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestRe
     """Tear down what the next item does not need, once the last episode has run."""
     # Not through pytest's hook: the item itself was torn down after its last episode, and plugins count on that.
     state = item.session._setupstate
-    call = pytest.CallInfo.from_call(lambda: state.teardown_exact(nextitem), when="teardown")
+    call = pytest.CallInfo.from_call(
+        lambda: state.teardown_exact(nextitem), when="teardown", reraise=INTERRUPTS
+    )
     report: pytest.TestReport = item.ihook.pytest_runtest_makereport(item=item, call=call)
     return report
 
@@ -148,10 +154,10 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
     mission = isinstance(episode.error, (AssertionError, pytest.fail.Exception, NodeError))
     if episode.problem is not None and (episode.error is None or isinstance(episode.error, AssertionError)):
         raise episode.problem
-    skipped = next((report for report in reports if report.skipped), None)
+    skipped = next((report for report in reports if report.skipped and not _expected(report)), None)
     if skipped is not None:
         pytest.skip(_reason(skipped))
-    failed = [report for report in reports if report.failed]
+    failed = [report for report in reports if _expected(report) or (report.failed and not _surprise(report))]
     broken = [report for report in failed if report.when != "call" or not mission]
     if episode.trace is None:
         lost = "\n".join(report.longreprtext for report in broken)
@@ -163,7 +169,18 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
         failure=_first_line(episode.error) if failed and mission else "",
         broken="\n".join(report.longreprtext for report in broken),
         topics=episode.topics,
+        crashed=isinstance(episode.error, NodeError),
     )
+
+
+def _expected(report: pytest.TestReport) -> bool:
+    """Tell whether a mission failed under an xfail mark: a failed mission all the same."""
+    return report.skipped and report.when == "call" and hasattr(report, "wasxfail")
+
+
+def _surprise(report: pytest.TestReport) -> bool:
+    """Tell whether a mission succeeded that a strict xfail mark expected to fail: nothing was raised."""
+    return report.when == "call" and isinstance(report.longrepr, str) and report.longrepr.startswith("[XPASS")
 
 
 def _reason(report: pytest.TestReport) -> str:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import pytest
 
 from pytest_tarl.errors import SettingsError, TarlError
-from pytest_tarl.repeating import ItemRollout, designated, finish
+from pytest_tarl.repeating import INTERRUPTS, ItemRollout, designated, finish
 from pytest_tarl.settings import Options
 
 if TYPE_CHECKING:
@@ -36,7 +36,10 @@ class TarlSession:
         marker = metafunc.definition.get_closest_marker("tarl")
         if marker is None or self.options.mode == "record":
             return
-        names = list(marker.kwargs.get("drifts", {}))
+        drifts = marker.kwargs.get("drifts", {})
+        names = (
+            list(drifts) if isinstance(drifts, Mapping) else []
+        )  # what it is instead is told when the test runs
         if self.options.drift is not None:
             names = [name for name in names if name == self.options.drift]
         if "tarl_drift" in metafunc.fixturenames:
@@ -47,11 +50,17 @@ class TarlSession:
         marked = [item for item in items if item.get_closest_marker("tarl") is not None]
         if self.options.drift is not None:
             self._check_drift(marked)
-            marked = [item for item in marked if scenario(item) == self.options.drift]
-        others = [item for item in items if item not in marked]
+            marked = [item for item in marked if self._chosen(item)]
+        kept = set(marked)
+        others = [item for item in items if item not in kept]
         if others:
             config.hook.pytest_deselected(items=others)
             items[:] = marked
+
+    def _chosen(self, item: pytest.Item) -> bool:
+        """Tell whether an item is of the scenario asked for, or would be if it took the fixture."""
+        declared = self.options.drift in _drift_names(item)
+        return scenario(item) == self.options.drift or (declared and not _takes_drift(item))
 
     def _check_drift(self, marked: Sequence[pytest.Item]) -> None:
         known = sorted({name for item in marked for name in _drift_names(item)})
@@ -68,9 +77,7 @@ class TarlSession:
         if not isinstance(item, pytest.Function) or item.get_closest_marker("tarl") is None:
             return None
         item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
-        call = pytest.CallInfo.from_call(
-            lambda: self._run(item), when="call", reraise=(pytest.exit.Exception, KeyboardInterrupt)
-        )
+        call = pytest.CallInfo.from_call(lambda: self._run(item), when="call", reraise=INTERRUPTS)
         report = pytest.TestReport.from_item_and_call(item, call)  # type: ignore[arg-type]  # keeps no result
         account = call.result if call.excinfo is None else None
         if account is not None:
@@ -115,6 +122,11 @@ class TarlSession:
         marked = designated(item)
         if marked is None:
             raise SettingsError(f"{item.nodeid} has no marker.")
+        if marked.drifts and self.options.mode != "record" and not _takes_drift(item):
+            raise SettingsError(
+                "the marker declares drifts, but the test does not take the fixture `tarl_drift`, so they would change "
+                "nothing: take it as an argument and build the world with it."
+            )
         mission = Mission(
             test=_without_drift(item),
             folder=item.path.parent,
@@ -157,15 +169,24 @@ def _without_drift(item: pytest.Item) -> str:
     callspec = getattr(item, "callspec", None)
     if callspec is None or "tarl_drift" not in callspec.params:
         return item.nodeid
-    drift = scenario(item) or "online"
-    base, _, bracket = item.nodeid.partition("[")
-    rest = bracket.removesuffix("]").removeprefix(drift).removesuffix(drift).strip("-")
-    return f"{base}[{rest}]" if rest else base
+    drift, ids = scenario(item) or "online", callspec.id
+    base = item.nodeid.removesuffix(f"[{ids}]")
+    if ids == drift:
+        return base
+    rest = ids.removeprefix(f"{drift}-") if ids.startswith(f"{drift}-") else ids.removesuffix(f"-{drift}")
+    return f"{base}[{rest}]"
 
 
 def _drift_names(item: pytest.Item) -> list[str]:
-    marked = designated(item)
+    try:
+        marked = designated(item)
+    except SettingsError as error:
+        raise pytest.UsageError(str(error)) from None
     return list(marked.drifts) if marked else []
+
+
+def _takes_drift(item: pytest.Item) -> bool:
+    return "tarl_drift" in getattr(item, "fixturenames", ())
 
 
 def _phase(item: pytest.Item, when: Literal["setup"]) -> pytest.TestReport:

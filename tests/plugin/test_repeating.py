@@ -1,0 +1,116 @@
+"""Episodes and pytest's own life: marks that expect failure, interrupts, output, drifts that a test does not take."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.plugin.tank import ONLINE, RECORD, changed
+
+MARK = "@pytest.mark.tarl("
+
+
+@pytest.mark.parametrize("strict", [False, True])
+def test_a_mission_that_is_expected_to_fail_is_a_failed_mission(tank: pytest.Pytester, strict: bool) -> None:
+    changed(tank, "test_tank", MARK, f"@pytest.mark.xfail(strict={strict})\n{MARK}")
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    changed(tank, "keeper", "GAIN = 2.0", "GAIN = 0.1")
+    told = tank.runpytest(*RECORD)
+    told.assert_outcomes(failed=1, deselected=1)
+    told.stdout.fnmatch_lines(["*16 of 16 episodes fail off-line*tank not full*"])
+
+
+def test_a_test_that_is_not_to_be_run_is_skipped(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", MARK, f'@pytest.mark.xfail(run=False, reason="no pump")\n{MARK}')
+    told = tank.runpytest(*RECORD, "-rs")
+    told.assert_outcomes(skipped=1, deselected=1)
+    told.stdout.fnmatch_lines(["*no pump*"])
+
+
+def test_of_all_that_the_episodes_print_only_the_last_one_is_shown(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "    draws = tarl.rng", '    print("begun")\n    draws = tarl.rng')
+    changed(tank, "keeper", "GAIN = 2.0", "GAIN = 0.1")
+    assert tank.runpytest(*RECORD).stdout.str().count("begun") == 1
+
+
+@pytest.mark.parametrize("place", ["    yield\n    ", "    "])
+def test_an_interrupt_ends_the_run(tank: pytest.Pytester, place: str) -> None:
+    tank.makeconftest(
+        f"""
+import pytest
+
+@pytest.fixture(scope="module", autouse=True)
+def wide():
+{place}raise KeyboardInterrupt
+    yield
+"""
+    )
+    told = tank.runpytest_subprocess(*RECORD)  # in this process it would end this very run
+    assert told.ret == pytest.ExitCode.INTERRUPTED
+
+
+def test_exit_in_a_test_ends_the_run(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "    draws = tarl.rng", '    pytest.exit("enough")\n    draws = tarl.rng')
+    tank.runpytest(*RECORD).stdout.fnmatch_lines(["*Exit: enough*"])
+
+
+def test_an_error_in_a_teardown_is_no_failed_mission(tank: pytest.Pytester) -> None:
+    tank.makeconftest(
+        """
+        import pytest
+
+        @pytest.fixture(autouse=True)
+        def narrow():
+            yield
+            raise ValueError("left open")
+        """
+    )
+    told = tank.runpytest(*RECORD)
+    told.assert_outcomes(failed=1, deselected=1)
+    told.stdout.fnmatch_lines(["*broke outside of the mission*", "*left open*"])
+
+
+@pytest.mark.parametrize("flags", [(), ("--tarl-drift=clogged",)])
+def test_drifts_that_a_test_does_not_take_are_not_run_as_if_they_were_none(
+    tank: pytest.Pytester, flags: tuple[str, ...]
+) -> None:
+    changed(tank, "test_tank", "(tarl, tarl_drift):", "(tarl):\n    tarl_drift = None")
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    told = tank.runpytest(*ONLINE, *flags)
+    told.assert_outcomes(failed=1, deselected=1)
+    told.stdout.fnmatch_lines(["*does not take the fixture `tarl_drift`*"])
+
+
+@pytest.mark.parametrize("drifts", ["5", "None", "{1: 2}"])
+def test_a_marker_that_is_wrong_is_told_in_a_sentence(tank: pytest.Pytester, drifts: str) -> None:
+    changed(tank, "test_tank", '{"clogged": 0.25}', drifts)
+    told = tank.runpytest(*ONLINE)
+    told.assert_outcomes(failed=1, deselected=1)
+    told.stdout.fnmatch_lines(["*drifts maps names to values*"])
+    told = tank.runpytest(*ONLINE, "--tarl-drift=clogged")
+    assert told.ret == pytest.ExitCode.USAGE_ERROR
+    told.stderr.fnmatch_lines(["*drifts maps names to values*"])
+
+
+def test_other_parameters_keep_the_fixture_whatever_they_are_called(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", MARK, f'@pytest.mark.parametrize("pump", ["clogged", "clogged-2"])\n{MARK}')
+    changed(tank, "test_tank", "(tarl, tarl_drift)", "(tarl, tarl_drift, pump)")
+    tank.runpytest(*RECORD).assert_outcomes(passed=2, deselected=1)
+    assert len(list((tank.path / ".tarl" / "utility").glob("*.npz"))) == 2
+    told = tank.runpytest(*ONLINE)
+    told.assert_outcomes(failed=2, deselected=1)
+    assert told.stdout.str().count(": degraded") >= 2
+
+
+def test_a_sensor_that_is_never_a_number_is_told(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "Float64(data=level +", 'Float64(data=float("nan") +')
+    changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", "tarl.reward(1.0)")
+    told = tank.runpytest(*RECORD)
+    told.assert_outcomes(failed=1, deselected=1)
+    told.stdout.fnmatch_lines(["*'level' was NaN*"])
+
+
+def test_parts_of_a_reward_are_numbers_too(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", 'tarl.reward(1.0, depth=float("nan"))')
+    told = tank.runpytest(*RECORD)
+    told.assert_outcomes(failed=1, deselected=1)
+    told.stdout.fnmatch_lines(["*rewards must be finite*"])
