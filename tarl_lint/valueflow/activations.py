@@ -84,7 +84,7 @@ class Activations(Evaluation):
         self.stack.append(frame)
         result = self.run(frame)
         self.stack.pop()
-        del self.store.layers[depth:]
+        self.store.cut(depth)
         self.merge([d for d, _ in frame.returns] or [{}])
         if frame.function.generator:
             collected = self.allocate("sequence", caller, ("generator", call.slot))

@@ -62,7 +62,7 @@ class Branches(Ros):
                     backs.append(self.store.since(depth))
                 backs += table["continue"]
             frame.jumps.pop()
-            del self.store.layers[depth:]
+            self.store.cut(depth)
             again = self.joined([head, *backs]) if backs else head
             if again == head:
                 break
@@ -96,7 +96,7 @@ class Branches(Ros):
             self.store.push(done[0])
             depth = len(self.store.layers) - 1
             done = [self.store.since(depth)] if self.block(s.orelse, frame) else []
-            del self.store.layers[depth:]
+            self.store.cut(depth)
         if not done and not broken:
             return False
         self.merge([*done, *broken])
@@ -119,14 +119,14 @@ class Branches(Ros):
         ends: list[Delta] = []
         if goes_on and self.block(s.orelse, frame):
             ends.append(self.store.since(depth))
-        del self.store.layers[depth:]
+        self.store.cut(depth)
         if s.handlers:
             ends += self._handlers(s, states, frame)
         if not ends:
             if s.final:
                 self.store.push(self.joined(states))
                 self.block(s.final, frame)
-                del self.store.layers[depth:]
+                self.store.cut(depth)
             return False
         self.merge(ends)
         return self.block(s.final, frame)
@@ -141,7 +141,7 @@ class Branches(Ros):
                 self.assign(name, UNKNOWN, frame)
             if self.block(body, frame):
                 ends.append(self.store.since(depth))
-            del self.store.layers[depth:]
+            self.store.cut(depth)
         return ends
 
     def _with(self, s: ir.With, frame: Frame) -> bool:

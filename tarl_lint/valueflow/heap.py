@@ -56,7 +56,7 @@ class Heap(Allocation):
 
     def written_here(self, obj: Obj, name: str) -> bool:
         """Tell whether this run has stored to a field."""
-        return any((obj, name) in layer for layer in self.store.layers)
+        return self.store.stored((obj, name))
 
     def default(self, obj: Obj, name: str) -> Value:
         """Return what a field is to which nothing was stored."""

@@ -93,14 +93,11 @@ class Linker(Execution):
                 self.shared.leave(self.shared.ends, root, key, value)
 
     def _at_end(self, key: tuple[Obj, str]) -> Value | None:
-        for layer in reversed(self.store.layers):
-            if key in layer:
-                value = layer[key]
-                if value is ABSENT:
-                    value = BOTTOM if key[1] == "*" else self.default(*key)
-                    return None if value is BOTTOM else value
-                return value
-        return None
+        value = self.store.now.get(key)
+        if value is ABSENT:
+            value = BOTTOM if key[1] == "*" else self.default(*key)
+            return None if value is BOTTOM else value
+        return value
 
     def wait(self, frame: Frame) -> None:  # noqa: ARG002 - who waits may matter to a lock
         """Let other roots see what was stored, and store what they may."""

@@ -71,30 +71,42 @@ def private(key: Key) -> bool:
 
 @dataclass(slots=True)
 class Store:
-    """The state of one root's run: writes go to the top layer, reads fall through to the shared memory."""
+    """The state of one root's run: writes go to the top layer, reads fall through to the shared memory.
+
+    `now` is what all layers together say, so that reading takes one step however many there are; `hidden` holds
+    for each layer what its keys were before, None where nothing was stored.
+    """
 
     shared: Shared
     root: Root
     layers: list[Delta] = field(default_factory=lambda: [{}])
+    now: Delta = field(default_factory=dict)
+    hidden: list[dict[Key, Value | None]] = field(default_factory=lambda: [{}])
     found: dict[Key, Value | None] = field(default_factory=dict)
     exchanged: dict[Key, tuple[Value | None, int]] = field(default_factory=dict)  # at the last wait
     foreign: dict[Key, Value] = field(default_factory=dict)  # what others stored while this root waited
 
     def get(self, key: Key) -> Value | None:
         """Return the value now, None where nothing was stored."""
-        for layer in reversed(self.layers):
-            value = layer.get(key)
-            if value is not None:
-                return None if value is ABSENT else value
+        value = self.now.get(key)
+        if value is not None:
+            return None if value is ABSENT else value
         if key in self.found:
             return self.found[key]
         value = None if private(key) else self.shared.entry(key, self.root)
         self.found[key] = value
         return value
 
+    def stored(self, key: Key) -> bool:
+        """Tell whether this run has stored here."""
+        return key in self.now
+
     def put(self, key: Key, value: Value) -> None:
         """Store for certain."""
-        self.layers[-1][key] = value
+        layer = self.layers[-1]
+        if key not in layer:
+            self.hidden[-1][key] = self.now.get(key)
+        layer[key] = self.now[key] = value
         owner, name = key
         owner.fields[name] = None
         for obj in value.pts:
@@ -103,16 +115,32 @@ class Store:
 
     def push(self, delta: Delta | None = None) -> None:
         """Open a layer."""
-        self.layers.append({} if delta is None else dict(delta))
+        if not delta:
+            self.layers.append({})
+            self.hidden.append({})
+            return
+        self.layers.append(dict(delta))
+        self.hidden.append({key: self.now.get(key) for key in delta})
+        self.now.update(delta)
 
     def pop(self) -> Delta:
         """Close the top layer and return it."""
+        for key, value in self.hidden.pop().items():
+            if value is None:
+                del self.now[key]
+            else:
+                self.now[key] = value
         return self.layers.pop()
+
+    def cut(self, depth: int) -> None:
+        """Close all layers above a number of them."""
+        while len(self.layers) > depth:
+            self.pop()
 
     def since(self, depth: int) -> Delta:
         """Return all that was stored above a number of layers."""
-        merged: Delta = {}
-        for layer in self.layers[depth:]:
+        merged: Delta = dict(self.layers[depth])
+        for layer in self.layers[depth + 1 :]:
             merged.update(layer)
         return merged
 
@@ -135,9 +163,4 @@ class Store:
 
     def own(self) -> Iterable[Key]:
         """Return the keys written in this run which others can see."""
-        keys: dict[Key, None] = {}
-        for layer in self.layers:
-            for key in layer:
-                if not private(key):
-                    keys[key] = None
-        return keys
+        return [key for key in self.now if not private(key)]
