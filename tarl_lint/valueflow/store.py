@@ -80,11 +80,11 @@ class Store:
     shared: Shared
     root: Root
     layers: list[Delta] = field(default_factory=lambda: [{}])
-    now: Delta = field(default_factory=dict)
-    hidden: list[dict[Key, Value | None]] = field(default_factory=lambda: [{}])
     found: dict[Key, Value | None] = field(default_factory=dict)
     exchanged: dict[Key, tuple[Value | None, int]] = field(default_factory=dict)  # at the last wait
     foreign: dict[Key, Value] = field(default_factory=dict)  # what others stored while this root waited
+    now: Delta = field(default_factory=dict)
+    hidden: list[dict[Key, Value | None]] = field(default_factory=lambda: [{}])
 
     def get(self, key: Key) -> Value | None:
         """Return the value now, None where nothing was stored."""
