@@ -1,0 +1,177 @@
+"""Score the call resolver on PyCG's micro-benchmark: `python benchmarks/lint_pycg.py CHECKOUT`.
+
+CHECKOUT is a checkout of github/vitsalis/PyCG. Its small programs come with the calls that there are. As there, a
+program is *sound* when no call is missing and *complete* when none is invented. PyCG itself is run on the same
+programs in the same way, from the same checkout. Only calls between functions of the programs count, for both:
+builtins and libraries are left out. Functions that nothing calls are started by themselves, as PyCG does.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import json
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from tarl_lint.config import Config
+from tarl_lint.source import Module, parse
+from tarl_lint.valueflow.activations import ROOT_CALL
+from tarl_lint.valueflow.link import Linker
+from tarl_lint.valueflow.store import Root
+from tarl_lint.valueflow.values import Frame, Obj, pointer
+
+SNIPPETS = Path("micro-benchmark/snippets")
+
+Edge = tuple[str, str]  # caller and callee, dotted
+
+
+class Calls(Linker):
+    """Records who calls whom."""
+
+    def __init__(self, modules: Sequence[Module]) -> None:
+        super().__init__(modules, Config())
+        self.names = {m.path: dict(function_names(m)) for m in modules}
+
+    def name(self, frame: Frame) -> str:
+        """Return the dotted name of a frame's function."""
+        path, function = frame.program.path, frame.function
+        module = self.modules[path].name
+        if function is frame.program.function:
+            return module
+        inner = self.names[path].get((function.pos[0], function.pos[1]), "")
+        return f"{module}.{inner}" if inner else module
+
+    def edges(self) -> set[Edge]:
+        """Return every call from a function of the files to another one."""
+        frames = [f for f in self.frames.values() if f.caller is not None and _own(f.caller)]
+        return {(self.name(f.caller), self.name(f)) for f in frames if f.caller is not None}
+
+    def start_rest(self) -> None:
+        """Run functions that nothing calls, with arguments of which nothing is known, until there are no more."""
+        started: set[Obj] = set()
+        while True:
+            rest = [
+                o
+                for o in self.objects.values()
+                if o.kind == "closure" and o not in started and not self._runs(o)
+            ]
+            if not rest:
+                return
+            for closure in rest:
+                started.add(closure)
+                self._begin(closure)
+            self._settle()
+
+    def _runs(self, closure: Obj) -> bool:
+        function = closure.info[0] if isinstance(closure.info, tuple) else None
+        return function is None or (function.module, function.pos[0]) in self.called
+
+    def _begin(self, closure: Obj) -> None:
+        owner = closure.info[3] if isinstance(closure.info, tuple) else None
+
+        def run(root: Root) -> None:
+            frame = self.root_frame(root)
+            target = closure
+            if isinstance(owner, Obj):
+                (made,) = self.instantiate(owner, ([], {}), frame, ROOT_CALL).pts
+                (target,) = self.bind(pointer(closure), made, owner).pts
+            self.call_object(target, ([], {}), frame, ROOT_CALL)
+
+        self.add_root(Root(("rest", closure.key), "rest", closure.name, once=True), run)
+
+
+def _own(frame: Frame) -> bool:
+    """Tell whether a frame is a function or module of the files, not what stands for the interpreter."""
+    return not (isinstance(frame.key, tuple) and frame.key[0] == "root")
+
+
+def function_names(module: Module) -> Iterator[tuple[tuple[int, int], str]]:
+    """Yield where each function starts and its dotted name; lambdas are numbered in their scope."""
+    pending: list[tuple[ast.AST, str]] = [(module.tree, "")]
+    counts: Counter[str] = Counter()
+    while pending:
+        node, scope = pending.pop(0)
+        for child in ast.iter_child_nodes(node):
+            inner = scope
+            if isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+                inner = f"{scope}.{child.name}".lstrip(".")
+            elif isinstance(child, ast.Lambda):
+                counts[scope] += 1
+                inner = f"{scope}.<lambda{counts[scope]}>".lstrip(".")
+            if inner != scope and not isinstance(child, ast.ClassDef):
+                yield (child.lineno, child.col_offset), inner  # type: ignore[attr-defined]
+            pending.append((child, inner))
+
+
+def ours(folder: Path) -> set[Edge]:
+    """Return the calls that the resolver finds in a program."""
+    modules = []
+    for path in sorted(folder.rglob("*.py")):
+        parts = path.relative_to(folder).with_suffix("").parts
+        package = parts[-1] == "__init__"
+        name = ".".join(parts[:-1] if package and len(parts) > 1 else parts)
+        module = parse(str(path), path.read_bytes(), name)
+        if isinstance(module, Module):
+            modules.append(replace(module, is_package=package))
+    calls = Calls(modules)
+    calls.link()
+    calls.start_rest()
+    return calls.edges()
+
+
+def theirs(folder: Path) -> set[Edge]:
+    """Return the calls that PyCG finds in a program, in a process of its own since it changes the import system."""
+    checkout = folder.parents[len(SNIPPETS.parts) + 1]
+    command = [sys.executable, "-m", "pycg", "--package", str(folder), str(folder / "main.py")]
+    done = subprocess.run(command, cwd=checkout, capture_output=True, text=True, check=False)
+    graph = json.loads(done.stdout) if done.returncode == 0 else {}
+    return {(caller, callee) for caller, callees in graph.items() for callee in callees}
+
+
+def inner_calls(edges: set[Edge], folder: Path) -> set[Edge]:
+    """Return the calls whose callee is a function of the program."""
+    names = {p.relative_to(folder).parts[0].removesuffix(".py") for p in folder.rglob("*.py")}
+    return {(a, b) for a, b in edges if b.partition(".")[0] in names}
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print the shares, ours beside PyCG's."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("checkout", type=Path, help="checkout of github/vitsalis/PyCG")
+    parser.add_argument("--details", action="store_true", help="name every missing and invented call")
+    options = parser.parse_args(arguments)
+    options.checkout = options.checkout.resolve()
+    programs = sorted((options.checkout / SNIPPETS).glob("*/*/callgraph.json"))
+    if not programs:
+        sys.exit(f"{options.checkout / SNIPPETS} holds no programs: name a checkout of github/vitsalis/PyCG.")
+    print(f"{len(programs)} programs{'':>14}{'sound':>10}{'complete':>10}{'calls found':>13}{'invented':>10}")
+    for name, tool in (("tarl-lint", ours), ("PyCG", theirs)):
+        total = score(programs, tool, details=options.details)
+        shown = f"{total['found']}/{total['calls']}"
+        print(f"{name:>26}{total['sound']:>10}{total['complete']:>10}{shown:>13}{total['invented']:>10}")
+
+
+def score(programs: Sequence[Path], tool: Callable[[Path], set[Edge]], *, details: bool) -> Counter[str]:
+    """Compare the calls that a tool finds in each program with those that there are."""
+    total: Counter[str] = Counter()
+    for path in programs:
+        folder = path.parent
+        graph = json.loads(path.read_text(encoding="utf-8"))
+        wanted = inner_calls({(a, b) for a, callees in graph.items() for b in callees}, folder)
+        found = inner_calls(tool(folder), folder)
+        missing, invented = wanted - found, found - wanted
+        total.update(sound=not missing, complete=not invented, calls=len(wanted), found=len(wanted & found))
+        total["invented"] += len(invented)
+        if details and (missing or invented):
+            print(f"    {tool.__name__} {folder.parent.name}/{folder.name}:")
+            print(f"        missing {sorted(missing)}, invented {sorted(invented)}")
+    return total
+
+
+if __name__ == "__main__":
+    main()
