@@ -85,7 +85,7 @@ METHODS: Final[Mapping[str, Fact]] = {
     "create_service": Fact(
         "service", "rclpy.create_service", (1, "srv_name"), (0, "srv_type"), (2, "callback")
     ),
-    "add_done_callback": Fact("call later", "add_done_callback", callback=(0, "callback")),
+    "add_done_callback": Fact("done", "add_done_callback", callback=(0, "callback")),
     "add_on_set_parameters_callback": Fact(
         "call later", "rclpy.add_on_set_parameters_callback", callback=(0, "callback")
     ),
@@ -125,7 +125,7 @@ WAITING_METHODS: Final = frozenset(
 MUTATORS: Final = frozenset(
     [
         "append", "appendleft", "extend", "extendleft", "insert", "add", "update", "put", "put_nowait", "push",
-        "fill", "set", "setdefault", "itemset", "write", "push_back", "send", "set_result",
+        "fill", "set", "setdefault", "itemset", "write", "push_back", "send",
     ]
 )  # fmt: skip
 

@@ -13,7 +13,6 @@ from tarl_lint.valueflow.values import (
     BOTTOM,
     NONE,
     UNKNOWN,
-    ClassInfo,
     Frame,
     Nodes,
     Obj,
@@ -186,13 +185,7 @@ class Activations(Evaluation):
 
     def _fill(self, obj: Obj, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
         """Store the arguments as a dataclass or named tuple does."""
-        plain, named = self.pass_arguments(arguments, frame, call)
-        info = cls.info
-        names = info.fields if isinstance(info, ClassInfo) else ()
-        for name, value in zip(names, plain, strict=False):
-            self.store.put((obj, name), value)
-        for name, value in named.items():
-            self.store.put((obj, name), value)
+        raise NotImplementedError
 
     def instance_made(self, obj: Obj, cls: Obj, frame: Frame) -> None:
         """Tell who runs methods of such objects on their own (threads)."""

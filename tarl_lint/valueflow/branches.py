@@ -88,7 +88,7 @@ class Branches(Ros):
     def _length(self, source: Value, node: int) -> None:
         """How often a loop runs depends on a container's length: on what chose to add elements, not on them."""
         ours = frozenset(o for o in source.pts if o.kind in ("sequence", "mapping"))
-        self.graph.flow(self.use(Value(source.deps, source.pts - ours)), node)
+        self.graph.flow(self.use(Value(source.deps, source.pts - ours)) | self.length(Value(pts=ours)), node)
         self.graph.choice(self.deep(ours), node)
 
     def _loop_end(self, s: ir.Loop, done: list[Delta], broken: list[Delta], frame: Frame) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE, Activations
-from tarl_lint.valueflow.heap import item_field
 from tarl_lint.valueflow.machine import Arguments
 from tarl_lint.valueflow.values import (
     BOTTOM,
@@ -34,7 +33,7 @@ class Calls(Activations):
         for argument in expr.arguments:
             value = self.evaluate(argument, frame)
             if isinstance(argument, ir.Starred):
-                known = self._unpacked(value)
+                known = self.unpacked(value)
                 if known is None:
                     named["*"] = join(named.get("*", BOTTOM), self.elements(value))
                 else:
@@ -48,18 +47,6 @@ class Calls(Activations):
             else:
                 named[name] = value
         return plain, named
-
-    def _unpacked(self, value: Value) -> list[Value] | None:
-        """Return the elements of a display whose length is known."""
-        if len(value.pts) != 1:
-            return None
-        obj = next(iter(value.pts))
-        if obj.kind != "sequence" or self.content(obj) is not BOTTOM:
-            return None
-        found: list[Value] = []
-        while (stored := self.store.get((obj, item_field(len(found))))) is not None:
-            found.append(self.arrive(stored, value.deps))
-        return found
 
     def _call_attribute(
         self, expr: ir.Call, function: ir.Attribute, base: Value, arguments: Arguments, frame: Frame
@@ -146,12 +133,6 @@ class Calls(Activations):
             if any(o.kind in CALLABLE for o in member.pts):
                 return self.call_value(member, arguments, frame, call)
         return self.call_method(pointer(target), target, "__call__", arguments, frame, call)
-
-    # --- functions of ours --------------------------------------------------------------------------------
-
-    # --- classes of ours ----------------------------------------------------------------------------------
-
-    # --- joining states -----------------------------------------------------------------------------------
 
 
 def _order(obj: Obj) -> str:

@@ -7,12 +7,14 @@ from typing import Any
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.calls import Calls
-from tarl_lint.valueflow.heap import ANY, item_field
+from tarl_lint.valueflow.heap import ANY, LENGTH, item_field
 from tarl_lint.valueflow.machine import Arguments, Invocation
 from tarl_lint.valueflow.values import (
     BOTTOM,
+    NONE,
     UNKNOWN,
     Frame,
+    Nodes,
     Value,
     join,
     join_all,
@@ -50,6 +52,9 @@ class Containers(Calls):
             return
         else:
             news = join_all(plain[-1:] if name == "insert" else plain)
+        if name in ("extend", "extendleft") and plain:
+            for obj in base.pts:
+                self.lengthen(obj, plain[0])
         if news is BOTTOM or (name == "update" and base.pts):
             return
         function = call.function
@@ -74,65 +79,71 @@ class Containers(Calls):
         return join_all(self.arrive(self.read_any(o), base.deps) for o in base.pts)
 
     def _read_values(self, it: Invocation) -> Value:
+        return self.listed(self.elements_of_any(it.base), self.length(it.base), it)
+
+    def _read_keys(self, it: Invocation) -> Value:
+        return self.listed(self.elements(it.base), self.length(it.base), it)
+
+    def listed(self, element: Value, length: Nodes, it: Invocation) -> Value:
+        """Return a new sequence of elements that are not told apart."""
         obj = self.allocate("sequence", it.frame, ("values", it.call.slot))
-        self.add_element(pointer(obj), self.elements_of_any(it.base))
+        self.add_element(pointer(obj), element)
+        self.store.put((obj, LENGTH), Value(length))
         return pointer(obj)
 
     def _read_pairs(self, it: Invocation) -> Value:
-        return self.pairs([UNKNOWN, self.elements_of_any(it.base)], it.frame, it.call)
+        keys = join_all(self.elements(Value(it.base.deps, frozenset([o]))) for o in it.base.pts)
+        return self.pairs([keys, self.elements_of_any(it.base)], it.frame, it.call, self.length(it.base))
 
-    def pairs(self, parts: list[Value], frame: Frame, call: ir.Call) -> Value:
+    def pairs(self, parts: list[Value], frame: Frame, call: ir.Call, length: Nodes) -> Value:
         """Return a sequence of tuples."""
         pair = self.allocate("sequence", frame, ("pair", call.slot))
         for number, part in enumerate(parts):
             self.store.put((pair, item_field(number)), part)
         obj = self.allocate("sequence", frame, ("pairs", call.slot))
         self.add_element(pointer(obj), pointer(pair))
+        self.store.put((obj, LENGTH), Value(length))
         return pointer(obj)
-
-    def _read_copy(self, it: Invocation) -> Value:
-        return self.copy_of(it.base, it.frame, it.call)
-
-    def copy_of(self, value: Value, frame: Frame, call: ir.Call) -> Value:
-        """Return a new object with the same fields."""
-        if not value.pts:
-            return value
-        kinds = {o.kind for o in value.pts} & {"sequence", "mapping"}
-        obj = self.allocate(kinds.pop() if kinds else "lib", frame, ("copy", call.slot))
-        content = BOTTOM
-        for source in value.pts:
-            self._copy_fields(source, obj)
-            content = join(content, self.content(source))
-        if content is not BOTTOM:
-            self.store.put((obj, ANY), content)
-        return Value(value.deps, frozenset([obj]))
 
     def _new_container(self, it: Invocation) -> Value:
+        given = [v for v in it.arguments[0][:1] if v is not BOTTOM]
+        known = self.unpacked(given[0]) if given and it.name in ("list", "tuple", "deque") else None
+        element = join_all(self.elements(v) for v in given)
+        length = self.length(given[0]) if given else NONE
         obj = self.allocate("sequence", it.frame, ("display", it.call.slot))
-        for value in it.arguments[0][:1]:
-            self.add_element(pointer(obj), self.elements(value)) if value is not BOTTOM else None
-        return pointer(obj)
-
-    def _new_mapping(self, it: Invocation) -> Value:
-        obj = self.allocate("mapping", it.frame, ("display", it.call.slot))
-        for value in it.arguments[0]:
-            if value.pts and all(o.kind != "closure" and o.kind != "ext" for o in value.pts):
-                self.absorb(obj, value)
-        for key, value in it.arguments[1].items():
-            self.store.put((obj, item_field(key)), value)
+        if known is not None:
+            for number, value in enumerate(known):
+                self.store.put((obj, item_field(number)), value)
+        elif given:
+            self.add_element(pointer(obj), element)
+        self.store.put((obj, LENGTH), Value(length))
         return pointer(obj)
 
     def _zipped(self, it: Invocation) -> Value:
         parts = [self.elements(v) for v in it.arguments[0]]
-        return self.pairs([UNKNOWN, *parts] if it.name == "enumerate" else parts, it.frame, it.call)
+        length = NONE
+        for value in it.arguments[0]:
+            length |= self.length(value)
+        return self.pairs([UNKNOWN, *parts] if it.name == "enumerate" else parts, it.frame, it.call, length)
 
     def _mapped(self, it: Invocation) -> Value:
         function, *rest = it.arguments[0] or [UNKNOWN]
         parts = [self.elements(v) for v in rest]
         result = self.call_value(function, (parts, {}), it.frame, it.call)
-        obj = self.allocate("sequence", it.frame, ("values", it.call.slot))
-        self.add_element(pointer(obj), result if it.name == "map" else join_all(parts))
-        return pointer(obj)
+        length = result.deps if it.name == "filter" else NONE
+        for value in rest:
+            length |= self.length(value)
+        return self.listed(result if it.name == "map" else join_all(parts), length, it)
+
+    def _counted(self, it: Invocation) -> Value:
+        """Return `len(x)`: data of what the length is made of, choice of what decided to add elements."""
+        deps, ours = NONE, []
+        for value in it.arguments[0]:
+            deps |= self.length(value)
+            ours += [o for o in value.pts if o.kind in ("sequence", "mapping")]
+        node = self.node(it.frame, ("length", it.call.slot), "call")
+        self.graph.choice(self.deep(frozenset(ours)), node)
+        return Value(deps | {node})
 
     def _chosen(self, it: Invocation) -> Value:
         plain = it.arguments[0]
@@ -150,7 +161,8 @@ READERS: Mapping[str, Callable[..., Value]] = {
     "next": Containers._read_get,
     "values": Containers._read_values,
     "itervalues": Containers._read_values,
+    "keys": Containers._read_keys,
+    "iterkeys": Containers._read_keys,
     "items": Containers._read_pairs,
     "iteritems": Containers._read_pairs,
-    "copy": Containers._read_copy,
 }

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.heap import ANY, item_field
+from tarl_lint.valueflow.heap import LENGTH, item_field
 from tarl_lint.valueflow.operators import Operators
 from tarl_lint.valueflow.values import (
     NONE,
     Frame,
-    Obj,
     Value,
     pointer,
 )
@@ -27,6 +26,7 @@ class Displays(Operators):
             if isinstance(item, ir.Starred):
                 exact = False
                 self.add_element(where, self.elements(value))
+                self.lengthen(obj, value)
             elif exact:
                 self.store.put((obj, item_field(number)), value)
             else:
@@ -52,25 +52,14 @@ class Displays(Operators):
         self.mark(node, expr, value, frame)
         return self.carry(value, node)
 
-    def absorb(self, obj: Obj, value: Value) -> None:
-        """Copy the elements of what a value may be into an object."""
-        for source in value.pts:
-            for name in list(source.fields):
-                stored = self.store.get((source, name))
-                if stored is not None and (name.startswith("[") or name == ANY):
-                    self.weaken(obj, name, self.arrive(stored, value.deps))
-            content = self.content(source)
-            if content.deps and self.store.get((source, ANY)) is None:
-                self.add_element(pointer(obj), content)
-        if not value.pts and value.deps:
-            self.add_element(pointer(obj), Value(value.deps))
-
     def _comprehension(self, expr: ir.Comprehension, frame: Frame) -> Value:
         kind = "mapping" if expr.key is not None else "sequence"
         obj = self.allocate(kind, frame, ("display", expr.slot))
-        deps = NONE
+        deps, lengths = NONE, NONE
         for target, source, conditions in expr.loops:
-            self.assign(target, self.elements(self.evaluate(source, frame)), frame)
+            several = self.evaluate(source, frame)
+            lengths |= self.length(several)
+            self.assign(target, self.elements(several), frame)
             for condition in conditions:
                 deps |= self.use(self.evaluate(condition, frame))
         element = self.evaluate(expr.element, frame)
@@ -78,6 +67,7 @@ class Displays(Operators):
             node = self.node(frame, ("filter", expr.slot), "condition")
             self.graph.control[node].update(deps)
             element = Value(element.deps | {node}, element.pts, element.consts)
+        self.store.put((obj, LENGTH), Value(lengths | (element.deps if deps else NONE)))
         if expr.key is not None:
             self.write_item(pointer(obj), self.evaluate(expr.key, frame), element)
         else:

@@ -9,7 +9,7 @@ from typing import Any
 from tarl_lint.catalog import fact
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.displays import Displays
-from tarl_lint.valueflow.heap import item_field
+from tarl_lint.valueflow.heap import ANY, item_field
 from tarl_lint.valueflow.values import (
     BOTTOM,
     NONE,
@@ -97,6 +97,8 @@ class Evaluation(Displays):
 
     def _item(self, expr: ir.Item, frame: Frame) -> Value:
         base = self.evaluate(expr.base, frame)
+        if isinstance(expr.index, ir.Slice):
+            return self.sliced(base, expr.index, expr.pos, frame)
         index = self.evaluate(expr.index, frame)
         return self.read_item(base, index)
 
@@ -111,7 +113,10 @@ class Evaluation(Displays):
                 for key in index.consts:
                     result = join(result, self.arrive(self.element(obj, key), base.deps))
             else:
-                result = join(result, self.arrive(self.read_any(obj), base.deps))
+                found = self.read_any(obj)
+                if found is BOTTOM and obj.kind == "mapping" and obj.info is not None:
+                    found = self.missing(obj, ANY)
+                result = join(result, self.arrive(found, base.deps))
         return Value(result.deps | extra, result.pts, result.consts)
 
     def element(self, obj: Obj, key: object) -> Value:
@@ -121,7 +126,14 @@ class Evaluation(Displays):
             return self.read_any(obj)
         if obj.kind == "sequence" and self.store.get((obj, name)) is None and self.content(obj) is BOTTOM:
             return BOTTOM
-        return self.read_field(obj, name)
+        value = self.read_field(obj, name)
+        if value is BOTTOM and obj.kind == "mapping" and obj.info is not None:
+            return self.missing(obj, name)
+        return value
+
+    def missing(self, mapping: Obj, name: str) -> Value:
+        """Return what a mapping makes for a key that it does not have."""
+        raise NotImplementedError
 
     def _slice(self, expr: ir.Slice, frame: Frame) -> Value:
         deps = NONE

@@ -99,6 +99,8 @@ class Execution(Branches):
                 self.write_field(base, target.name, value)
         elif isinstance(target, ir.Item):
             base, index = self.evaluate(target.base, frame), self.evaluate(target.index, frame)
+            if isinstance(target.index, ir.Slice):
+                value = self.elements(value)
             value = Value(value.deps | self.use(index), value.pts, value.consts)
             if base.pts:
                 self.write_item(base, index, value)

@@ -18,6 +18,8 @@ from tarl_lint.valueflow.values import (
 )
 
 ANY = "*"  # the field that stands for all elements
+KEYS = "<keys>"  # of a mapping: what its keys are made of
+LENGTH = "<length>"  # of a container: what its length is made of
 HOLLOW = frozenset(
     ["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super"]
 )
@@ -127,6 +129,7 @@ class Heap(Allocation):
     def read_any(self, obj: Obj) -> Value:
         """Return what any element of an object may be."""
         result = self.content(obj)
+        self.store.look(obj)
         for name in list(obj.fields):
             if name.startswith("["):
                 value = self.store.get((obj, name))
@@ -154,10 +157,15 @@ class Heap(Allocation):
             if obj.kind == "instance":
                 result = join(result, Value(self.deep(frozenset([obj]))))
             elif obj.kind == "mapping":
-                result = join(result, UNKNOWN)  # its keys
+                result = join(result, self.keys(obj, value.deps))
             else:
                 result = join(result, self.arrive(self.read_any(obj), value.deps))
         return result
+
+    def keys(self, mapping: Obj, carriers: Nodes) -> Value:
+        """Return what the keys of a mapping may be: data only where they were made of data."""
+        stored = self.store.get((mapping, KEYS))
+        return UNKNOWN if stored is None else join(self.arrive(stored, carriers), UNKNOWN)
 
     def arrive(self, value: Value, carriers: Nodes) -> Value:
         """Return a field's value with the carriers of the pointer it was read through."""
@@ -176,6 +184,7 @@ class Heap(Allocation):
         if obj in seen or depth > MAX_NESTING or obj.kind in HOLLOW or self._node_like(obj):
             return
         seen.add(obj)
+        self.store.look(obj)
         found |= self.content(obj).deps
         for name in list(obj.fields):
             value = self.store.get((obj, name))
@@ -239,6 +248,10 @@ class Heap(Allocation):
 
     def write_item(self, base: Value, index: Value, value: Value) -> None:
         """Store into an element."""
+        keys = self.use(index)
+        for obj in base.pts if keys else ():
+            if obj.kind == "mapping":
+                self.weaken(obj, KEYS, Value(keys))
         if index.consts is None or not index.consts or len(index.consts) > 1:
             self.add_element(base, value)
             return

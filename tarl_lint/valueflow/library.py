@@ -7,7 +7,8 @@ from collections.abc import Callable, Mapping
 from tarl_lint import catalog
 from tarl_lint.catalog import Fact
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.containers import CONTAINERS, READERS, Containers
+from tarl_lint.valueflow.containers import CONTAINERS
+from tarl_lint.valueflow.futures import READERS, Futures
 from tarl_lint.valueflow.heap import ANY
 from tarl_lint.valueflow.machine import Arguments, Invocation, Publisher
 from tarl_lint.valueflow.values import (
@@ -24,7 +25,7 @@ from tarl_lint.valueflow.values import (
 from tarl_lint.wrapping import facts
 
 
-class Library(Containers):
+class Library(Futures):
     """Performs calls of functions, classes and methods that are not analysed."""
 
     def call_library(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
@@ -222,6 +223,13 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "dict": Library._new_mapping,
     "OrderedDict": Library._new_mapping,
     "defaultdict": Library._new_mapping,
+    "Counter": Library._new_mapping,
+    "dict.fromkeys": Library.from_keys,
+    "namedtuple": Library._named_tuple,
+    "dataclasses.field": Library._field,
+    "dataclasses.replace": Library._replaced,
+    "copy.replace": Library._replaced,
+    "len": Library._counted,
     "enumerate": Library._zipped,
     "zip": Library._zipped,
     "map": Library._mapped,

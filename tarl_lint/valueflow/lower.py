@@ -70,7 +70,9 @@ class Lowering(Expressions):
         target = self.expr(node.target, scope)
         operator = OPERATORS.get(type(node.op), "")
         value = ir.Operation(
-            "+=" if operator == "+" else "", [target, self.expr(node.value, scope)], position(node)
+            f"{operator}=" if operator in ("+", "|") else "",
+            [target, self.expr(node.value, scope)],
+            position(node),
         )
         return [ir.Assign(scope.next(), position(node), [target], value, augmented=True)]
 

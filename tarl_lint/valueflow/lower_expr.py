@@ -14,6 +14,8 @@ OPERATORS: dict[type[ast.AST], str] = {
     ast.Mult: "*",
     ast.Div: "/",
     ast.Mod: "%",
+    ast.BitOr: "|",
+    ast.BitAnd: "&",
     ast.USub: "neg",
     ast.Not: "not",
     ast.Eq: "==",

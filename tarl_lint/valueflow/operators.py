@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.joining import Joining
+from tarl_lint.valueflow.combining import COMBINING, Combining
 from tarl_lint.valueflow.values import (
     BOTTOM,
     NONE,
@@ -37,16 +37,19 @@ FOLDED: Mapping[str, Callable[..., object]] = {
 MAX_TEXT = 300
 
 
-class Operators(Joining):
+class Operators(Combining):
     """Evaluates operators."""
 
     def _operation(self, expr: ir.Operation, frame: Frame) -> Value:
         values = [self.evaluate(p, frame) for p in expr.parts]
         if expr.operator in ("or", "and"):
             return self.boolean(expr.operator, values)
-        if expr.operator == "+=" and values[0].pts:
-            self.add_element(values[0], self.elements(values[1]))
-            return Value(values[0].deps | values[1].deps, values[0].pts)
+        if expr.operator in ("+=", "|=") and values[0].pts:
+            return self.grown(expr.operator, values)
+        if expr.operator in COMBINING and any(v.pts for v in values):
+            made = self.combined(expr, values, frame)
+            if made is not None:
+                return made
         deps = NONE
         for value in values:
             deps |= self.tested(expr.operator, value)

@@ -22,9 +22,15 @@ class Ros(Sources):
             self.call_when((it.fact.kind, it.frame.program.path, it.call.pos), target, [], "callback")
         return self.handle(it.frame, it.call)
 
+    def _done(self, it: Invocation) -> Value:
+        """Run a callback on a future, with the future."""
+        for target in it.argument(it.fact.callback).pts:
+            self.call_when(("done", it.frame.program.path, it.call.pos), target, [it.base], "callback")
+        return UNKNOWN
+
     def _thread(self, it: Invocation) -> Value:
         given = it.argument(it.fact.extra)
-        values = self._unpacked(given) or []
+        values = self.unpacked(given) or []
         for target in it.argument(it.fact.callback).pts:
             self.call_when((it.fact.kind, it.frame.program.path, it.call.pos), target, values, "thread")
         return self.handle(it.frame, it.call)
@@ -41,7 +47,11 @@ class Ros(Sources):
         return pointer(obj)
 
     def _copied(self, it: Invocation) -> Value:
-        return self.copy_of(it.arguments[0][0], it.frame, it.call) if it.arguments[0] else UNKNOWN
+        given = [*it.arguments[0], *it.arguments[1].values()]
+        if not given:
+            return UNKNOWN
+        copied = self.deep_copy if it.fact.api == "copy.deepcopy" else self.copy_of
+        return copied(given[0], it.frame, it.call.slot)
 
     def parameter(self, it: Invocation) -> Value:
         """Return a parameter's value: its default, as far as is known here."""
@@ -94,6 +104,7 @@ ACTIONS: Mapping[str, Callable[..., Value]] = {
     "timer": Ros._timer,
     "service": Ros._timer,
     "call later": Ros._timer,
+    "done": Ros._done,
     "thread": Ros._thread,
     "partial": Ros._partial,
     "copy": Ros._copied,

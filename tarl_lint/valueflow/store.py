@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field
 
-from tarl_lint.valueflow.values import ABSENT, Frame, Key, Value, join
+from tarl_lint.valueflow.values import ABSENT, Frame, Key, Obj, Value, join
 
 Delta = dict[Key, Value]
 
@@ -27,6 +27,7 @@ class Shared:
     ends: dict[Key, dict[Root, Value]] = field(default_factory=dict)
     pauses: dict[Key, dict[Root, Value]] = field(default_factory=dict)
     readers: dict[Key, set[Root]] = field(default_factory=dict)
+    watchers: dict[Obj, set[Root]] = field(default_factory=dict)
     dirty: set[Root] = field(default_factory=set)
     version: int = 0  # grows with every news
 
@@ -52,11 +53,24 @@ class Shared:
         self.readers.setdefault(key, set()).add(root)
         return result
 
+    def look(self, obj: Obj, root: Root) -> None:
+        """Remember that a root has seen which fields an object has."""
+        self.watchers.setdefault(obj, set()).add(root)
+
+    def _appeared(self, obj: Obj) -> None:
+        """Let those run again who have seen an object, or what it is inside, without this field."""
+        inside: Obj | None = obj
+        while inside is not None:
+            self.dirty |= self.watchers.get(inside, set())
+            inside = inside.parent
+
     def leave(self, table: dict[Key, dict[Root, Value]], root: Root, key: Key, value: Value) -> None:
         """Record a value; roots that read it have to run again when it is news."""
         owners = table.setdefault(key, {})
         before = owners.get(root)
         after = value if before is None else join(before, value)
+        if not owners:
+            self._appeared(key[0])
         if before is None or after != before:
             owners[root] = after
             self.version += 1
@@ -80,6 +94,7 @@ class Store:
     shared: Shared
     root: Root
     layers: list[Delta] = field(default_factory=lambda: [{}])
+    seen: set[Obj] = field(default_factory=set)
     found: dict[Key, Value | None] = field(default_factory=dict)
     exchanged: dict[Key, tuple[Value | None, int]] = field(default_factory=dict)  # at the last wait
     foreign: dict[Key, Value] = field(default_factory=dict)  # what others stored while this root waited
@@ -112,6 +127,12 @@ class Store:
         for obj in value.pts:
             if obj.kind == "lib":
                 obj.holders[key] = None
+
+    def look(self, obj: Obj) -> None:
+        """Remember that this run depends on which fields an object has."""
+        if obj not in self.seen:
+            self.seen.add(obj)
+            self.shared.look(obj, self.root)
 
     def push(self, delta: Delta | None = None) -> None:
         """Open a layer."""

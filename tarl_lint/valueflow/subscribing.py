@@ -131,7 +131,7 @@ class Sources(Sinks):
         """Return a synchroniser of several subscribers."""
         given = it.argument(it.fact.topic)
         obj = self.intern("synchronizer", (it.frame.id, it.statement, it.call.slot))
-        parts = self._unpacked(given)
+        parts = self.unpacked(given)
         if parts is None:
             parts = [self.elements(given)] if all(o.kind == "sequence" for o in given.pts) else [given]
         obj.info = (parts, (it.frame.program.path, it.call.pos))

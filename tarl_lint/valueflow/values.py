@@ -12,6 +12,7 @@ Consts = frozenset[object] | None  # None: anything
 Branches = frozenset[tuple[int, str]]
 
 NONE: Nodes = frozenset()
+PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enum.Enum", "enum.IntEnum"])
 MAX_CONSTS = 4
 MAX_DEPTH = 6  # of objects embedded in objects
 
@@ -221,11 +222,13 @@ class ClassInfo:
     statement: ir.Class | None = None
     module: str = ""
     fields: tuple[str, ...] = ()  # annotated in its body, as dataclasses have them
+    named: bool = False  # a named tuple: its fields are its elements too
 
     @property
     def opaque(self) -> bool:
         """Tell whether code that is not analysed may see its instances' attributes and call its methods."""
-        return bool(self.external) or any(isinstance(b.info, ClassInfo) and b.info.opaque for b in self.bases)
+        inherited = any(isinstance(b.info, ClassInfo) and b.info.opaque for b in self.bases)
+        return inherited or any(e not in PLAIN_BASES for e in self.external)
 
 
 def lineage(cls: Obj) -> list[Obj]:

@@ -5,6 +5,7 @@ a reaches explicitly and b implicitly, `# clean` at one that nothing reaches.
 """
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -12,8 +13,21 @@ import pytest
 from tarl_lint.api import analyse
 
 CASES = Path(__file__).parent.parent / "cases"
-UNITS = sorted(p for p in CASES.iterdir() if p.suffix == ".py" or (p / "__init__.py").exists())
 MARK = re.compile(r"# (source|sink|clean)((?: ~?\w+)*)")
+PLAIN = frozenset(["callbacks.py"])  # has no clean line
+
+
+def units(directory: Path) -> Iterator[Path]:
+    """Yield what is analysed together: a file alone, or all below a directory that holds a package or workspace."""
+    for path in sorted(directory.iterdir()):
+        if path.suffix == ".py":
+            yield path
+        elif path.is_dir() and path.name != "__pycache__":
+            group = not (path / "__init__.py").exists() and any(path.glob("*.py"))
+            yield from units(path) if group else [path]
+
+
+UNITS = list(units(CASES))
 
 
 def marks(
@@ -36,11 +50,11 @@ def marks(
     return sources, flows, clean
 
 
-@pytest.mark.parametrize("unit", UNITS, ids=lambda p: p.stem)
+@pytest.mark.parametrize("unit", UNITS, ids=lambda p: p.relative_to(CASES).with_suffix("").as_posix())
 def test_the_marked_flows_are_found_and_no_others(unit):
     sources, wanted, clean = marks(unit)
     assert wanted
-    assert clean or unit.stem == "callbacks"
+    assert clean or unit.name in PLAIN
     analysis = analyse([unit])
     assert not analysis.errors
     found = set()

@@ -1,0 +1,235 @@
+"""Objects with named fields, copies of objects, and mappings that make what they lack."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator
+from typing import Final
+
+from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.activations import CALLABLE
+from tarl_lint.valueflow.containers import Containers
+from tarl_lint.valueflow.heap import ANY, KEYS, item_field
+from tarl_lint.valueflow.machine import Arguments, Invocation
+from tarl_lint.valueflow.values import (
+    BOTTOM,
+    UNKNOWN,
+    ClassInfo,
+    Frame,
+    Obj,
+    Value,
+    const,
+    join,
+    lineage,
+    pointer,
+)
+
+MAX_COPIED: Final = 3  # objects inside objects that a deep copy follows
+INNER: Final = frozenset(["instance", "sequence", "mapping", "lib"])
+MADE_BY: Final = {
+    **dict.fromkeys(("list", "set", "deque", "tuple", "frozenset"), "sequence"),
+    **dict.fromkeys(("dict", "OrderedDict", "Counter"), "mapping"),
+}
+
+
+class Records(Containers):
+    """Makes data classes, named tuples, copies and mappings with defaults."""
+
+    # --- fields -------------------------------------------------------------------------------------------
+
+    def _fill(self, obj: Obj, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
+        """Store the arguments as a dataclass or named tuple does."""
+        plain, named = self.pass_arguments(arguments, frame, call)
+        given = dict(named)
+        rest = given.pop("*", None)
+        mapping = given.pop("**", None)
+        numbered = _named_tuple(cls)
+        for number, (owner, name) in enumerate(_fields(cls)):
+            value = plain[number] if number < len(plain) else given.pop(name, None)
+            if value is None and mapping is not None:
+                value = self.read_item(mapping, const(name))
+            if value is None or value is BOTTOM:
+                value = rest if rest is not None else self._preset(owner, name, frame, call, number)
+            if value is None:
+                continue
+            self.store.put((obj, name), value)
+            if numbered:
+                self.store.put((obj, item_field(number)), value)
+        for name, value in given.items():
+            self.store.put((obj, name), value)
+        self._after(obj, cls, frame, call)
+
+    def _after(self, obj: Obj, cls: Obj, frame: Frame, call: ir.Call) -> None:
+        for owner in lineage(cls):
+            after = self.store.get((owner, "__post_init__"))
+            if after is not None:
+                self.call_value(self.bind(after, obj, owner), ([], {}), frame, call)
+                return
+
+    def _preset(self, owner: Obj, name: str, frame: Frame, call: ir.Call, number: int) -> Value | None:
+        """Return a field's default: of `field(default_factory=f)` what f makes."""
+        preset = self.store.get((owner, name))
+        spec = next((o for o in preset.pts if o.kind == "field"), None) if preset is not None else None
+        if spec is None or not isinstance(spec.info, dict):
+            return preset
+        if "default_factory" in spec.info:
+            made = ir.Call(call.function, (), (), call.pos, -1000 * abs(call.slot) - number)
+            value: Value = self.call_value(spec.info["default_factory"], ([], {}), frame, made)
+            return value
+        default: Value = spec.info.get("default", UNKNOWN)
+        return default
+
+    def _field(self, it: Invocation) -> Value:
+        obj = self.intern("field", (it.frame.id, it.statement, it.call.slot))
+        obj.info = it.arguments[1]
+        return pointer(obj)
+
+    def _named_tuple(self, it: Invocation) -> Value:
+        """Return the class that `namedtuple(name, fields)` makes."""
+        plain = it.arguments[0]
+        if len(plain) < 2:
+            return UNKNOWN
+        names: list[str] = []
+        for text in plain[1].texts():
+            names += text.replace(",", " ").split()
+        for element in self.unpacked(plain[1]) or []:
+            names += element.texts()
+        cls = self.intern("class", (it.frame.id, it.statement, it.call.slot), "".join(plain[0].texts()[:1]))
+        cls.info = ClassInfo(cls.name, cls.name, named=True, module=it.frame.program.name)
+        cls.info.fields = tuple(names)
+        return pointer(cls)
+
+    # --- copies -------------------------------------------------------------------------------------------
+
+    def _replaced(self, it: Invocation) -> Value:
+        """Return a copy with some fields other than before."""
+        plain, named = it.arguments
+        base = plain[0] if plain and it.base is BOTTOM else it.base
+        made = self.copy_of(base, it.frame, it.call.slot)
+        for obj in made.pts:
+            cls = obj.info if obj.kind == "instance" else None
+            names = [n for _, n in _fields(cls)] if isinstance(cls, Obj) else []
+            for name, value in named.items():
+                self.store.put((obj, name), value)
+                if name in names and _named_tuple(cls):
+                    self.store.put((obj, item_field(names.index(name))), value)
+        return made
+
+    def _read_copy(self, it: Invocation) -> Value:
+        return self.copy_of(it.base, it.frame, it.call.slot)
+
+    def copy_of(self, value: Value, frame: Frame, slot: Hashable) -> Value:
+        """Return a new object with the same fields."""
+        if not value.pts or any(o.kind in CALLABLE for o in value.pts):
+            return value
+        obj = self._blank(value, frame, ("copy", slot))
+        content = BOTTOM
+        for source in value.pts:
+            self._copy_fields(source, obj)
+            content = join(content, self.content(source))
+        if content is not BOTTOM:
+            self.store.put((obj, ANY), content)
+        return Value(value.deps, frozenset([obj]))
+
+    def _blank(self, value: Value, frame: Frame, slot: Hashable) -> Obj:
+        """Return a new object of the kind that all the copied ones are of."""
+        classes = {o.info for o in value.pts if o.kind == "instance"}
+        if len(classes) == 1 and all(o.kind == "instance" for o in value.pts):
+            obj = self.allocate("instance", frame, slot)
+            obj.info = classes.pop()
+            return obj
+        kinds = {o.kind for o in value.pts} & {"sequence", "mapping"}
+        return self.allocate(kinds.pop() if kinds else "lib", frame, slot)
+
+    def deep_copy(self, value: Value, frame: Frame, slot: Hashable, depth: int = 0) -> Value:
+        """Return a copy whose inner objects are copies too."""
+        made = self.copy_of(value, frame, slot)
+        for obj in made.pts - value.pts if depth < MAX_COPIED else ():
+            for name in list(obj.fields):
+                inner = self.store.get((obj, name))
+                if inner is not None and any(o.kind in INNER for o in inner.pts):
+                    self.store.put((obj, name), self.deep_copy(inner, frame, (slot, name), depth + 1))
+        return made
+
+    # --- mappings -----------------------------------------------------------------------------------------
+
+    def _new_mapping(self, it: Invocation) -> Value:
+        plain, named = it.arguments
+        factory = plain[0] if it.name == "defaultdict" and plain else None
+        given = plain[1:] if it.name == "defaultdict" else plain
+        obj = self.allocate("mapping", it.frame, ("display", it.call.slot))
+        for value in given:
+            if it.name == "Counter":
+                self.weaken(obj, KEYS, Value(self.use(value)))
+                self.add_element(pointer(obj), Value(self.use(value)))
+            elif value.pts:
+                self._entries(obj, value)
+        for key, value in named.items():
+            self.store.put((obj, item_field(key)), value)
+        if factory is not None:
+            obj.info = factory
+        return pointer(obj)
+
+    def _entries(self, obj: Obj, value: Value) -> None:
+        """Take over the entries of a mapping, or of a sequence of pairs."""
+        for source in value.pts:
+            if source.kind != "sequence":
+                self.absorb(obj, Value(value.deps, frozenset([source])))
+                continue
+            pair = self.elements(Value(value.deps, frozenset([source])))
+            keys = self.use(self.read_item(pair, const(0)))
+            if keys:
+                self.weaken(obj, KEYS, Value(keys))
+            self.add_element(pointer(obj), self.read_item(pair, const(1)))
+            self.lengthen(obj, Value(value.deps, frozenset([source])))
+
+    def from_keys(self, it: Invocation) -> Value:
+        """Return what `dict.fromkeys(keys, value)` makes."""
+        plain = it.arguments[0]
+        obj = self.allocate("mapping", it.frame, ("display", it.call.slot))
+        known = self.unpacked(plain[0]) if plain else None
+        value = plain[1] if len(plain) > 1 else const(None)
+        for key in known or ():
+            self.write_item(pointer(obj), key, value)
+        if known is None:
+            keys = self.use(self.elements(plain[0])) if plain else frozenset()
+            self.weaken(obj, KEYS, Value(keys)) if keys else None
+            self.add_element(pointer(obj), value)
+        return pointer(obj)
+
+    def missing(self, mapping: Obj, name: str) -> Value:
+        """Return what a mapping with a default makes for a key that it does not have."""
+        factory = mapping.info
+        if not isinstance(factory, Value):
+            return BOTTOM
+        result = BOTTOM
+        for maker in factory.pts:
+            kind = MADE_BY.get(maker.name.rpartition(".")[2]) if maker.kind == "ext" else None
+            if kind is not None:
+                result = join(result, pointer(self.intern(kind, (mapping.key, "missing", name))))
+            elif maker.kind in CALLABLE and self.stack:
+                result = join(result, self.call_object(maker, ([], {}), self.stack[-1], _MISSING))
+        if result.pts:
+            self.store.put((mapping, name), result)
+        return result
+
+
+_MISSING: Final = ir.Call(ir.Const(None, (0, 0, 0, 0)), (), (), (0, 0, 0, 0), -1)
+
+
+def _fields(cls: Obj) -> Iterator[tuple[Obj, str]]:
+    """Yield the fields of a class and of those it inherits from, in the order of the constructor."""
+    seen: set[str] = set()
+    for owner in reversed(lineage(cls)):
+        for name in owner.info.fields if isinstance(owner.info, ClassInfo) else ():
+            if name not in seen:
+                seen.add(name)
+                yield owner, name
+
+
+def _named_tuple(cls: object) -> bool:
+    """Tell whether a class is a named tuple, whose fields are elements too."""
+    infos = [o.info for o in lineage(cls)] if isinstance(cls, Obj) else []
+    return any(isinstance(i, ClassInfo) and (i.named or "typing.NamedTuple" in i.external) for i in infos)
+
+
+RECORDS: Final = {"copy": Records._read_copy, "_replace": Records._replaced}
