@@ -10,14 +10,15 @@ import numpy as np
 from pytest_tarl import seeds
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.learning import localize
-from pytest_tarl.learning.drift import compare, paper_region
+from pytest_tarl.learning.drift import compare, paper_region, permuted_loss
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.merging import aligned
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.utility import batch
-from pytest_tarl.model import Comparison, ListComparison, Region, SitePlace, TaintList
+from pytest_tarl.model import Comparison, ListComparison, Region, SitePlace, TaintList, Verdict
 from pytest_tarl.recording import Progress, Recorded, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.rollout import Rollout
+from pytest_tarl.searching.accept import PASS_RATE_LOSS
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import Cell
 from pytest_tarl.settings import Designation, Options
@@ -83,7 +84,7 @@ def run_online(
         paper_region=near_half,
         totals={"offline": tuple(offline.total.tolist()), "online": tuple(online.total.tolist())},
         culprits=localize.culprits(ranked, {}, (), difference.verdict.loss),
-        notes=lost_sites(fixture, plan),
+        notes=(*lost_sites(fixture, plan), *failing(offline, online, difference.verdict, options)),
         parts=_parts(offline, online),
         changes=difference.changes,
     )
@@ -110,6 +111,23 @@ def lost_sites(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
         (
             f"the node was edited since the recording: the slices of {', '.join(named)}{more} are lost; verdict and "
             "region stand. Record again with --tarl-record once the change is meant to stay."
+        ),
+    )
+
+
+def failing(offline: Sample, online: Sample, verdict: Verdict, options: Options) -> tuple[str, ...]:
+    """Tell when missions fail more often on-line and the reward does not say so."""
+    before, after = (world.passed.astype(np.float64) for world in (offline, online))
+    draws = seeds.generator(options.seed, "success")
+    if verdict.result == "degraded" or before.mean() - after.mean() <= PASS_RATE_LOSS:
+        return ()
+    if permuted_loss(before, after, draws) >= options.alpha:
+        return ()
+    return (
+        (
+            f"missions succeed in {after.mean():.0%} of the on-line episodes and in {before.mean():.0%} off-line, but "
+            "no loss of reward was found: a mission that ends early may earn more than one that is carried on. Let "
+            "the reward count a failed mission."
         ),
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,9 +46,10 @@ class Sensor:
         if any(b is not None for b in bounds) and any(b is None for b in bounds):
             raise SettingsError(f"Sensor {self.name!r} needs low, high and bins together, or none of them.")
         if self.low is not None and self.high is not None and self.bins is not None:
-            if not self.low < self.high or self.bins < 1:
+            finite = math.isfinite(self.low) and math.isfinite(self.high)
+            if not finite or not self.low < self.high or not isinstance(self.bins, int) or self.bins < 1:
                 raise SettingsError(
-                    f"Sensor {self.name!r}: low must be below high and bins at least 1, got "
+                    f"Sensor {self.name!r}: low must be below high, both finite, and bins at least 1 and whole, got "
                     f"low={self.low}, high={self.high}, bins={self.bins}."
                 )
             if self.categories:
@@ -72,10 +73,11 @@ class Sensor:
             number = float(value)
             if math.isnan(number):
                 return None
-            if number == self.high:
-                return self.bins - 1
             place = (number - self.low) / (self.high - self.low) * self.bins
-            return math.floor(max(-1.0, min(float(self.bins), place)))
+            index = math.floor(max(-1.0, min(float(self.bins), place)))
+            return (
+                index if number > self.high else min(index, self.bins - 1)
+            )  # the upper end is of the last bin
         if self.categories:
             if value not in self.categories:
                 raise SettingsError(
@@ -115,7 +117,7 @@ def field_value(message: Any, field: str) -> Any:
     for part in field.split("."):
         if isinstance(message, Mapping):
             message = message[part]
-        elif part.lstrip("-").isdigit() and isinstance(message, Sequence):
+        elif part.lstrip("-").isdigit() and hasattr(message, "__getitem__"):
             message = message[int(part)]
         else:
             message = getattr(message, part)

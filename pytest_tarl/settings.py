@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -102,7 +103,12 @@ def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, A
 
 
 def _nodes(where: str, nodes: Any) -> tuple[str, ...]:
-    if isinstance(nodes, str) or not nodes or not all(isinstance(node, str) for node in nodes):
+    if (
+        isinstance(nodes, str)
+        or not isinstance(nodes, Sequence)
+        or not nodes
+        or not all(isinstance(node, str) for node in nodes)
+    ):
         raise SettingsError(
             f'{where}: name the files of the node under test, for instance nodes=["my_node.py"] '
             "(relative to the test's folder)."
@@ -141,4 +147,4 @@ def _number(where: str, name: str, value: Any, kind: type[int] | type[float], lo
 
 
 def _tolerance(where: str, value: Any) -> float | None:
-    return None if value is None else float(_number(where, "tolerance", value, float, 0, float("inf")))
+    return None if value is None else float(_number(where, "tolerance", value, float, 0, sys.float_info.max))

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from math import ceil, log, log1p, sqrt
+from math import ceil, log, log1p, sqrt, tan
 from statistics import NormalDist, fmean, variance
+
+import numpy as np
 
 from pytest_tarl.model import Reason
 
 LOOKS = (8, 12, 17, 24, 32, 40)  # episodes after which the bound is looked at
 PASS_RATE_LOSS = 0.05
+FEW_DEGREES = 20  # of freedom
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +127,16 @@ def interval(repaired: Sequence[float], offline: Sequence[float], risk: float) -
 
 
 def student_quantile(probability: float, degrees: float) -> float:
-    """Return the quantile of Student's t by its expansion in 1/degrees (Abramowitz & Stegun 26.7.5)."""
+    """Return a quantile of Student's t above the median; for many degrees by Abramowitz & Stegun 26.7.5.
+
+    For few, where that expansion is far too low, by adding up the density over θ = atan(t / √degrees): cosᵈ⁻¹θ.
+    """
+    if degrees < FEW_DEGREES:
+        angle = np.linspace(0.0, np.pi / 2, 20_001)
+        density = np.cos(angle) ** (degrees - 1)
+        below = np.append(0.0, np.cumsum(density[1:] + density[:-1]))
+        reached = float(np.interp((2 * probability - 1) * below[-1], below, angle))
+        return tan(reached) * sqrt(degrees)
     z = NormalDist().inv_cdf(probability)
     first = (z**3 + z) / 4
     second = (5 * z**5 + 16 * z**3 + 3 * z) / 96

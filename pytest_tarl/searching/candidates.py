@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Conjunct, Guard, Region
@@ -94,9 +95,7 @@ def holds(guard: Guard, cell: Cell, sensors: Sequence[Sensor]) -> bool:
     return all(_within(conjunct, bins[conjunct.sensor.name]) for conjunct in guard.conjuncts)
 
 
-def _holding(
-    guard: Guard, world: Sample, sensors: Sequence[Sensor]
-) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _holding(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> NDArray[np.bool_]:
     return np.array([holds(guard, cell, sensors) for cell in world.cells], dtype=bool)
 
 
@@ -158,4 +157,11 @@ def _wider(conjunct: Conjunct) -> Conjunct:
     if sensor.bins is None or sensor.low is None or sensor.high is None:
         return conjunct
     step = WIDER * (sensor.high - sensor.low) / sensor.bins
-    return Conjunct(sensor, conjunct.low - step, conjunct.high + step)
+    low, high = conjunct.low - step, conjunct.high + step
+    within = 1e-9 * step
+    # What lies outside of the range is one bin on either side: it is in or out as a whole.
+    return Conjunct(
+        sensor,
+        low if low >= sensor.low - within else -np.inf,
+        high if high <= sensor.high + within else np.inf,
+    )

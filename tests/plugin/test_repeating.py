@@ -114,3 +114,17 @@ def test_parts_of_a_reward_are_numbers_too(tank: pytest.Pytester) -> None:
     told = tank.runpytest(*RECORD)
     told.assert_outcomes(failed=1, deselected=1)
     told.stdout.fnmatch_lines(["*rewards must be finite*"])
+
+
+def test_missions_that_fail_early_and_earn_more_for_it_are_told(tank: pytest.Pytester) -> None:
+    changed(
+        tank,
+        "test_tank",
+        "        tarl.reward(",
+        '        assert pump == 1.0, "no pressure"\n        tarl.reward(',
+    )
+    changed(tank, "test_tank", "    for _ in range(25):", "    tarl.reward(0.0)\n    for _ in range(25):")
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    told = tank.runpytest(*ONLINE)
+    told.assert_outcomes(passed=1, deselected=1)
+    assert "missions succeed in 0% of the on-line episodes" in " ".join(told.stdout.str().split())

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from array import array
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -77,3 +79,22 @@ def test_fields_are_followed_through_attributes_items_and_indices() -> None:
 def test_bins_have_names_for_people() -> None:
     assert X.label(2) == "0-0.5 m"
     assert Sensor("mode", categories=("dry", "wet")).label(1) == "wet"
+
+
+def test_a_value_below_the_upper_end_is_never_outside_for_rounding() -> None:
+    sensor = Sensor("x", low=-3.7, high=3.9, bins=5)
+    below = math.nextafter(3.9, 0.0)
+    assert sensor.bin(below) == sensor.bin(3.9) == 4
+    assert sensor.bin(math.nextafter(3.9, 5.0)) == 5
+
+
+@pytest.mark.parametrize("bounds", [(-math.inf, 1.0, 3), (0.0, math.inf, 3), (0.0, 1.0, 2.5)])
+def test_bounds_that_cannot_be_divided_are_refused(bounds: tuple[float, float, int]) -> None:
+    low, high, bins = bounds
+    with pytest.raises(SettingsError, match="finite"):
+        Sensor("x", low=low, high=high, bins=bins)
+
+
+def test_a_field_indexes_arrays_of_any_kind() -> None:
+    assert field_value({"ranges": np.array([1.0, 2.0])}, "ranges.1") == 2.0
+    assert field_value({"ranges": array("d", [1.0, 2.0])}, "ranges.-1") == 2.0

@@ -84,3 +84,12 @@ def test_flags_choose_the_mode(change: dict[str, Any], mode: str) -> None:
 def test_wrong_flags_are_explained(change: dict[str, Any], words: str) -> None:
     with pytest.raises(SettingsError, match=words):
         options(FLAGS | change)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("nodes", 5), ("tolerance", float("inf")), ("tolerance", float("nan"))]
+)
+def test_values_that_would_break_later_are_refused_in_a_sentence(name: str, value: object) -> None:
+    arguments = {"nodes": ["a.py"], "sensors": [Sensor("x")], name: value}
+    with pytest.raises(SettingsError, match=r"^here: "):
+        designation("here", (), arguments)

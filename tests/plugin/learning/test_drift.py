@@ -5,7 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from pytest_tarl.instrumentation.trace import Trace
-from pytest_tarl.learning.drift import compare, max_statistic, paper_region, permuted_loss
+from pytest_tarl.learning.drift import (
+    compare,
+    max_statistic,
+    outstanding,
+    paper_region,
+    permuted_loss,
+    smallest_detectable_loss,
+)
 from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Sample
@@ -98,3 +105,29 @@ def test_the_papers_region_is_where_the_difference_is_at_least_half_the_largest(
     online = np.array([[-4.0, 0.0], [0.0, 0.0], [np.nan, 2.0], [1.0, 0.0]])
     assert paper_region(offline, online).tolist() == [0, 1]
     assert paper_region(offline, offline).tolist() == []
+
+
+def test_a_large_difference_that_may_be_chance_does_not_hide_what_is_sure() -> None:
+    difference = np.array([9.0, -0.5, 0.04, 0.2])
+    found = outstanding(difference, np.array([False, True, True, True]))
+    assert found.tolist() == [False, True, False, True]
+    assert not outstanding(difference, np.zeros(4, dtype=bool)).any()
+
+
+def test_totals_that_cancel_out_are_tied_all_the_same() -> None:
+    totals = np.array([0.1, 0.2, -0.3] * 8)
+    assert permuted_loss(totals, totals[:3], generator(0, "a")) > 0.3
+    exact = permuted_loss(np.array([1.0, 2.0, -3.0] * 8), np.array([1.0, 2.0, -3.0]), generator(0, "a"))
+    assert permuted_loss(totals, totals[:3], generator(0, "a")) == exact
+
+
+def test_episodes_too_few_to_tell_anything_detect_no_loss_whatever_its_size() -> None:
+    few = np.array([1.0, 1.0])
+    assert smallest_detectable_loss(few, few, 0.05) == np.inf
+    assert smallest_detectable_loss(few, np.ones(40), 0.05) < np.inf
+
+
+def test_two_episodes_on_either_side_are_compared_without_a_verdict() -> None:
+    found = judged(world(0, 2), world(10, 2))
+    assert found.verdict.result == "no difference"
+    assert found.verdict.detectable_loss == np.inf

@@ -68,7 +68,16 @@ def test_a_repair_just_below_the_margin_is_rarely_accepted() -> None:
 
 @pytest.mark.parametrize(
     ("probability", "degrees", "expected"),
-    [(0.95, 7, 1.8946), (0.975, 10, 2.2281), (0.99, 20, 2.5280), (0.995, 8, 3.3554), (0.95, 1e6, 1.6449)],
+    [
+        (0.995, 1, 63.657),
+        (0.9995, 2, 31.599),
+        (0.9995, 7, 5.4079),
+        (0.95, 7, 1.8946),
+        (0.975, 10, 2.2281),
+        (0.99, 20, 2.5280),
+        (0.995, 8, 3.3554),
+        (0.95, 1e6, 1.6449),
+    ],
 )
 def test_students_quantile_agrees_with_the_tables(
     probability: float, degrees: float, expected: float

@@ -133,3 +133,13 @@ def test_share_and_firing_episodes_count_steps_and_seeds() -> None:
     assert share(guard, OFFLINE, (X, WET)) == 3 / 20
     assert firing_episodes(guard, OFFLINE, (X, WET)) == (2,)
     assert firing_episodes(ALWAYS, OFFLINE, (X, WET)) == (1, 2)
+
+
+def test_a_wider_guard_holds_outside_of_the_range_as_a_whole_or_not_at_all() -> None:
+    outside = world(9, [(x, 0) for x in (-1, 0, 1, 2, 5, 8, 9, 10)])
+    for region in (((1, 0), (2, 0)), ((8, 0),)):
+        guards = candidate_guards(evidence(Region(region), worlds=(outside, outside)))
+        limits = [(c.low, c.high) for guard in guards for c in guard.conjuncts if c.sensor == X]
+        assert limits
+        assert all(low >= 0 or low == -math.inf for low, _ in limits)
+        assert all(high <= 10 or high == math.inf for _, high in limits)
