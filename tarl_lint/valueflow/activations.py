@@ -9,6 +9,7 @@ from tarl_lint.valueflow.allocation import BORN
 from tarl_lint.valueflow.evaluate import Evaluation
 from tarl_lint.valueflow.heap import item_field
 from tarl_lint.valueflow.machine import MAX_CALLS, MAX_FRAMES, MAX_STATEMENTS, Arguments
+from tarl_lint.valueflow.store import Delta
 from tarl_lint.valueflow.values import (
     BOTTOM,
     NONE,
@@ -84,7 +85,7 @@ class Activations(Evaluation):
         result = self.run(frame)
         self.stack.pop()
         self.store.cut(depth)
-        self.merge([d for d, _ in frame.returns] or [{}])
+        self.merge([_lasting(d, frame) for d, _ in frame.returns] or [{}])
         if frame.function.generator:
             collected = self.allocate("sequence", caller, ("generator", call.slot))
             self.add_element(pointer(collected), frame.yielded)
@@ -189,6 +190,13 @@ class Activations(Evaluation):
 
     def instance_made(self, obj: Obj, cls: Obj, frame: Frame) -> None:
         """Tell who runs methods of such objects on their own (threads)."""
+
+
+def _lasting(delta: Delta, frame: Frame) -> Delta:
+    """Return what is left of the changes of an activation when its local variables are gone."""
+    if frame.captured:
+        return delta
+    return {key: value for key, value in delta.items() if key[0] is not frame}
 
 
 def _receiver(value: Value) -> bool:
