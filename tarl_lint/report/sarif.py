@@ -26,8 +26,8 @@ _IMPORTANCE: Final[Mapping[Dependence, str]] = {
 
 
 def report(result: Result, _view: View) -> Iterator[Line]:
-    """Yield the document, indented, in ASCII, so that no terminal or pipe can spoil it."""
-    yield ((json.dumps(document(result), indent=1), ""),)
+    """Yield the document in one line of ASCII: long taint lists make it large, and servers limit its size."""
+    yield ((json.dumps(document(result), separators=(",", ":")), ""),)
 
 
 def document(result: Result) -> dict[str, Any]:
@@ -131,7 +131,6 @@ def _of_flow(flow: Flow) -> dict[str, Any]:
 
 def _step(step: Step) -> dict[str, Any]:
     location = _location(step.span)
-    location["physicalLocation"]["region"]["snippet"] = {"text": step.code}
     location["message"] = {"text": _escaped(f"{step.role} ({step.dependence}): {step.code}")}
     return {
         "location": location,
