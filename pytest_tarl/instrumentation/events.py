@@ -21,9 +21,9 @@ def paired(entries: list[Any]) -> tuple[Ints, Floats, Starts]:
     are dropped.
     """
     if len(entries) % 2 == 0 and set(map(type, entries[1::2])) <= {float}:
-        starts = np.arange(0, len(entries), 2)
-        return np.array(entries[0::2], np.int32), np.array(entries[1::2], np.float64), starts
-    starts = np.array(_whole(entries), np.int64)
+        even: Starts = np.arange(0, len(entries), 2)
+        return np.array(entries[0::2], np.int32), np.array(entries[1::2], np.float64), even
+    starts: Starts = np.array(_whole(entries), np.int64)
     sites = np.array([entries[i] for i in starts], np.int32)
     return sites, np.array([entries[i + 1] for i in starts], np.float64), starts
 
