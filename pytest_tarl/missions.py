@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+import os
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +20,7 @@ from pytest_tarl.recording import Progress, record
 from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repeating import Instruments
-from pytest_tarl.report import json_result, terminal
+from pytest_tarl.report import json_result, terminal, words
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.settings import Designation, Options
 from tarl_lint.api import Analysis, analyse
@@ -78,7 +80,8 @@ class Mission:
                 raise AnalysisError(
                     f"The marker names the node {node!r}, but there is no such file in {self.folder}."
                 )
-        analysis = analyse(paths, root=self.root)
+        with _working_in(self.root):  # the analysis names files as they are seen from the working directory
+            analysis = analyse(paths, root=self.root)
         if analysis.errors:
             first = analysis.errors[0]
             raise AnalysisError(f"{first.path}:{first.line} cannot be analysed: {first.message}")
@@ -133,7 +136,8 @@ class Mission:
             notes = [f"  no report page: {missing}"]
         shown = None if notes else page
         lines = terminal.lines(comparison, width=self.width, root=self.root, page=shown)
-        problem = lines[0] if comparison.verdict.result == "degraded" else ""
+        degraded = comparison.verdict.result == "degraded"
+        problem = f"degraded: {words.verdict_sentence(comparison)}" if degraded else ""
         written = comparison.repair.patch if comparison.repair else ""
         return Account((*lines, *notes), problem, self.root / written if written else None)
 
@@ -153,6 +157,16 @@ class Mission:
         ignore = self.tarl / ".gitignore"
         if not ignore.exists():
             fixtures.write_atomically(ignore, IGNORED.encode())
+
+
+@contextmanager
+def _working_in(folder: Path) -> Iterator[None]:
+    before = Path.cwd()
+    os.chdir(folder)
+    try:
+        yield
+    finally:
+        os.chdir(before)
 
 
 class NoFixtureError(FixtureError):

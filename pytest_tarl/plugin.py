@@ -90,11 +90,17 @@ def pytest_runtest_makereport(
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """Keep what an episode ended with, and show a user's mistake as a sentence."""
     report = yield
-    if call.excinfo is not None and item.get_closest_marker("tarl") is not None:
+    if call.excinfo is not None and (
+        item.get_closest_marker("tarl") is not None or _ours(call.excinfo.value)
+    ):
         from pytest_tarl.repeating import keep_error
 
         keep_error(item, call.excinfo.value, report)
     return report
+
+
+def _ours(error: BaseException) -> bool:
+    return type(error).__module__ == "pytest_tarl.errors"  # told by name: a plain run imports nothing of ours
 
 
 def _asked(config: pytest.Config) -> bool:

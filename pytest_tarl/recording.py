@@ -151,7 +151,7 @@ def _unfinished(recorded: Recorded, designation: Designation) -> str:
     return (
         f"{failed} of {episodes} episodes fail off-line (success {recorded.success:.1%}, min_success "
         f"{designation.min_success:.1%}), so this is not yet the software as designed and no utility was written. "
-        f"The first failure: {recorded.failures[0]}. Mend the node, or lower min_success on the marker."
+        f"The first failure: {recorded.failures[0].rstrip('.')}. Mend the node, or lower min_success on the marker."
     )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import pytest
 
-from pytest_tarl.errors import SettingsError, TarlError
+from pytest_tarl.errors import FixtureError, SettingsError, TarlError
 from pytest_tarl.repeating import INTERRUPTS, ItemRollout, designated, finish
 from pytest_tarl.settings import Options
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 PATCH = "tarl_patch"  # attribute of a report: path of the patch that mends the test
 ACCOUNT = "tarl_account"  # attribute of a report: lines for the summary
+PLAIN_WIDTH = 80  # columns where there is no terminal to ask, as under `-p no:terminal`
 
 
 class TarlSession:
@@ -86,7 +87,9 @@ class TarlSession:
             if account.problem:
                 report.outcome, report.longrepr = "failed", account.problem
         elif call.excinfo is not None and isinstance(call.excinfo.value, TarlError):
-            report.longrepr = f"{item.nodeid}: {call.excinfo.value}"
+            report.longrepr = str(call.excinfo.value)
+        elif call.excinfo is not None and isinstance(call.excinfo.value.__context__, FixtureError):
+            setattr(report, ACCOUNT, [str(call.excinfo.value)])  # skipped: pytest tells why only when asked
         for one in (_phase(item, "setup"), report, finish(item, nextitem)):
             item.ihook.pytest_runtest_logreport(report=one)
         item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
@@ -94,9 +97,9 @@ class TarlSession:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Collect what the tests have to tell, also from xdist's workers."""
-        if hasattr(report, ACCOUNT):
+        if getattr(report, ACCOUNT, None) and getattr(report, ACCOUNT) not in self._accounts:
             self._accounts.append(getattr(report, ACCOUNT))
-            self._patches += [getattr(report, PATCH)] if getattr(report, PATCH) else []
+            self._patches += [getattr(report, PATCH)] if getattr(report, PATCH, None) else []
 
     def pytest_terminal_summary(self, terminalreporter: TerminalReporter) -> None:
         """Tell it in one section."""
@@ -108,7 +111,7 @@ class TarlSession:
 
     def pytest_unconfigure(self) -> None:
         """Let the last lines of the output be the commands that apply what was found."""
-        if not self._patches:
+        if not self._patches or not self._has_terminal():
             return
         from pytest_tarl.patching.patch import apply_command
 
@@ -145,7 +148,10 @@ class TarlSession:
             pytest.skip(str(missing))
 
     def _width(self) -> int:
-        return self.config.get_terminal_writer().fullwidth
+        return self.config.get_terminal_writer().fullwidth if self._has_terminal() else PLAIN_WIDTH
+
+    def _has_terminal(self) -> bool:
+        return self.config.pluginmanager.has_plugin("terminalreporter")
 
     def _progress(self, item: pytest.Function) -> Progress:
         reporter = self.config.pluginmanager.get_plugin("terminalreporter")

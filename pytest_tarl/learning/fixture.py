@@ -74,8 +74,11 @@ def load(path: Path) -> Fixture:
         found = header["format"]
     except FileNotFoundError:
         raise FixtureError(f"There is no utility fixture {path}. {advice}") from None
+    except OSError as problem:
+        raise FixtureError(
+            f"The utility fixture {path} cannot be read: {problem.strerror}. {advice}"
+        ) from problem
     except (
-        OSError,
         ValueError,
         LookupError,
         EOFError,
@@ -85,7 +88,8 @@ def load(path: Path) -> Fixture:
         BadZipFile,
     ) as problem:
         raise FixtureError(
-            f"The utility fixture {path} is damaged or is not one ({problem}). {advice}"
+            f"The utility fixture {path} is damaged or is not one. Restore it from version control, or "
+            "record it again with `pytest --tarl-record`."
         ) from problem
     if found != FORMAT_VERSION:
         raise FixtureError(
@@ -100,9 +104,14 @@ def load(path: Path) -> Fixture:
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write to a temporary file beside `path` and rename it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    """Write to a temporary file beside `path` and rename it. Raises FixtureError where that is not allowed."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    except OSError as problem:
+        raise FixtureError(
+            f"{path} cannot be written ({problem.strerror}): give yourself the right to write there, or run in a copy."
+        ) from problem
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(content)

@@ -1,0 +1,71 @@
+"""What a newcomer runs into: the wrong folder, no right to write, no terminal, no marker, nothing recorded yet."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
+
+
+@pytest.mark.parametrize("start", ["inside", "above"])
+def test_the_folder_that_pytest_is_started_in_changes_nothing(
+    tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, start: str
+) -> None:
+    tank.runpytest(*RECORD)
+    here = fixture_file(tank).read_bytes()
+    (tank.path / "launch").mkdir()
+    monkeypatch.chdir(tank.path.parent if start == "above" else tank.path / "launch")
+    test = tank.path / "test_tank.py"
+    tank.runpytest(*RECORD, test).assert_outcomes(passed=1, deselected=1)
+    assert fixture_file(tank).read_bytes() == here
+    told = tank.runpytest(*ONLINE, "--tarl-repair", test)
+    told.stdout.fnmatch_lines(["*slices*keeper.py*", "*repair*accepted*"])
+
+
+def test_what_was_not_recorded_yet_is_told_without_asking(tank: pytest.Pytester) -> None:
+    told = tank.runpytest(*ONLINE, "-q")
+    told.assert_outcomes(skipped=1, deselected=1)
+    told.stdout.fnmatch_lines(["*run `pytest test_tank.py::test_fills --tarl-record` first*"])
+
+
+def test_a_folder_that_cannot_be_written_to_is_named_before_any_episode(tank: pytest.Pytester) -> None:
+    (tank.path / ".tarl").write_text("a file where the folder should be")
+    told = tank.runpytest(*RECORD)
+    told.assert_outcomes(failed=1, deselected=1)
+    told.stdout.fnmatch_lines(["*.tarl*cannot be written*"])
+    told.stdout.no_fnmatch_line("*mkdir*")
+
+
+def test_without_a_terminal_everything_runs(tank: pytest.Pytester) -> None:
+    assert tank.runpytest(*RECORD, "-p", "no:terminal").ret == pytest.ExitCode.OK
+    ended = tank.runpytest(*ONLINE, "--tarl-repair", "-p", "no:terminal")
+    assert ended.ret == pytest.ExitCode.TESTS_FAILED
+    assert list((tank.path / ".tarl" / "patches").glob("*.patch"))
+
+
+def test_a_missing_marker_is_a_sentence_without_traceback(tank: pytest.Pytester) -> None:
+    tank.makepyfile(test_bare="def test_bare(tarl):\n    pass\n")
+    told = tank.runpytest("test_bare.py")
+    told.assert_outcomes(errors=1)
+    told.stdout.fnmatch_lines(["test_bare.py::test_bare uses the fixture `tarl` without the marker*"])
+    told.stdout.no_fnmatch_line("*repeating.py*")
+
+
+def test_a_verdict_is_the_reason_of_the_failure(tank: pytest.Pytester) -> None:
+    tank.runpytest(*RECORD)
+    tank.runpytest(*ONLINE).stdout.fnmatch_lines(
+        ["degraded: In the drift scenario 'clogged' an episode earns *"]
+    )
+
+
+def test_a_fixture_of_another_kind_is_named_without_advice_to_trust_it(tank: pytest.Pytester) -> None:
+    tank.runpytest(*RECORD)
+    fixture_file(tank).write_text("x")
+    told = tank.runpytest(*ONLINE)
+    told.stdout.fnmatch_lines(["*is damaged or is not one*--tarl-record*"])
+    told.stdout.no_fnmatch_line("*pickle*")
+
+
+def test_a_failure_that_ends_in_a_full_stop_keeps_one(tank: pytest.Pytester) -> None:
+    changed(tank, "keeper", "flow = GAIN * missing", "flow = GAIN / 0 * missing")
+    tank.runpytest(*RECORD).stdout.fnmatch_lines(["*ZeroDivisionError*keeper.py, line*[!.]. Mend the node*"])
