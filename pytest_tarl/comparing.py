@@ -56,14 +56,11 @@ def run_online(
         generator=seeds.generator(options.seed, "compare"),
     )
     offline, online = aligned(fixture.sample, recorded.sample)
-    scales = mean_flows(fixture.sample)
-    learned = sarsa_tables(recorded, scales)
-    tables = [
-        (batch(before, len(offline.cells), scale), batch(after, len(offline.cells), scale))
-        for before, after, scale in zip(offline.lists, online.lists, scales, strict=True)
-    ]
+    learned = sarsa_tables(recorded, mean_flows(fixture.sample))
     if options.utility == "sarsa":
         tables = _learned_tables(fixture, recorded, learned, offline.cells)
+    else:
+        tables = _solved_tables(offline, online)
     near_half = _paper_cells(tables, offline.cells)
     chosen = _rows(difference.region, near_half, offline.cells)
     lists = tuple(
@@ -137,6 +134,15 @@ def _current(fixture: Fixture, plan: Plan) -> list[TaintList]:
     return [
         TaintList(one.source, one.sink, tuple(places.get(site.id, site) for site in one.sites))
         for one in fixture.lists
+    ]
+
+
+def _solved_tables(offline: Sample, online: Sample) -> list[tuple[Floats, Floats]]:
+    """Return the batch solution off-line and on-line per list, shape (cells, sites); both samples share their cells."""
+    cells = len(offline.cells)
+    return [
+        (batch(before, cells, scale), batch(after, cells, scale))
+        for before, after, scale in zip(offline.lists, online.lists, mean_flows(offline), strict=True)
     ]
 
 
