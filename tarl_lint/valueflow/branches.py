@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.ros import Ros
 from tarl_lint.valueflow.store import Delta
+from tarl_lint.valueflow.taking import Taking
 from tarl_lint.valueflow.values import (
     BOTTOM,
     UNKNOWN,
@@ -15,7 +15,7 @@ from tarl_lint.valueflow.values import (
 MAX_PASSES = 12  # over a loop's body; a safety net, since the values that can arise are finite
 
 
-class Branches(Ros):
+class Branches(Taking):
     """Executes what has statements inside."""
 
     def decide(self, test: ir.Expr, s: ir.Stmt, frame: Frame) -> bool | None:
@@ -81,7 +81,7 @@ class Branches(Ros):
             return way is not False, way is not True and not s.endless
         node = self.condition(frame, s)
         self._length(source, node)
-        element = self.elements(source)
+        element = self.iterated(source, s.source, frame)
         self.bind_target(s.target, element, frame, "element", s.source)
         return True, True
 

@@ -73,15 +73,8 @@ class Execution(Branches):
     ) -> None:
         """Take a value apart."""
         starred = next((n for n, t in enumerate(target.items) if isinstance(t, ir.Starred)), None)
-        for number, item in enumerate(target.items):
-            if starred is not None and number >= starred:
-                part = self.elements(value)
-                if number == starred:
-                    rest = self.allocate("sequence", frame, ("rest", slot))
-                    self.add_element(pointer(rest), part)
-                    part = pointer(rest)
-            else:
-                part = self.read_item(value, const(number))
+        parts = self.parts(value, len(target.items), starred, frame, slot)
+        for number, (item, part) in enumerate(zip(target.items, parts, strict=True)):
             expr = source
             if isinstance(source, ir.SequenceDisplay) and number < len(source.items) and starred is None:
                 expr = source.items[number]
@@ -158,7 +151,9 @@ class Execution(Branches):
 
     def _raised(self, s: ir.Raise, frame: Frame) -> bool:
         if s.value is not None:
-            self.evaluate(s.value, frame)
+            raised = self.evaluate(s.value, frame)
+            for cls in sorted((o for o in raised.pts if o.kind == "class"), key=lambda o: str(o.key)):
+                self.instantiate(cls, ([], {}), frame, ir.Call(s.value, (), (), s.pos, -1))
         if frame.tries:
             depth, states = frame.tries[-1]
             states.append(self.store.since(depth))

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.lower_expr import OPERATORS, Expressions, position
+from tarl_lint.valueflow.patterns import captures
 from tarl_lint.valueflow.scopes import Scope, collect
 
 
@@ -190,7 +191,10 @@ class Lowering(Expressions):
         subject = self.expr(node.subject, scope)
         orelse: list[ir.Stmt] = []
         for case in reversed(node.cases):
-            body = self.captures(case, subject, scope) + self.block(case.body, scope)
+            bound = self.captures(case, subject, scope)
+            body = self.block(case.body, scope)
+            if case.guard is None:
+                bound, body = [], bound + body
             tests = [
                 n for n in ast.walk(case.pattern) if isinstance(n, ast.expr) and not isinstance(n, ast.Name)
             ]
@@ -203,19 +207,16 @@ class Lowering(Expressions):
                 *([self.expr(case.guard, scope)] if case.guard else []),
             ]
             where = position(node) if case is node.cases[0] else _case_position(case)
-            orelse = [ir.If(scope.next(), where, ir.Operation("", parts, where), body, orelse)]
+            orelse = [*bound, ir.If(scope.next(), where, ir.Operation("", parts, where), body, orelse)]
         return orelse
 
     def captures(self, case: ast.match_case, subject: ir.Expr, scope: Scope) -> list[ir.Stmt]:
         """Return assignments of the names that a pattern binds."""
         where = _case_position(case)
-        names = [
-            n.name for n in ast.walk(case.pattern) if isinstance(n, (ast.MatchAs, ast.MatchStar)) and n.name
+        return [
+            ir.Assign(scope.next(), where, [ir.Name(*scope.resolve(name), where)], part)
+            for name, part in captures(case.pattern, subject, where, lambda node: self.expr(node, scope))
         ]
-        targets: list[ir.Expr] = [ir.Name(*scope.resolve(n), where) for n in names]
-        return (
-            [ir.Assign(scope.next(), where, targets, ir.Operation("", [subject], where))] if targets else []
-        )
 
 
 def _irrefutable(case: ast.match_case) -> bool:

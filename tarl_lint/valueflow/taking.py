@@ -1,0 +1,62 @@
+"""Taking values apart: unpacking with a star, iterating over objects of ours."""
+
+from __future__ import annotations
+
+from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.activations import CALLABLE
+from tarl_lint.valueflow.heap import item_field
+from tarl_lint.valueflow.ros import Ros
+from tarl_lint.valueflow.values import BOTTOM, Frame, Obj, Value, const, join, pointer
+
+ITERATED = -2  # slots of the calls that a loop makes
+NEXT = -3
+
+
+class Taking(Ros):
+    """Gives the parts of values."""
+
+    def parts(self, value: Value, count: int, starred: int | None, frame: Frame, slot: str) -> list[Value]:
+        """Return what each of several targets gets; the starred one gets a sequence."""
+        if starred is None:
+            return [self.read_item(value, const(n)) for n in range(count)]
+        rest = self.allocate("sequence", frame, ("rest", slot))
+        known = self.unpacked(value)
+        after = count - starred - 1
+        if known is None or len(known) < count - 1:
+            element = self.elements(value)
+            self.add_element(pointer(rest), element)
+            first = [self.read_item(value, const(n)) for n in range(starred)]
+            return [*first, pointer(rest), *([element] * after)]
+        end = len(known) - after
+        for number, part in enumerate(known[starred:end]):
+            self.store.put((rest, item_field(number)), part)
+        return [*known[:starred], pointer(rest), *known[end:]]
+
+    def iterated(self, source: Value, expr: ir.Expr, frame: Frame) -> Value:
+        """Return what a loop over a value gives; objects of ours are asked for it."""
+        ours = {o: m for o in source.pts if o.kind == "instance" and (m := self._iterator(o)) is not BOTTOM}
+        if not ours:
+            return self.elements(source)
+        rest = source.pts - frozenset(ours)
+        result = self.elements(Value(source.deps, rest)) if rest or source.deps else BOTTOM
+        for obj, method in sorted(ours.items(), key=lambda item: str(item[0].key)):
+            made = self.call_value(method, ([], {}), frame, ir.Call(expr, (), (), expr.pos, ITERATED))
+            for iterator in sorted(made.pts, key=lambda o: str(o.key)):
+                following = self._method(iterator, "__next__") if iterator.kind == "instance" else BOTTOM
+                if following is BOTTOM:
+                    result = join(result, self.elements(Value(made.deps, frozenset([iterator]))))
+                else:
+                    call = ir.Call(expr, (), (), expr.pos, NEXT)
+                    result = join(result, self.call_value(following, ([], {}), frame, call))
+            if not made.pts:
+                result = join(result, Value(self.deep(frozenset([obj]))))
+        return result
+
+    def _iterator(self, obj: Obj) -> Value:
+        return self._method(obj, "__iter__")
+
+    def _method(self, obj: Obj, name: str) -> Value:
+        """Return a method of ours, BOTTOM where there is none."""
+        member = self.read_field(obj, name)
+        callables = frozenset(o for o in member.pts if o.kind in CALLABLE)
+        return Value(member.deps, callables) if callables else BOTTOM
