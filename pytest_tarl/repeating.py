@@ -6,10 +6,13 @@ logged and that only the item's own fixtures are torn down: wider-scoped ones li
 
 from __future__ import annotations
 
+import signal
+import threading
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -131,10 +134,34 @@ class ItemRollout:
         self.item._report_sections.clear()  # else the output of all episodes would be kept, and shown
         try:
             # An item's parent keeps all that is wider than the item itself; pytest asks it for no more than that.
-            reports = runtestprotocol(self.item, log=False, nextitem=self.item.parent)  # type: ignore[arg-type]
+            with _heeding_interrupts():
+                reports = runtestprotocol(self.item, log=False, nextitem=self.item.parent)  # type: ignore[arg-type]
         finally:
             del self.item.stash[EPISODE]
         return _outcome(episode, reports)
+
+
+@contextmanager
+def _heeding_interrupts() -> Iterator[None]:
+    """End the run on Ctrl-C even where a node catches it, as the main part of many does."""
+    before = signal.getsignal(signal.SIGINT)
+    if not callable(before) or threading.current_thread() is not threading.main_thread():
+        yield  # who ignores it, as a job in the background does, goes on doing so
+        return
+    seen = []
+    passed_on = before
+
+    def interrupted(number: int, frame: FrameType | None) -> None:
+        seen.append(number)
+        passed_on(number, frame)
+
+    signal.signal(signal.SIGINT, interrupted)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if seen:
+        raise KeyboardInterrupt
 
 
 def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestReport:

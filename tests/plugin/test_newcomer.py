@@ -69,3 +69,29 @@ def test_a_fixture_of_another_kind_is_named_without_advice_to_trust_it(tank: pyt
 def test_a_failure_that_ends_in_a_full_stop_keeps_one(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "flow = GAIN * missing", "flow = GAIN / 0 * missing")
     tank.runpytest(*RECORD).stdout.fnmatch_lines(["*ZeroDivisionError*keeper.py, line*[!.]. Mend the node*"])
+
+
+def test_an_interrupt_that_the_node_catches_ends_the_run_and_leaves_the_old_fixture(
+    tank: pytest.Pytester,
+) -> None:
+    tank.runpytest(*RECORD)
+    before = fixture_file(tank).read_bytes()
+    changed(
+        tank, "keeper", "    main()", "    try:\n        main()\n    except KeyboardInterrupt:\n        pass"
+    )
+    changed(
+        tank,
+        "keeper",
+        "flow = GAIN * missing",
+        "flow = GAIN * missing\n            signal.raise_signal(signal.SIGINT)",
+    )
+    changed(tank, "keeper", "import rospy", "import signal\nimport rospy")
+    ended = tank.runpytest_subprocess(*RECORD)  # in this process it would end this very run
+    assert ended.ret == pytest.ExitCode.INTERRUPTED
+    assert fixture_file(tank).read_bytes() == before
+
+
+def test_a_node_that_the_test_does_not_drive_is_told(tank: pytest.Pytester) -> None:
+    tank.makepyfile(idle=(tank.path / "keeper.py").read_text())
+    changed(tank, "test_tank", 'nodes=["keeper.py"]', 'nodes=["idle.py"]')
+    tank.runpytest(*RECORD).stdout.fnmatch_lines(["*no step of /level → /valve was executed*"])
