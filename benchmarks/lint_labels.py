@@ -3,7 +3,8 @@
 CHECKOUT holds the repositories, each in a directory named owner/name, owner__name, owner+name or name.
 A flow is matched by the lines of its subscription and publish calls. Printed per node and in total: flows found,
 of the other kind, missing and surplus; lines of labelled paths found; data steps that are among the labelled or
-optional lines; reports at publish calls without a flow. Python 2 files are left out.
+optional lines; reports at publish calls without a flow. Python 2 files are left out, and so are flows from or to services,
+actions and transforms, about which the labels say nothing.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from tarl_lint.api import Analysis, analyse
+from tarl_lint.catalog import on_topic
 from tarl_lint.model import Flow
 
 Pair = tuple[int, int]  # first lines of the subscription call and of the publish call
@@ -45,7 +47,8 @@ def score(node: Mapping[str, Any], flows: Sequence[Flow]) -> Score:
     """Compare the flows found in one file with its labels."""
     result = Score()
     wanted = {(f["source_line"], f["sink_line"]): f for f in node["flows"]}
-    found = {(f.source.span.line, f.sink.span.line): f for f in flows}
+    labelled = [f for f in flows if on_topic(f.source.api) and on_topic(f.sink.api)]
+    found = {(f.source.span.line, f.sink.span.line): f for f in labelled}
     for pair, label in wanted.items():
         result.counts[label["kind"]] += 1
         _compare(result, pair, label, found.get(pair))

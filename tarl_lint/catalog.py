@@ -28,6 +28,9 @@ ROSPY_PUBLISHER = Fact("publisher", "rospy.Publisher", (0, "name"), (1, "data_cl
 ROSPY_WAIT = Fact("receive", "rospy.wait_for_message", (0, "topic"), (1, "topic_type"))
 RCLPY_WAIT = Fact("receive", "rclpy.wait_for_message.wait_for_message", (2, "topic"), (0, "msg_type"))
 
+SIMPLE_ACTION = Fact("action", "actionlib.SimpleActionServer", (0, "name"), (1, "ActionSpec"))
+RCLPY_ACTION = Fact("action", "rclpy.action.ActionServer", (2, "action_name"), (1, "action_type"))
+
 FUNCTIONS: Final[Mapping[str, Fact]] = {
     "rospy.Subscriber": ROSPY_SUBSCRIBER,
     "rospy.topics.Subscriber": ROSPY_SUBSCRIBER,
@@ -39,23 +42,11 @@ FUNCTIONS: Final[Mapping[str, Fact]] = {
     "rospy.Timer": Fact("timer", "rospy.Timer", callback=(1, "callback")),
     "rospy.on_shutdown": Fact("call later", "rospy.on_shutdown", callback=(0, "h")),
     "rospy.Service": Fact("service", "rospy.Service", (0, "name"), (1, "service_class"), (2, "handler")),
-    "actionlib.SimpleActionServer": Fact(
-        "service", "actionlib.SimpleActionServer", (0, "name"), (1, "ActionSpec"), (2, "execute_cb")
-    ),
-    "rclpy.action.ActionServer": Fact(
-        "service",
-        "rclpy.action.ActionServer",
-        (2, "action_name"),
-        (1, "action_type"),
-        (3, "execute_callback"),
-    ),
-    "rclpy.action.server.ActionServer": Fact(
-        "service",
-        "rclpy.action.ActionServer",
-        (2, "action_name"),
-        (1, "action_type"),
-        (3, "execute_callback"),
-    ),
+    "actionlib.SimpleActionServer": SIMPLE_ACTION,
+    "actionlib.simple_action_server.SimpleActionServer": SIMPLE_ACTION,
+    "actionlib.ActionServer": Fact("action", "actionlib.ActionServer", (0, "ns"), (1, "ActionSpec")),
+    "rclpy.action.ActionServer": RCLPY_ACTION,
+    "rclpy.action.server.ActionServer": RCLPY_ACTION,
     "message_filters.Subscriber": Fact(
         "filter", "message_filters.Subscriber", (0, "topic"), (1, "data_class")
     ),
@@ -72,6 +63,11 @@ FUNCTIONS: Final[Mapping[str, Fact]] = {
     "copy.deepcopy": Fact("copy", "copy.deepcopy"),
     "rospy.get_param": Fact("parameter", "rospy.get_param", (0, "param_name"), extra=(1, "default")),
 }
+
+LOOKUPS: Final = frozenset(
+    ["lookup_transform", "lookup_transform_full", "lookup_transform_async", "lookup_transform_full_async",
+     "lookup_transform_core", "lookupTransform", "lookupTransformFull", "lookupTwist"]
+)  # fmt: skip
 
 METHODS: Final[Mapping[str, Fact]] = {
     "create_subscription": Fact(
@@ -91,8 +87,32 @@ METHODS: Final[Mapping[str, Fact]] = {
     ),
     "declare_parameter": Fact("declare", "rclpy.declare_parameter", (0, "name"), extra=(1, "value")),
     "get_parameter": Fact("parameter object", "rclpy.get_parameter", (0, "name")),
+    **{name: Fact("transform", f"tf2.{name}") for name in sorted(LOOKUPS)},
     "registerCallback": Fact("register", "message_filters", callback=(0, "cb")),
 }
+
+OTHER_KINDS: Final = ("rospy.Service", "rclpy.create_service", "actionlib.", "rclpy.action.", "tf2.")
+
+FILLS_RESPONSE: Final = frozenset(["rclpy.create_service"])  # their handlers get a response to fill
+
+# Callbacks of action servers: "goal" gets the goal, the others a handle of it; what "execute" returns is the result.
+ACTION_CALLBACKS: Final[Mapping[str, Mapping[str, tuple[int, str]]]] = {
+    "actionlib.SimpleActionServer": {"goal": (2, "execute_cb")},
+    "actionlib.ActionServer": {"accepted": (2, "goal_cb"), "cancel": (3, "cancel_cb")},
+    "rclpy.action.ActionServer": {
+        "execute": (3, "execute_callback"),
+        "goal": (-1, "goal_callback"),
+        "accepted": (-1, "handle_accepted_callback"),
+        "cancel": (-1, "cancel_callback"),
+    },
+}
+GOAL_FIELD: Final = "request"
+GOAL_READERS: Final = frozenset(["accept_new_goal", "get_goal"])
+GOAL_REGISTERS: Final = frozenset(["register_goal_callback", "register_preempt_callback"])
+ACTION_SENDERS: Final = frozenset(
+    ["publish_feedback", "publish_result", "set_succeeded", "set_aborted", "set_preempted", "set_canceled",
+     "set_rejected", "succeed", "abort", "canceled"]
+)  # fmt: skip
 
 FILTER_WITH_NODE: Final = Fact("filter", "message_filters.Subscriber", (2, "topic"), (1, "msg_type"))
 
@@ -104,6 +124,9 @@ SOURCE_WORDS: Final = (
     "Subscriber",
     "create_subscription",
     "wait_for_message",
+    "Service(",
+    "create_service",
+    "ActionServer",
 )  # a file without them has no source
 SINK_WORDS: Final = ("publish", "Publisher")
 
@@ -174,6 +197,11 @@ NODE_BASES: Final = frozenset(
 LOGGING: Final = frozenset(
     ["debug", "info", "warn", "warning", "error", "fatal", "critical", "get_logger", "exception", "log"]
 )
+
+
+def on_topic(api: str) -> bool:
+    """Tell whether a source or sink is one of topics, not of services, actions or transforms."""
+    return not api.startswith(OTHER_KINDS)
 
 
 def fact(qualified: str) -> Fact | None:

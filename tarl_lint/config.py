@@ -51,6 +51,7 @@ class Config:
     `per_file_ignores` holds such patterns with the codes that are not wanted in the files they match.
     `sources`, `sinks` and `sanitizers` are qualified names (`robot.bus.listen`); what a sanitizer returns is clean.
     `wrappers` are functions that subscribe, publish or wait as one of ROS does.
+    With `tf2`, what is looked up in the tree of transforms is a source too.
     `origins` names where each value comes from: "default", "command line" or the settings file.
     """
 
@@ -64,6 +65,7 @@ class Config:
     sinks: tuple[str, ...] = ()
     sanitizers: tuple[str, ...] = ()
     wrappers: tuple[Wrapper, ...] = ()
+    tf2: bool = False
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] = ()
     file: Path | None = None
     origins: tuple[tuple[str, str], ...] = ()

@@ -21,6 +21,7 @@ def _words(config: Config) -> tuple[list[str], list[str]]:
     """Return words without which a module neither subscribes nor publishes. A wrapper may do either."""
     wrappers = [w.name.rpartition(".")[2] for w in config.wrappers]
     sources = [*catalog.SOURCE_WORDS, *wrappers, *(s.rpartition(".")[2] for s in config.sources)]
+    sources += sorted(catalog.LOOKUPS) if config.tf2 else []
     sinks = [*catalog.SINK_WORDS, *wrappers, *(s.rpartition(".")[2] for s in config.sinks)]
     return sources, sinks
 

@@ -13,6 +13,7 @@ import re
 from collections.abc import Iterator
 from typing import Final
 
+from tarl_lint.catalog import on_topic
 from tarl_lint.evidence import Evidence
 from tarl_lint.model import Finding, Sink, Source, Span
 from tarl_lint.rules.wording import end
@@ -153,7 +154,11 @@ def _add(
 
 def _hazardous(source: Source, sink: Sink) -> bool:
     """Tell whether a sensor's numbers would act on a robot here."""
+    if not (on_topic(source.api) and on_topic(sink.api)):
+        return False
     topic = ", ".join(sink.topics)
+    if "ubscri" not in source.api and "wait_for_message" not in source.api:
+        return False
     if any(NO_SENSOR.match(t) for t in (source.type or "").split(" | ")) or NO_COMMAND.search(topic):
         return False
     if any(ASKED_FOR.search(t) for t in source.topics):

@@ -93,7 +93,7 @@ ACTIONS: Final = (
 def findings(evidence: Evidence) -> Iterator[Finding]:
     """Yield a hazard for each subscription whose callbacks do nothing that matters."""
     for record in evidence.machine.sources.values():
-        functions = _callbacks(evidence, record)
+        functions = _callbacks(evidence, record) if record.kind == "topic" else []
         if not functions or any(_meant(f) for f, _ in functions):
             continue
         kept = [_kept(function, path, evidence) for function, path in functions]
@@ -108,8 +108,10 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _callbacks(evidence: Evidence, record: SourceRecord) -> list[tuple[Function, str]]:
-    """Return the callbacks with their files; none when one of them is not known."""
+    """Return a subscription's callbacks with their files; none when one of them is not known."""
     found: list[tuple[Function, str]] = []
+    if "ubscri" not in record.api:
+        return found  # a service's request need not be looked at
     for node in sorted(record.nodes):
         place = evidence.machine.graph.places[node]
         if place.statement is not None or place.frame is record.frame:

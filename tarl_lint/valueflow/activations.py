@@ -63,6 +63,7 @@ class Activations(Evaluation):
             frame.base = self.branches(caller, caller.statement)
             frame.call_pos = call.pos
             frame.owner = owner or cls
+            frame.answer = caller.answer if caller.statement is None and caller.caller is None else None
         return frame
 
     def invoke(

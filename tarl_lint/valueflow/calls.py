@@ -83,7 +83,9 @@ class Calls(Activations):
     ) -> Value:
         if obj.kind == "ext":
             return self.call_library(f"{obj.name}.{name}", arguments, frame, expr)
-        callables = frozenset(o for o in member.pts if o.kind in CALLABLE)
+        callables = frozenset(
+            o for o in member.pts if o.kind in CALLABLE and not (o.kind == "method" and o.info[0] is obj)
+        )
         if callables:
             return self.call_value(Value(member.deps, callables), arguments, frame, expr)
         return self.call_method(Value(base.deps, frozenset([obj])), obj, name, arguments, frame, expr)

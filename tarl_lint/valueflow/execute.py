@@ -8,6 +8,7 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.branches import Branches
 from tarl_lint.valueflow.control import control_dependence
 from tarl_lint.valueflow.lower import lower_body
+from tarl_lint.valueflow.machine import Invocation, Publisher
 from tarl_lint.valueflow.values import (
     BOTTOM,
     UNKNOWN,
@@ -142,6 +143,8 @@ class Execution(Branches):
             node = self.node(frame, ("return",), "return")
             self.mark(node, s.value, value, frame)
             value = self.carry(value, node)
+            if isinstance(frame.answer, Publisher):
+                self.send(Invocation("response", BOTTOM, ([value], {}), frame, _answer(s)), frame.answer)
         frame.returns.append((self.store.since(self.base_layer(frame)), value))
         return False
 
@@ -247,6 +250,11 @@ class Execution(Branches):
     def imported(self, module: str, member: str | None, importer: object) -> Value:
         """Return what an import binds: a module of ours, a name in one, or something of a library."""
         raise NotImplementedError
+
+
+def _answer(s: ir.Return) -> ir.Call:
+    """Return the call that ROS makes of what a handler returns."""
+    return ir.Call(ir.Const(None, s.pos), (), (), s.pos, 0)
 
 
 EXECUTE: Mapping[type, Callable[..., bool]] = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.allocation import MAX_NESTING, Allocation
 from tarl_lint.valueflow.values import (
     BOTTOM,
@@ -20,6 +21,15 @@ from tarl_lint.valueflow.values import (
 ANY = "*"  # the field that stands for all elements
 KEYS = "<keys>"  # of a mapping: what its keys are made of
 LENGTH = "<length>"  # of a container: what its length is made of
+METHODS_OF = {
+    "publisher": frozenset(["publish"]),
+    "sequence": frozenset(
+        ["append", "appendleft", "extend", "insert", "add", "put", "pop", "popleft", "get"]
+    ),
+    "mapping": frozenset(["update", "get", "pop", "setdefault", "__getitem__"]),
+    "goal": frozenset(["publish_feedback"]),
+    "server": frozenset(["publish_feedback", "set_succeeded", "set_aborted"]),
+}
 HOLLOW = frozenset(
     ["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super"]
 )
@@ -51,6 +61,8 @@ class Heap(Allocation):
         """Return what a field of one object may be."""
         stored = self.store.get((obj, name))
         if stored is not None:
+            if obj.kind == "class":
+                return self.bind_class(stored, obj)
             if obj.root().kind == "message" and not self.written_here(obj, name):
                 return join(stored, pointer(obj.sub(name)))  # each message brings its own
             return stored
@@ -63,7 +75,7 @@ class Heap(Allocation):
     def default(self, obj: Obj, name: str) -> Value:
         """Return what a field is to which nothing was stored."""
         kind = obj.kind
-        if kind in ("message", "lib"):
+        if kind in ("message", "lib", "goal"):
             content = self.content(obj)
             if content.pts and name.startswith("["):
                 return content
@@ -74,6 +86,8 @@ class Heap(Allocation):
             return self._inherited(obj, obj.info, name)
         if kind == "class":
             return self._class_field(obj, name)
+        if name in METHODS_OF.get(kind, ()):
+            return self.held_method(obj, name)
         if kind == "ext":
             return pointer(self.intern("ext", f"{obj.name}.{name}", f"{obj.name}.{name}"))
         if kind == "module":
@@ -97,19 +111,38 @@ class Heap(Allocation):
             return value
         bound = []
         for target in value.pts:
-            if target.kind != "closure":
+            way = _binding(target)
+            if way == "staticmethod":
                 bound.append(target)
                 continue
-            method = self.intern("bound", (target.key, receiver), target.name)
-            method.info = (target, receiver, owner)
-            bound.append(method)
+            to = receiver.info if way == "classmethod" and isinstance(receiver.info, Obj) else receiver
+            bound.append(self.method(target, to, owner))
         return Value(value.deps, frozenset(bound), value.consts)
+
+    def bind_class(self, value: Value, cls: Obj) -> Value:
+        """Return a class's attribute with its class methods bound to it."""
+        if not any(_binding(o) == "classmethod" for o in value.pts):
+            return value
+        bound = [self.method(o, cls, cls) if _binding(o) == "classmethod" else o for o in value.pts]
+        return Value(value.deps, frozenset(bound), value.consts)
+
+    def held_method(self, owner: Obj, name: str) -> Value:
+        """Return a method of an object that is not of a class of ours, to be called later."""
+        method = self.intern("method", (owner, name), name)
+        method.info = (owner, name)
+        return pointer(method)
+
+    def method(self, closure: Obj, receiver: Obj, owner: Obj) -> Obj:
+        """Return a function bound to a receiver."""
+        method = self.intern("bound", (closure.key, receiver), closure.name)
+        method.info = (closure, receiver, owner)
+        return method
 
     def _class_field(self, cls: Obj, name: str) -> Value:
         for owner in lineage(cls)[1:]:
             value = self.store.get((owner, name))
             if value is not None:
-                return value
+                return self.bind_class(value, cls)
         return BOTTOM
 
     def _opened(self, module: Obj, name: str) -> Value:
@@ -256,3 +289,14 @@ class Heap(Allocation):
             self.add_element(base, value)
             return
         self.write_field(base, item_field(next(iter(index.consts))), value)
+
+
+def _binding(obj: Obj) -> str:
+    """Return how what is found in a class is bound: not at all, to the class, else to the instance."""
+    if obj.kind != "closure":
+        return "staticmethod"
+    function = obj.info[0] if isinstance(obj.info, tuple) else None
+    for decorator in function.decorators if isinstance(function, ir.Function) else ():
+        if isinstance(decorator, ir.Name) and decorator.name in ("staticmethod", "classmethod"):
+            return decorator.name
+    return "method"

@@ -118,6 +118,8 @@ class Library(Futures):
         kind = target.kind if target is not None else ""
         if target is not None and isinstance(target.info, Publisher) and name == "publish":
             return self.send(Invocation(name, base, arguments, frame, call), target.info)
+        if target is not None and kind in ("server", "goal"):
+            return self.serve(target, Invocation(name, base, arguments, frame, call))
         if name == "registerCallback" and kind in ("filter", "synchronizer"):
             return self.register_filter(target, Invocation(name, base, arguments, frame, call))
         if kind == "parameter":
@@ -138,6 +140,10 @@ class Library(Futures):
 
     def send(self, it: Invocation, info: Publisher) -> Value:
         """Record a sink."""
+        raise NotImplementedError
+
+    def serve(self, target: Obj, it: Invocation) -> Value:
+        """Call a method of an action server or of a goal's handle."""
         raise NotImplementedError
 
     def register_filter(self, target: Obj | None, it: Invocation) -> Value:

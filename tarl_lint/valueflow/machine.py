@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 from tarl_lint.catalog import NO_FACT, Fact
 from tarl_lint.config import Config
@@ -15,6 +16,8 @@ from tarl_lint.valueflow.graph import Graph, Place
 from tarl_lint.valueflow.lower import lower_body
 from tarl_lint.valueflow.store import Root, Shared, Store
 from tarl_lint.valueflow.values import BOTTOM, NONE, Branches, Frame, Nodes, Obj, Value
+
+Kind = Literal["topic", "service", "action", "transform"]
 
 MAX_CALLS = 24  # nested calls that are told apart; deeper ones are taken for library calls
 MAX_FRAMES = 20_000  # activations in all
@@ -39,6 +42,7 @@ class SourceRecord:
     registered: set[tuple[str, ir.Pos]] = field(default_factory=set)
     via: set[tuple[str, ir.Pos]] = field(default_factory=set)
     messages: dict[Hashable, Obj] = field(default_factory=dict)
+    kind: Kind = "topic"
 
 
 @dataclass(slots=True, eq=False)
@@ -54,6 +58,7 @@ class SinkRecord:
     types: set[str] = field(default_factory=set)
     nodes: set[int] = field(default_factory=set)
     publishers: set[tuple[str, ir.Pos]] = field(default_factory=set)  # where they are made
+    kind: Kind = "topic"
 
 
 @dataclass(slots=True, eq=False)
@@ -66,6 +71,8 @@ class Publisher:
     path: str = ""
     pos: ir.Pos = (0, 0, 0, 0)
     used: bool = False
+    kind: Kind = "topic"
+    methods: frozenset[str] = frozenset(["publish"])  # those that send
 
 
 NONE_ONLY = frozenset([None])

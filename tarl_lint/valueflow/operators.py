@@ -34,6 +34,7 @@ FOLDED: Mapping[str, Callable[..., object]] = {
     ">": operator.gt,
     ">=": operator.ge,
 }
+MESSAGES = frozenset(["message", "goal"])
 MAX_TEXT = 300
 
 
@@ -58,12 +59,12 @@ class Operators(Combining):
     def tested(self, name: str, value: Value) -> Nodes:
         """Return the nodes whose data an operator uses. Whether a message is there at all is not data of it."""
         if name in ("is", "is not"):
-            return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind != "message")))
+            return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in MESSAGES)))
         return self.truth(value) if name == "not" else self.use(value)
 
     def truth(self, value: Value) -> Nodes:
         """Return the nodes that decide whether a value counts as true: a whole message always does."""
-        kept = frozenset(o for o in value.pts if o.kind != "message" or o.parent is not None)
+        kept = frozenset(o for o in value.pts if o.kind not in MESSAGES or o.parent is not None)
         return self.use(value if len(kept) == len(value.pts) else Value(value.deps, kept))
 
     def boolean(self, name: str, values: list[Value]) -> Value:

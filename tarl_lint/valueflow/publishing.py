@@ -28,7 +28,8 @@ class Sinks(Library):
         key = (frame.program.path, call.pos)
         record = self.sinks.get(key)
         if record is None:
-            record = SinkRecord(*key, _api(info), self.modules[key[0]].name, self.qualname(frame))
+            record = SinkRecord(*key, _api(info, it), self.modules[key[0]].name, self.qualname(frame))
+            record.kind = info.kind
             self.sinks[key] = record
         record.topics |= info.topics
         record.types |= info.types
@@ -36,6 +37,8 @@ class Sinks(Library):
         info.used = True
         node = self.node(frame, ("publish", call.slot), "publish")
         self.graph.flow(self.all_used(it.arguments), node)
+        self.graph.choice(it.base.deps, node)
+        self.graph.control[node] |= it.base.deps  # which publisher it is
         if frame.statement is not None:
             self.under(frame, frame.statement, node)
         record.nodes.add(node)
@@ -85,7 +88,9 @@ def type_names(value: Value) -> list[str]:
     return [o.name.rpartition(".")[2] for o in value.pts if o.kind in ("ext", "class")]
 
 
-def _api(info: Publisher) -> str:
-    """Name the call that publishes, by who made the publisher."""
+def _api(info: Publisher, it: Invocation) -> str:
+    """Name the call that sends, by who made the sender."""
+    if info.kind != "topic":
+        return f"{info.api}.{it.name}"
     library = info.api.partition(".")[0]
     return f"{library}.Publisher.publish" if library in ("rospy", "rclpy") else info.api

@@ -6,11 +6,11 @@ from collections.abc import Callable, Hashable, Mapping
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.machine import Invocation
-from tarl_lint.valueflow.subscribing import Sources
+from tarl_lint.valueflow.serving import Serving
 from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Value, pointer
 
 
-class Ros(Sources):
+class Ros(Serving):
     """Performs the calls that the catalog knows."""
 
     def ros_call(self, it: Invocation) -> Value:
@@ -102,7 +102,9 @@ ACTIONS: Mapping[str, Callable[..., Value]] = {
     "filter": Ros.filter,
     "synchronizer": Ros.synchronizer,
     "timer": Ros._timer,
-    "service": Ros._timer,
+    "service": Ros._service,
+    "action": Ros._action,
+    "transform": Ros._transform,
     "call later": Ros._timer,
     "done": Ros._done,
     "thread": Ros._thread,

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping, Sequence
+from typing import Final
 
 from tarl_lint import catalog
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE, ROOT_CALL
 from tarl_lint.valueflow.graph import Place
-from tarl_lint.valueflow.machine import Invocation, SourceRecord
+from tarl_lint.valueflow.machine import Invocation, Kind, Publisher, SourceRecord
 from tarl_lint.valueflow.publishing import Sinks, type_names
 from tarl_lint.valueflow.store import Root
-from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Obj, Value, join, pointer
+from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Obj, Value, join, join_all, pointer
+
+KINDS: Final[Mapping[str, Kind]] = {"service": "service", "action": "action", "transform": "transform"}
+NOTHING: Final[Mapping[str, Value]] = {}
+Fresh = Sequence[tuple[Obj, str, Value]]  # objects that a call brings anew, with a field and what it is
 
 
 class Sources(Sinks):
@@ -32,6 +37,7 @@ class Sources(Sinks):
             record = SourceRecord(
                 *key, it.fact.api, self.modules[key[0]].name, self.qualname(place), statement, place
             )
+            record.kind = KINDS.get(it.fact.kind, "topic")
             self.sources[key] = record
         record.via.update(via)
         record.topics.update(it.argument(it.fact.topic).texts())
@@ -132,9 +138,10 @@ class Sources(Sinks):
         given = it.argument(it.fact.topic)
         obj = self.intern("synchronizer", (it.frame.id, it.statement, it.call.slot))
         parts = self.unpacked(given)
+        several = parts is None and all(o.kind == "sequence" for o in given.pts)
         if parts is None:
-            parts = [self.elements(given)] if all(o.kind == "sequence" for o in given.pts) else [given]
-        obj.info = (parts, (it.frame.program.path, it.call.pos))
+            parts = [self.elements(given)] if several else [given]
+        obj.info = (parts, (it.frame.program.path, it.call.pos), several)
         return pointer(obj)
 
     def register_filter(self, target: Obj | None, it: Invocation) -> Value:
@@ -143,16 +150,20 @@ class Sources(Sinks):
             return UNKNOWN
         places = {(it.frame.program.path, it.call.pos)}
         parts: Sequence[Value] = [pointer(target)]
+        several = False
         if target.kind == "synchronizer" and isinstance(target.info, tuple):
             parts = target.info[0]
             places.add(target.info[1])
+            several = target.info[2]
         callback = it.argument((0, "cb"))
         extra = it.arguments[0][1:]
         for function in callback.pts:
             if function.kind in CALLABLE:
                 messages = [self._filtered(part, function, places) for part in parts]
                 key = ("filter", it.frame.program.path, it.call.pos)
-                self.call_when(key, function, [*messages, *extra], "callback")
+                named = {"*": join_all([*messages, *extra])} if several else {}
+                values = [] if several else [*messages, *extra]
+                self.call_when(key, function, values, "callback", named=named)
         return UNKNOWN
 
     def _filtered(self, part: Value, function: Obj, places: set[tuple[str, ir.Pos]]) -> Value:
@@ -164,14 +175,29 @@ class Sources(Sinks):
                 message = join(message, pointer(self.message(subscriber.info, function)))
         return message
 
-    def call_when(self, key: Hashable, target: Obj, values: Sequence[Value], kind: str) -> None:
-        """Run a function on its own with these arguments."""
+    def call_when(
+        self,
+        key: Hashable,
+        target: Obj,
+        values: Sequence[Value],
+        kind: str,
+        fresh: Fresh = (),
+        answer: Publisher | None = None,
+        named: Mapping[str, Value] = NOTHING,
+    ) -> None:
+        """Run a function on its own with these arguments; `answer` takes what it returns."""
         root = Root((key, target.kind, target.key), kind, target.name, once=kind == "thread")
 
         def run(root: Root) -> None:
             frame = self.root_frame(root)
-            self.delivered = frozenset(o for v in values for o in v.pts if o.kind == "message")
-            self.call_object(target, (list(values), {}), frame, ROOT_CALL)
+            frame.answer = answer
+            self.delivered = frozenset(
+                o for v in (*values, *named.values()) for o in v.pts if o.kind == "message"
+            )
+            for obj, name, value in fresh:
+                self._clear(obj)
+                self.store.put((obj, name), value)
+            self.call_object(target, (list(values), dict(named)), frame, ROOT_CALL)
 
         self.add_root(root, run)
 
@@ -187,4 +213,16 @@ class Sources(Sinks):
 def _supplied(frame: Frame, callback: Value) -> bool:
     """Tell whether a function's caller hands in the callback."""
     wanted = {o for o in callback.pts if o.kind in CALLABLE}
+    for target in tuple(wanted):
+        wanted |= _wrapped(target, frame)
     return bool(wanted) and any(wanted & v.pts for v in frame.arguments)
+
+
+def _wrapped(target: Obj, frame: Frame) -> set[Obj]:
+    """Return the functions that were given to the helper, called from here, which made a callback around them."""
+    if target.kind == "partial" and isinstance(target.info, tuple):
+        return {o for o in target.info[0].pts if o.kind in CALLABLE}
+    maker = target.info[1] if target.kind == "closure" and isinstance(target.info, tuple) else None
+    if not isinstance(maker, Frame) or maker.caller is not frame:
+        return set()
+    return {o for value in maker.arguments for o in value.pts if o.kind in CALLABLE}

@@ -65,6 +65,7 @@ class Frame(Obj):
     """One activation of a function, known by its chain of calls. Its fields are the local variables."""
 
     __slots__ = (
+        "answer",
         "arguments",
         "base",
         "call",
@@ -103,6 +104,7 @@ class Frame(Obj):
         self.call: ir.Stmt | None = None
         self.call_pos: ir.Pos | None = None
         self.slot: object = 0
+        self.answer: object = None  # who gets what the function returns, when ROS asked for it
         self.outer: Frame | None = None
         self.owner: Obj | None = None  # the class a method is defined in, for super()
         self.cls: Obj | None = None  # the class that is being made, when this is a class body
