@@ -93,11 +93,11 @@ def prepared(text: str, wanted: Expected) -> str:
     defined = [n for n in tree.body if set(_names(n)) & {*DEFINED, "is_source"}]
     for node in defined:
         lines[node.lineno - 1 : node.end_lineno] = [""] * ((node.end_lineno or node.lineno) - node.lineno + 1)
-    start = tree.body[0]
+    opening = tree.body[0]
     if defined:
         lines[defined[0].lineno - 1] = IMPORT
-    elif isinstance(start, (ast.Expr, ast.Assign, ast.Import, ast.ImportFrom)):
-        lines[start.lineno - 1] = f"{IMPORT}; {lines[start.lineno - 1]}"
+    elif isinstance(opening, (ast.Expr, ast.Assign, ast.Import, ast.ImportFrom)):
+        lines[opening.lineno - 1] = f"{IMPORT}; {lines[opening.lineno - 1]}"
     else:
         lines.append(IMPORT)
     return "\n".join([*lines, *_calls(tree)])
