@@ -11,6 +11,7 @@ from pathlib import Path
 
 from pytest_tarl.comparing import Online, run_online
 from pytest_tarl.errors import AnalysisError, FixtureError, TarlError
+from pytest_tarl.files import write_atomically
 from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.fixture import Fixture
@@ -156,7 +157,13 @@ class Mission:
     def _ignore(self) -> None:
         ignore = self.tarl / ".gitignore"
         if not ignore.exists():
-            fixtures.write_atomically(ignore, IGNORED.encode())
+            try:
+                write_atomically(ignore, IGNORED.encode())
+            except OSError as problem:
+                raise TarlError(
+                    f"{self.tarl} cannot be written ({problem.strerror}): give yourself the right to write there, "
+                    "or run in a copy."
+                ) from problem
 
 
 @contextmanager

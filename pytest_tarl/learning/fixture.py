@@ -11,8 +11,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import os
-import tempfile
 import zlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
@@ -23,6 +21,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from pytest_tarl.errors import FixtureError
+from pytest_tarl.files import write_atomically
 from pytest_tarl.learning.tables import Chain, Edges, Floats, ListSample, Sample, Visits
 from pytest_tarl.model import SitePlace, TaintList
 from pytest_tarl.sensors import Sensor
@@ -45,7 +44,7 @@ class Fixture:
 
 
 def save(fixture: Fixture, path: Path) -> None:
-    """Write the fixture whole or not at all."""
+    """Write the fixture whole or not at all. Raises FixtureError where that is not allowed."""
     columns = _columns(fixture)
     header = {
         "format": FORMAT_VERSION,
@@ -61,7 +60,12 @@ def save(fixture: Fixture, path: Path) -> None:
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
     np.savez_compressed(buffer, allow_pickle=False, **{HEADER: text}, **columns)
-    write_atomically(path, buffer.getvalue())
+    try:
+        write_atomically(path, buffer.getvalue())
+    except OSError as problem:
+        raise FixtureError(
+            f"{path} cannot be written ({problem.strerror}): give yourself the right to write there, or run in a copy."
+        ) from problem
 
 
 def load(path: Path) -> Fixture:
@@ -101,25 +105,6 @@ def load(path: Path) -> Fixture:
             f"The utility fixture {path} is damaged: its digest does not fit its content. {advice}"
         )
     return _fixture(header, columns)
-
-
-def write_atomically(path: Path, content: bytes) -> None:
-    """Write to a temporary file beside `path` and rename it. Raises FixtureError where that is not allowed."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    except OSError as problem:
-        raise FixtureError(
-            f"{path} cannot be written ({problem.strerror}): give yourself the right to write there, or run in a copy."
-        ) from problem
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        Path(name).chmod(0o644)
-        Path(name).replace(path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
 
 
 def _columns(fixture: Fixture) -> dict[str, np.ndarray[Any, Any]]:

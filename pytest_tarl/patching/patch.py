@@ -9,12 +9,12 @@ import os
 import re
 import shlex
 import shutil
-import tempfile
 import tokenize
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from pytest_tarl.errors import RepairError
+from pytest_tarl.files import write_atomically
 
 Opcode = tuple[str, int, int, int, int]
 CONTEXT = 3  # unchanged lines around a change
@@ -52,16 +52,12 @@ def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
     digest = hashlib.sha256(content).hexdigest()[:8]
     name = f"{slug(test)}-{slug(drift or 'online')}"
     path = folder / f"{name}-{digest}.patch"
-    folder.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=folder, prefix=".patch-")
     try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+        write_atomically(path, content)
+    except OSError as problem:
+        raise RepairError(
+            f"The patch {path} cannot be written ({problem.strerror}): give yourself the right to write there."
+        ) from problem
     for older in folder.glob(f"{name}-????????.patch"):
         if older != path:
             older.unlink()

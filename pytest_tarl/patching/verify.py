@@ -47,6 +47,12 @@ def _pieces(node: libcst.CSTNode, module: libcst.Module) -> Iterator[tuple[libcs
 
     if isinstance(node, cst.Comment):
         yield node, node.value
+    elif isinstance(node, cst.ImportFrom) and not isinstance(node.names, cst.ImportStar):
+        for name in node.names:  # names may be added to an import
+            alone = node.with_changes(
+                names=[name.with_changes(comma=cst.MaybeSentinel.DEFAULT)], lpar=None, rpar=None
+            )
+            yield node, module.code_for_node(alone.with_changes(semicolon=cst.MaybeSentinel.DEFAULT)).strip()
     elif isinstance(node, cst.BaseSmallStatement):
         yield node, module.code_for_node(node.with_changes(semicolon=cst.MaybeSentinel.DEFAULT)).strip()
     else:

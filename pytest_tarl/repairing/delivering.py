@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import Path
 from statistics import fmean
 
 from pytest_tarl.model import Edit, Repair
 from pytest_tarl.patching import patch
 from pytest_tarl.patching.mutate import Mutation, guard_text
+from pytest_tarl.patching.verify import nothing_lost
 from pytest_tarl.repairing.accepting import Accepted, Refused
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
@@ -18,6 +21,7 @@ def delivered(mutants: Mutants, accepted: Accepted, search: int, acceptance: int
     order, candidate = mutants.order, accepted.candidate
     guard = _guard(order, candidate)
     changed = mutants.source(candidate)
+    _verify(order, candidate, changed)
     originals = {path: path.read_bytes() for path in changed}
     header = [
         *_evidence(order, accepted, guard),
@@ -27,6 +31,15 @@ def delivered(mutants: Mutants, accepted: Accepted, search: int, acceptance: int
     written = patch.write(diff, order.patches, order.fixture.test, order.drift)
     place = written.relative_to(order.root).as_posix()
     return Repair(True, guard, _edits(candidate), patch.readable(diff), place)
+
+
+def _verify(order: Order, candidate: Candidate, changed: Mapping[Path, str]) -> None:
+    """Look at the files once more before they become a patch. Raises RepairError when one would lose something."""
+    for path, text in changed.items():
+        shown = path.relative_to(order.root).as_posix()
+        spans = [m.operand.span for m in candidate.mutations if m.operand.span.path == shown]
+        lines = {line for span in spans for line in range(span.line, span.end_line + 1)}
+        nothing_lost(shown, order.analysis.sources[shown], text, lines)
 
 
 def withheld(order: Order, refused: Refused) -> Repair:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import TarlError
-from pytest_tarl.learning.fixture import write_atomically
+from pytest_tarl.files import write_atomically
 from pytest_tarl.model import Comparison, ListComparison
 from pytest_tarl.report import words
 from pytest_tarl.report.figures import MOST_ROWS, plane, reward_curves, utility_figure

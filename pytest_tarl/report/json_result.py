@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import TarlError
-from pytest_tarl.learning.fixture import write_atomically
+from pytest_tarl.files import write_atomically
 from pytest_tarl.model import Comparison, Culprit, Repair, SitePlace, Slice
 from pytest_tarl.report.regions import boxes
 from pytest_tarl.report.words import atr

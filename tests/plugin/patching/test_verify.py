@@ -33,6 +33,13 @@ def test_the_changed_line_itself_may_differ() -> None:
     nothing_lost("node.py", NODE, NODE.replace("vel = GAIN * delta", "vel = 2.2 * GAIN * delta"), {8})
 
 
+def test_a_name_may_be_added_to_an_import_but_none_taken_away() -> None:
+    node = "from std_msgs.msg import Float64, String  # messages\n" + NODE
+    nothing_lost("node.py", node, node.replace("import Float64", "import Bool, Float64"), {9})
+    with pytest.raises(RepairError, match="import String"):
+        nothing_lost("node.py", node, node.replace(", String", ""), {9})
+
+
 @pytest.mark.parametrize(
     "lost",
     ["# how far, how fast\n", "  # 1/s", "; ok = err < 1", "    # towards the goal\n", "  # nearly there"],
