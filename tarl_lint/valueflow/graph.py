@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field
+from itertools import islice
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.values import Branches, Frame, Nodes
@@ -91,12 +92,21 @@ class Graph:
         if not content or not carriers or len(content) * len(carriers) > MAX_CARRIED:
             return content
         found: set[int] = set()
-        for item in content:
-            arrived: set[int] = set()
-            for carrier in carriers:
-                arrived |= self._by(carrier, item)
-            found |= arrived or {item}
-        return frozenset(found)
+        rest = content
+        for carrier in sorted(carriers):
+            inside = self.held.get(self._first(carrier))
+            for item in sorted(content & inside) if inside else ():
+                arrived = self._by(carrier, item)
+                if arrived:
+                    found |= arrived
+                    rest = rest - {item}
+        return rest | found if found else content
+
+    def _first(self, carrier: int) -> int:
+        """Return who first held what arrives by a carrier: what was not inside then does not come this way."""
+        while carrier in self.carried:
+            carrier = self.carried[carrier][1]
+        return carrier
 
     def _by(self, carrier: int, item: int) -> Nodes | set[int]:
         """Return an item as passed on by one carrier, nothing when it was not inside then."""
@@ -128,13 +138,13 @@ class Graph:
 
     def settle(self) -> None:
         """Follow everything that was passed on inside objects back through those who passed it before."""
-        done: set[tuple[int, int]] = set()
-        while len(done) < len(self.arriving):
-            for node, item in list(self.arriving):
-                if (node, item) not in done:
-                    done.add((node, item))
-                    carrier = self.carried[node][0]
-                    self.flow(self.through(frozenset([item]), frozenset(self.data[carrier])), node)
+        done = 0
+        while done < len(self.arriving):
+            pending = list(islice(self.arriving, done, None))
+            done += len(pending)
+            for node, item in pending:
+                carrier = self.carried[node][0]
+                self.flow(self.through(frozenset([item]), frozenset(self.data[carrier])), node)
 
     def hold(self, carrier: int, content: Nodes) -> None:
         """Remember what was inside an object when `carrier` passed it on."""

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.allocation import MAX_NESTING, Allocation
+from tarl_lint.valueflow.allocation import Allocation
 from tarl_lint.valueflow.values import (
     BOTTOM,
     NONE,
     UNKNOWN,
     ClassInfo,
-    Frame,
     Nodes,
     Obj,
     Value,
@@ -204,47 +203,6 @@ class Heap(Allocation):
         """Return a field's value with the carriers of the pointer it was read through."""
         deps = self.graph.through(value.deps, carriers) | carriers
         return Value(deps, value.pts, value.consts)
-
-    def deep(self, objects: frozenset[Obj]) -> Nodes:
-        """Return all nodes whose data is inside objects."""
-        found: set[int] = set()
-        seen: set[Obj] = set()
-        for obj in objects:
-            self._deep(obj, found, seen, 0)
-        return frozenset(found)
-
-    def _deep(self, obj: Obj, found: set[int], seen: set[Obj], depth: int) -> None:
-        if obj in seen or depth > MAX_NESTING or obj.kind in HOLLOW or self._node_like(obj):
-            return
-        seen.add(obj)
-        self.store.look(obj)
-        found |= self.content(obj).deps
-        for name in list(obj.fields):
-            value = self.store.get((obj, name))
-            if value is None:
-                continue
-            found |= value.deps
-            if value.pts:
-                inner: set[int] = set()
-                for target in value.pts:
-                    self._deep(target, inner, seen, depth + 1)
-                found |= self.graph.through(frozenset(inner), value.deps)
-        for name, sub in list(obj.subs.items()):
-            if sub is not obj and self.store.get((obj, name)) is None:
-                self._deep(sub, found, seen, depth + 1)
-
-    def _node_like(self, obj: Obj) -> bool:
-        """Tell whether an object is a program rather than data: passing it on passes no data."""
-        if obj.kind != "instance" or not isinstance(obj.info, Obj):
-            return False
-        info = obj.info.info
-        if any(f.fields.get("self", 1) is None and self._is_self(f, obj) for f in self.stack):
-            return True
-        return isinstance(info, ClassInfo) and info.opaque
-
-    def _is_self(self, frame: Frame, obj: Obj) -> bool:
-        value = self.store.get((frame, "self"))
-        return value is not None and obj in value.pts
 
     # --- writing ------------------------------------------------------------------------------------------
 

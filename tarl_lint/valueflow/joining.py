@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tarl_lint.valueflow.allocation import BORN
-from tarl_lint.valueflow.heap import Heap
+from tarl_lint.valueflow.contents import Contents
 from tarl_lint.valueflow.store import Delta
 from tarl_lint.valueflow.values import (
     ABSENT,
@@ -15,7 +15,7 @@ from tarl_lint.valueflow.values import (
 )
 
 
-class Joining(Heap):
+class Joining(Contents):
     """Joins continuations of a state."""
 
     def merge(self, deltas: Sequence[Delta]) -> None:

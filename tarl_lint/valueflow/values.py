@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import count
 
 from tarl_lint.valueflow import ir
 
@@ -13,6 +14,7 @@ Branches = frozenset[tuple[int, str]]
 
 NONE: Nodes = frozenset()
 PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enum.Enum", "enum.IntEnum"])
+NUMBERS = count()  # of objects in the order in which they are made
 MAX_CONSTS = 4
 MAX_DEPTH = 6  # of objects embedded in objects
 
@@ -20,10 +22,23 @@ MAX_DEPTH = 6  # of objects embedded in objects
 class Obj:
     """An object, known by what makes it: allocation site, definition, or the object it is embedded in."""
 
-    __slots__ = ("depth", "fields", "holders", "info", "key", "kind", "many", "name", "parent", "subs")
+    __slots__ = (
+        "depth",
+        "fields",
+        "holders",
+        "info",
+        "key",
+        "kind",
+        "many",
+        "name",
+        "number",
+        "parent",
+        "subs",
+    )  # fmt: skip
 
     def __init__(self, kind: str, key: object, name: str = "", parent: Obj | None = None) -> None:
         self.kind = kind
+        self.number = next(NUMBERS)
         self.key = key
         self.name = name
         self.parent = parent

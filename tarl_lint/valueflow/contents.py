@@ -1,0 +1,69 @@
+"""What is inside objects, at any depth."""
+
+from __future__ import annotations
+
+from tarl_lint.valueflow.allocation import MAX_NESTING
+from tarl_lint.valueflow.heap import HOLLOW, Heap
+from tarl_lint.valueflow.values import NONE, ClassInfo, Frame, Nodes, Obj, Value
+
+
+class Contents(Heap):
+    """Collects the data inside objects."""
+
+    def deep(self, objects: frozenset[Obj]) -> Nodes:
+        """Return all nodes whose data is inside objects."""
+        known: dict[Obj, Nodes] = {}
+        if len(objects) == 1:
+            (obj,) = objects
+            return self._deep(obj, known, 0)
+        found = NONE
+        for obj in in_order(objects):
+            found |= self._deep(obj, known, 0)
+        return found
+
+    def _deep(self, obj: Obj, known: dict[Obj, Nodes], depth: int) -> Nodes:
+        """Return what is inside one object. What holds itself is left out at the second time."""
+        if obj.kind in HOLLOW or depth > MAX_NESTING:
+            return NONE
+        inside = known.get(obj)
+        if inside is not None:
+            return inside
+        known[obj] = NONE
+        if obj.kind == "instance" and self._node_like(obj):
+            return NONE
+        self.store.look(obj)
+        found = set(self.content(obj).deps)
+        for name in list(obj.fields):
+            value = self.store.get((obj, name))
+            if value is not None:
+                found |= value.deps
+                if value.pts:
+                    found |= self._behind(value, known, depth + 1)
+        for name, sub in list(obj.subs.items()):
+            if sub is not obj and self.store.get((obj, name)) is None:
+                found |= self._deep(sub, known, depth + 1)
+        known[obj] = inside = frozenset(found)
+        return inside
+
+    def _behind(self, value: Value, known: dict[Obj, Nodes], depth: int) -> Nodes:
+        """Return what is inside the objects that a field holds, as it arrives through the field."""
+        inner = NONE
+        for target in in_order(value.pts):
+            inner |= self._deep(target, known, depth)
+        return self.graph.through(inner, value.deps) if inner else inner
+
+    def _node_like(self, obj: Obj) -> bool:
+        """Tell whether an instance is a program rather than data: passing it on passes no data."""
+        info = obj.info.info if isinstance(obj.info, Obj) else None
+        if not isinstance(info, ClassInfo):
+            return False
+        return info.opaque or any(self._is_self(f, obj) for f in self.stack if "self" in f.fields)
+
+    def _is_self(self, frame: Frame, obj: Obj) -> bool:
+        value = self.store.get((frame, "self"))
+        return value is not None and obj in value.pts
+
+
+def in_order(objects: frozenset[Obj]) -> list[Obj]:
+    """Return objects in the order in which they were made: that of a set depends on where they are in memory."""
+    return sorted(objects, key=lambda obj: obj.number) if len(objects) > 1 else list(objects)
