@@ -6,7 +6,7 @@ import hashlib
 import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytest_tarl.comparing import Online, run_online
@@ -45,6 +45,7 @@ class Mission:
     test: str
     folder: Path
     root: Path
+    started: Path  # the folder that pytest was started in
     designation: Designation
     options: Options
     drift: str | None
@@ -68,6 +69,12 @@ class Mission:
         """Return where the utility fixture of the test is."""
         digest = hashlib.sha256(self.test.encode()).hexdigest()[:8]
         return self.tarl / "utility" / f"{patch.slug(self.test)}-{digest}.npz"
+
+    @property
+    def target(self) -> str:
+        """Return the test as it is typed where pytest was started; parameters are left out, all of them run."""
+        folder = os.path.relpath(self.root, self.started).replace(os.sep, "/")
+        return f"{'' if folder == '.' else f'{folder}/'}{self.test.partition('[')[0]}"
 
     @property
     def tarl(self) -> Path:
@@ -121,7 +128,8 @@ class Mission:
             repaired = repair(order)
             comparison = repaired.comparison
             episodes |= repaired.episodes
-        return self._told(comparison, online, episodes)
+        told = replace(comparison, target=self.target, flags=self.options.flags)
+        return self._told(told, online, episodes)
 
     def _told(self, comparison: Comparison, online: Online, episodes: Mapping[str, int]) -> Account:
         name = f"{patch.slug(self.test)}-{patch.slug(self.drift or 'online')}"
@@ -144,7 +152,7 @@ class Mission:
 
     def _fixture(self) -> Fixture:
         if not self.fixture_path.exists():
-            command = f"pytest {self.test} --tarl-record"
+            command = f"pytest {self.target} --tarl-record"
             raise NoFixtureError(f"{self.test} has no recorded utility yet: run `{command}` first.")
         fixture = fixtures.load(self.fixture_path)
         if fixture.sensors != self.designation.sensors:

@@ -104,7 +104,15 @@ def _ours(error: BaseException) -> bool:
 
 
 def _asked(config: pytest.Config) -> bool:
-    return any(config.getoption(flag) for flag in ("--tarl-record", "--tarl-online", "--tarl-repair"))
+    flags = (
+        "--tarl-record",
+        "--tarl-online",
+        "--tarl-repair",
+        "--tarl-drift",
+        "--tarl-search",
+        "--tarl-strict",
+    )
+    return any(config.getoption(flag) for flag in flags)
 
 
 def _options(config: pytest.Config) -> Options:

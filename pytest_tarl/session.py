@@ -134,6 +134,7 @@ class TarlSession:
             test=_without_drift(item),
             folder=item.path.parent,
             root=self.config.rootpath,
+            started=self.config.invocation_params.dir,
             designation=marked,
             options=self.options,
             drift=scenario(item),

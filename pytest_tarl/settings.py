@@ -33,6 +33,19 @@ class Options:
 
     ONLINE_EPISODES = 40
 
+    @property
+    def flags(self) -> tuple[str, ...]:
+        """Return the options that shape a comparison and are not the default ones, as they are typed."""
+        chosen = {
+            "--tarl-episodes": (self.episodes, None),
+            "--tarl-alpha": (self.alpha, 0.05),
+            "--tarl-budget": (self.budget, 300),
+            "--tarl-utility": (self.utility, "batch"),
+        }
+        return tuple(
+            text for flag, (value, usual) in chosen.items() if value != usual for text in (flag, str(value))
+        )
+
 
 @dataclass(frozen=True)
 class Designation:
@@ -48,6 +61,9 @@ class Designation:
 
 def options(given: Mapping[str, Any]) -> Options:
     """Check the flags of a run. Raises SettingsError with a sentence."""
+    if not (given["record"] or given["online"] or given["repair"]):
+        stray = next((name for name in ("drift", "search", "strict") if given[name]), "drift")
+        raise SettingsError(f"--tarl-{stray} goes with --tarl-online, and does nothing without it.")
     if given["record"] and given["online"]:
         raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
     if given["repair"] and not given["online"]:

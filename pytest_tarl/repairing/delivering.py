@@ -35,11 +35,12 @@ def delivered(mutants: Mutants, accepted: Accepted, search: int, acceptance: int
 
 def _verify(order: Order, candidate: Candidate, changed: Mapping[Path, str]) -> None:
     """Look at the files once more before they become a patch. Raises RepairError when one would lose something."""
-    for path, text in changed.items():
-        shown = path.relative_to(order.root).as_posix()
-        spans = [m.operand.span for m in candidate.mutations if m.operand.span.path == shown]
-        lines = {line for span in spans for line in range(span.line, span.end_line + 1)}
-        nothing_lost(shown, order.analysis.sources[shown], text, lines)
+    for shown, original in order.analysis.sources.items():
+        text = changed.get(order.root / shown)
+        if text is not None:
+            spans = [m.operand.span for m in candidate.mutations if m.operand.span.path == shown]
+            lines = {line for span in spans for line in range(span.line, span.end_line + 1)}
+            nothing_lost(shown, original, text, lines)
 
 
 def withheld(order: Order, refused: Refused) -> Repair:

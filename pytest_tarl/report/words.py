@@ -126,7 +126,8 @@ def command(comparison: Comparison, *flags: str) -> str:
     """Return the command that repeats the comparison with the same seed."""
     drift = ["--tarl-drift", comparison.drift] if comparison.drift else []
     seed = ["--tarl-seed", str(comparison.seed)] if comparison.seed else []
-    return shlex.join(["pytest", comparison.test, "--tarl-online", *drift, *seed, *flags])
+    options = [*drift, *seed, *comparison.flags, *flags]
+    return shlex.join(["pytest", comparison.target or comparison.test, "--tarl-online", *options])
 
 
 def repeat(comparison: Comparison) -> str:
@@ -141,7 +142,7 @@ def repeat(comparison: Comparison) -> str:
 def next_steps(comparison: Comparison) -> Iterator[str]:
     """Yield the command that a developer would run now, if there is one."""
     if not comparison.lists:
-        yield shlex.join(["pytest", comparison.test, "--tarl-record"])
+        yield shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record"])
     elif comparison.repair and comparison.repair.accepted and comparison.repair.patch:
         yield shlex.join(["git", "apply", comparison.repair.patch])
     elif comparison.verdict.result == "degraded" and comparison.repair is None:
