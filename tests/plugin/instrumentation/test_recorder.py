@@ -111,7 +111,7 @@ VALUES = [
 ]
 
 
-@pytest.mark.parametrize("value", VALUES, ids=repr)
+@pytest.mark.parametrize("value", VALUES, ids=lambda value: type(value).__name__)
 @pytest.mark.parametrize("threads", [False, True])
 def test_every_way_to_record_gives_the_same_flow_value_and_the_value_itself(value, threads):
     recorder = Recorder(threads=threads)

@@ -1,0 +1,48 @@
+"""The commands that an account prints can be pasted where pytest was started."""
+
+from __future__ import annotations
+
+import shlex
+
+import pytest
+
+from tests.plugin.tank import NODE, TEST
+
+
+@pytest.fixture
+def nested(pytester: pytest.Pytester) -> pytest.Pytester:
+    """A project whose root is a folder below the one that pytest is started in."""
+    folder = pytester.mkdir("tank")
+    (folder / "pytest.ini").write_text("[pytest]\n")
+    (folder / "keeper.py").write_text(NODE)
+    (folder / "test_tank.py").write_text(TEST)
+    return pytester
+
+
+def printed(result: pytest.RunResult, label: str) -> list[str]:
+    line = next(line for line in result.outlines if line.split()[:1] == [label])
+    return shlex.split(line.partition(label)[2])
+
+
+def test_they_name_the_test_from_there_and_repeat_the_options(nested: pytest.Pytester) -> None:
+    test = "tank/test_tank.py::test_fills"
+    nested.runpytest(test, "--tarl-record", "--tarl-episodes=16").assert_outcomes(passed=1)
+    result = nested.runpytest(test, "--tarl-online", "--tarl-episodes=12", "--tarl-alpha=0.1")
+    again = printed(result, "again")
+    assert again == [
+        "pytest", test, "--tarl-online", "--tarl-drift", "clogged", "--tarl-episodes", "12", "--tarl-alpha", "0.1",
+    ]  # fmt: skip
+    assert printed(result, "next") == [*again, "--tarl-repair"]
+    nested.runpytest(*again[1:]).assert_outcomes(failed=1)
+
+
+def test_the_command_for_a_missing_fixture_can_be_pasted(nested: pytest.Pytester) -> None:
+    result = nested.runpytest("tank", "--tarl-online", "--tarl-strict")
+    assert "run `pytest tank/test_tank.py::test_fills --tarl-record` first" in result.stdout.str()
+
+
+@pytest.mark.parametrize("flag", ["--tarl-drift=clogged", "--tarl-strict", "--tarl-search=sweep"])
+def test_a_flag_without_a_mode_is_refused(nested: pytest.Pytester, flag: str) -> None:
+    result = nested.runpytest("tank", flag)
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines(["*goes with --tarl-online*"])
