@@ -3,8 +3,8 @@
 CHECKOUT holds the repositories, each in a directory named owner/name, owner__name, owner+name or name.
 A flow is matched by the lines of its subscription and publish calls. Printed per node and in total: flows found,
 of the other kind, missing and surplus; lines of labelled paths found; data steps that are among the labelled or
-optional lines; reports at publish calls without a flow. Python 2 files are left out, and so are flows from or to services,
-actions and transforms, about which the labels say nothing.
+optional lines; reports at publish calls without a flow. Python 2 files are left out, and so are flows from or to
+services, actions and transforms, about which the labels say nothing.
 """
 
 from __future__ import annotations
