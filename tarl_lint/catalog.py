@@ -138,6 +138,11 @@ WAITS: Final = frozenset(
     ]
 )  # fmt: skip
 
+AWAITING: Final = (
+    "asyncio.run", "asyncio.create_task", "asyncio.ensure_future", "asyncio.wait_for", "asyncio.shield",
+    "asyncio.run_coroutine_threadsafe",
+)  # fmt: skip
+
 WAITING_METHODS: Final = frozenset(
     [
         "sleep", "spin", "spin_once", "spin_until_future_complete", "wait_for_service", "wait_for_server",

@@ -83,9 +83,7 @@ class Calls(Activations):
     ) -> Value:
         if obj.kind == "ext":
             return self.call_library(f"{obj.name}.{name}", arguments, frame, expr)
-        callables = frozenset(
-            o for o in member.pts if o.kind in CALLABLE and not (o.kind == "method" and o.info[0] is obj)
-        )
+        callables = frozenset(o for o in member.pts if o.kind in CALLABLE and o.info != (obj, name))
         if callables:
             return self.call_value(Value(member.deps, callables), arguments, frame, expr)
         return self.call_method(Value(base.deps, frozenset([obj])), obj, name, arguments, frame, expr)

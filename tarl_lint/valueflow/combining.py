@@ -113,7 +113,8 @@ class Combining(Joining):
             for name in list(source.fields):
                 stored = self.store.get((source, name))
                 if stored is not None and (name.startswith("[") or name in (ANY, KEYS, LENGTH)):
-                    self.weaken(obj, name, self.arrive(stored, value.deps))
+                    field = name[2:-2] if obj.kind == "instance" and name.startswith("['") else name
+                    self.weaken(obj, field, self.arrive(stored, value.deps))
             content = self.content(source)
             if content.deps and self.store.get((source, ANY)) is None:
                 self.add_element(pointer(obj), content)

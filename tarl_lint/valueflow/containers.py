@@ -39,7 +39,7 @@ class Containers(Calls):
         plain, named = arguments
         if name in ("extend", "extendleft", "update"):
             for obj in base.pts:
-                if name == "update" and obj.kind in ("mapping", "lib"):
+                if name == "update" and obj.kind in ("mapping", "lib", "instance"):
                     for value in plain:
                         self.absorb(obj, value)
             news = join_all([self.elements(v) for v in plain] if name != "update" else [])

@@ -8,6 +8,7 @@ from typing import Final
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE
 from tarl_lint.valueflow.containers import READERS as CONTAINER_READERS
+from tarl_lint.valueflow.heap import item_field
 from tarl_lint.valueflow.machine import Arguments, Invocation
 from tarl_lint.valueflow.records import RECORDS, Records
 from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Value, join, pointer
@@ -34,6 +35,21 @@ class Futures(Records):
             if stored is None or self.content(obj).deps:
                 result = join(result, Value(self.use(Value(it.base.deps, frozenset([obj])))))
         return result
+
+    def _gathered(self, it: Invocation) -> Value:
+        """Return the results of several coroutines, one by one."""
+        obj = self.allocate("sequence", it.frame, ("gathered", it.call.slot))
+        for number, value in enumerate(it.arguments[0]):
+            self.store.put((obj, item_field(number)), value)
+        rest = it.arguments[1].get("*")
+        if rest is not None:
+            self.add_element(pointer(obj), rest)
+        return pointer(obj)
+
+    def _awaited(self, it: Invocation) -> Value:
+        """Return what a coroutine gives that is run, started or waited for."""
+        self.wait(it.frame)
+        return it.arguments[0][0] if it.arguments[0] else UNKNOWN
 
     def _submit(self, it: Invocation) -> Value:
         """Call the function that an executor is given; its result is the future's."""

@@ -81,6 +81,8 @@ class Heap(Allocation):
             return pointer(obj.sub(name))
         if kind in ("sequence", "mapping"):
             return self.content(obj) if name.startswith("[") else BOTTOM
+        if name == "__dict__":
+            return pointer(obj)
         if kind == "instance" and isinstance(obj.info, Obj):
             return self._inherited(obj, obj.info, name)
         if kind == "class":
@@ -102,7 +104,7 @@ class Heap(Allocation):
         if isinstance(cls.info, ClassInfo) and cls.info.opaque and not name.startswith("["):
             holder = self.intern("lib", ("inherited", obj.key, name), name)
             return pointer(holder)
-        return self.content(obj) if name.startswith("[") else BOTTOM
+        return self.content(obj)  # elements, and attributes whose names are made at run time
 
     def bind(self, value: Value, receiver: Obj, owner: Obj) -> Value:
         """Return a value with its functions bound to a receiver."""

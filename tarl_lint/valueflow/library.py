@@ -133,7 +133,8 @@ class Library(Futures):
             self.wait(frame)
         if name in catalog.MUTATORS and base.consts is None:
             self.mutate(base, name, arguments, frame, call)
-            return self.read_any(target) if name == "setdefault" and target is not None else UNKNOWN
+            given_back = name == "setdefault" or (name == "send" and kind == "sequence")
+            return self.read_any(target) if given_back and target is not None else UNKNOWN
         if name in READERS and base.pts:
             return READERS[name](self, Invocation(name, base, arguments, frame, call))
         return self._unknown_method(base, name, arguments, frame, call)
@@ -189,6 +190,8 @@ class Library(Futures):
             value = self.through_statement(plain[2], it.frame, it.call)
             for field in plain[1].texts():
                 self.write_field(plain[0], field, value)
+            if not plain[1].texts():
+                self.add_element(plain[0], value)
         return UNKNOWN
 
     def parent(self, it: Invocation) -> Value:
@@ -243,6 +246,8 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "min": Library._chosen,
     "max": Library._chosen,
     "next": Library._chosen,
+    "asyncio.gather": Library._gathered,
+    **dict.fromkeys(catalog.AWAITING, Library._awaited),
     "getattr": Library._get_attribute,
     "setattr": Library._set_attribute,
     "super": Library.parent,

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.lower_expr import OPERATORS, Expressions, position
-from tarl_lint.valueflow.patterns import captures
+from tarl_lint.valueflow.patterns import captures, conditions
 from tarl_lint.valueflow.scopes import Scope, collect
 
 
@@ -195,19 +195,15 @@ class Lowering(Expressions):
             body = self.block(case.body, scope)
             if case.guard is None:
                 bound, body = [], bound + body
-            tests = [
-                n for n in ast.walk(case.pattern) if isinstance(n, ast.expr) and not isinstance(n, ast.Name)
-            ]
-            if _irrefutable(case) and not tests:
+            where = position(node) if case is node.cases[0] else _case_position(case)
+            tests = list(conditions(case.pattern, subject, where, lambda n: self.expr(n, scope)))
+            if case.guard is not None:
+                tests.append(self.expr(case.guard, scope))
+            if not tests:
                 orelse = body
                 continue
-            parts = [
-                subject,
-                *self.all(tests, scope),
-                *([self.expr(case.guard, scope)] if case.guard else []),
-            ]
-            where = position(node) if case is node.cases[0] else _case_position(case)
-            orelse = [*bound, ir.If(scope.next(), where, ir.Operation("", parts, where), body, orelse)]
+            test = ir.Operation("and", tests, where) if len(tests) > 1 else tests[0]
+            orelse = [*bound, ir.If(scope.next(), where, test, body, orelse)]
         return orelse
 
     def captures(self, case: ast.match_case, subject: ir.Expr, scope: Scope) -> list[ir.Stmt]:
@@ -217,10 +213,6 @@ class Lowering(Expressions):
             ir.Assign(scope.next(), where, [ir.Name(*scope.resolve(name), where)], part)
             for name, part in captures(case.pattern, subject, where, lambda node: self.expr(node, scope))
         ]
-
-
-def _irrefutable(case: ast.match_case) -> bool:
-    return case.guard is None and isinstance(case.pattern, ast.MatchAs) and case.pattern.pattern is None
 
 
 def _case_position(case: ast.match_case) -> ir.Pos:

@@ -34,6 +34,7 @@ FOLDED: Mapping[str, Callable[..., object]] = {
     ">": operator.gt,
     ">=": operator.ge,
 }
+OURS = frozenset(["instance", "sequence", "mapping"])  # whose type is in the files, whatever is in them
 MESSAGES = frozenset(["message", "goal"])
 MAX_TEXT = 300
 
@@ -58,6 +59,10 @@ class Operators(Combining):
 
     def tested(self, name: str, value: Value) -> Nodes:
         """Return the nodes whose data an operator uses. Whether a message is there at all is not data of it."""
+        if name == "shape":
+            return self.length(value)
+        if name == "type":
+            return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in OURS)))
         if name in ("is", "is not"):
             return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in MESSAGES)))
         return self.truth(value) if name == "not" else self.use(value)

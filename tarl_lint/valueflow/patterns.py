@@ -32,6 +32,25 @@ def captures(
             yield pattern.rest, subject
 
 
+def conditions(pattern: ast.pattern, subject: ir.Expr, where: ir.Pos, lower: Lower) -> Iterator[ir.Expr]:
+    """Yield what must hold for a pattern to match; nothing for one that always does."""
+    if isinstance(pattern, ast.MatchValue):
+        yield ir.Operation("==", [subject, lower(pattern.value)], where)
+    elif isinstance(pattern, ast.MatchSingleton):
+        yield ir.Operation("is", [subject, ir.Const(pattern.value, where)], where)
+    elif isinstance(pattern, ast.MatchOr):
+        ways = [list(conditions(p, subject, where, lower)) for p in pattern.patterns]
+        if all(ways):
+            yield ir.Operation("or", [ir.Operation("and", way, where) for way in ways], where)
+    elif isinstance(pattern, ast.MatchAs):
+        if pattern.pattern is not None:
+            yield from conditions(pattern.pattern, subject, where, lower)
+    elif not isinstance(pattern, ast.MatchStar):
+        yield ir.Operation("type" if isinstance(pattern, ast.MatchClass) else "shape", [subject], where)
+        for inner, part in _parts(pattern, subject, where, lower):
+            yield from conditions(inner, part, where, lower)
+
+
 def _parts(
     pattern: ast.pattern, subject: ir.Expr, where: ir.Pos, lower: Lower
 ) -> Iterator[tuple[ast.pattern, ir.Expr]]:

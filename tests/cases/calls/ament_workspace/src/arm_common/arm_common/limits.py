@@ -1,0 +1,5 @@
+LIMITS = {"height": 1.0}
+
+
+def limited(name, value):
+    return min(value, LIMITS[name])

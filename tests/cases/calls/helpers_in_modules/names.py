@@ -1,0 +1,2 @@
+def join_names(*parts):
+    return "/".join(parts)
