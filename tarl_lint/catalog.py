@@ -153,7 +153,7 @@ WAITING_METHODS: Final = frozenset(
 MUTATORS: Final = frozenset(
     [
         "append", "appendleft", "extend", "extendleft", "insert", "add", "update", "put", "put_nowait", "push",
-        "fill", "set", "setdefault", "itemset", "write", "push_back", "send",
+        "fill", "set", "setdefault", "itemset", "write", "push_back", "send", "clear",
     ]
 )  # fmt: skip
 

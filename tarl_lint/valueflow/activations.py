@@ -80,11 +80,16 @@ class Activations(Evaluation):
         depth = len(self.store.layers) - 1
         frame.depth_of_layers = depth
         frame.root_waits = caller.root_waits
-        frame.jumps, frame.tries = [], []
+        frame.jumps, frame.tries, frame.escapes = [], [], []
         self.bind_parameters(frame, closure, passed)
+        frame.guards |= frozenset(self.guards)
+        self.guards, guards = [], self.guards
         self.stack.append(frame)
         result = self.run(frame)
         self.stack.pop()
+        self.guards = guards
+        if frame.escapes:
+            self.escaped(frame, caller)
         self.store.cut(depth)
         self.merge([_lasting(d, frame) for d, _ in frame.returns] or [{}])
         if frame.function.generator:
@@ -92,6 +97,10 @@ class Activations(Evaluation):
             self.add_element(pointer(collected), frame.yielded)
             return pointer(collected)
         return result
+
+    def escaped(self, frame: Frame, caller: Frame) -> None:
+        """Let what comes after a call depend on whether the called function raises."""
+        raise NotImplementedError
 
     def _again(self, closure: Obj, arguments: Arguments) -> Value:
         """Return the result of a recursive call: what is known by now, and data of the arguments."""

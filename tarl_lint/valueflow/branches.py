@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.raising import Raising
 from tarl_lint.valueflow.store import Delta
-from tarl_lint.valueflow.taking import Taking
 from tarl_lint.valueflow.values import (
     BOTTOM,
     UNKNOWN,
+    Attempt,
     Frame,
     Value,
 )
@@ -15,7 +16,7 @@ from tarl_lint.valueflow.values import (
 MAX_PASSES = 12  # over a loop's body; a safety net, since the values that can arise are finite
 
 
-class Branches(Taking):
+class Branches(Raising):
     """Executes what has statements inside."""
 
     def decide(self, test: ir.Expr, s: ir.Stmt, frame: Frame) -> bool | None:
@@ -23,7 +24,7 @@ class Branches(Taking):
         node = self.condition(frame, s)
         value = self.evaluate(test, frame)
         frame.statement = s
-        self.graph.flow(self.truth(value), node)
+        self.graph.flow(self.truth(value, frame, "test"), node)
         known, constant = value.constant()
         if value.consts and not value.pts and not known:
             ways = {bool(c) for c in value.consts}
@@ -108,7 +109,8 @@ class Branches(Taking):
         self.condition(frame, s)
         self.store.push()
         states: list[Delta] = [{}]
-        frame.tries.append((depth, states))
+        attempt = Attempt(depth, states, bool(s.handlers), BOTTOM)
+        frame.tries.append(attempt)
         goes_on = True
         for statement in s.body:
             goes_on = self.block([statement], frame)
@@ -121,7 +123,7 @@ class Branches(Taking):
             ends.append(self.store.since(depth))
         self.store.cut(depth)
         if s.handlers:
-            ends += self._handlers(s, states, frame)
+            ends += self._handlers(s, states, attempt.raised, frame)
         if not ends:
             if s.final:
                 self.store.push(self.joined(states))
@@ -131,14 +133,14 @@ class Branches(Taking):
         self.merge(ends)
         return self.block(s.final, frame)
 
-    def _handlers(self, s: ir.Try, states: list[Delta], frame: Frame) -> list[Delta]:
+    def _handlers(self, s: ir.Try, states: list[Delta], raised: Value, frame: Frame) -> list[Delta]:
         depth = len(self.store.layers)
         start = self.joined(states)
         ends: list[Delta] = []
         for _, name, body in s.handlers:
             self.store.push(start)
             if name is not None:
-                self.assign(name, UNKNOWN, frame)
+                self.assign(name, raised if raised.deps or raised.pts else UNKNOWN, frame)
             if self.block(body, frame):
                 ends.append(self.store.since(depth))
             self.store.cut(depth)

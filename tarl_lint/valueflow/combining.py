@@ -6,6 +6,7 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.heap import ANY, KEYS, LENGTH, item_field
 from tarl_lint.valueflow.joining import Joining
 from tarl_lint.valueflow.values import (
+    ABSENT,
     BOTTOM,
     NONE,
     UNKNOWN,
@@ -120,6 +121,12 @@ class Combining(Joining):
                 self.add_element(pointer(obj), content)
         if not value.pts and value.deps:
             self.add_element(pointer(obj), Value(value.deps))
+
+    def empty(self, obj: Obj) -> None:
+        """Take everything out of a container."""
+        for name in list(obj.fields):
+            if name.startswith("[") or name in (ANY, KEYS, LENGTH):
+                self.store.put((obj, name), ABSENT)
 
     # --- lengths ------------------------------------------------------------------------------------------
 

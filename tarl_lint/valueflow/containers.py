@@ -37,25 +37,35 @@ class Containers(Calls):
     def mutate(self, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
         """Store arguments in the receiver."""
         plain, named = arguments
-        if name in ("extend", "extendleft", "update"):
-            for obj in base.pts:
-                if name == "update" and obj.kind in ("mapping", "lib", "instance"):
-                    for value in plain:
-                        self.absorb(obj, value)
-            news = join_all([self.elements(v) for v in plain] if name != "update" else [])
-            for name_, value in named.items():
-                self.write_field(base, item_field(name_), value)
+        if name == "clear":
+            for obj in base.pts if len(base.pts) == 1 else ():
+                self.empty(obj)
         elif name == "setdefault" and len(plain) > 1:
             for obj in base.pts:
                 for key in plain[0].consts or (None,):
                     self.weaken(obj, ANY if key is None else item_field(key), plain[1])
-            return
-        else:
-            news = join_all(plain[-1:] if name == "insert" else plain)
-        if name in ("extend", "extendleft") and plain:
-            for obj in base.pts:
+        elif name == "update" and base.pts:
+            self._update(base, plain, named)
+        elif name in ("extend", "extendleft"):
+            for obj in base.pts if plain else ():
                 self.lengthen(obj, plain[0])
-        if news is BOTTOM or (name == "update" and base.pts):
+            self._insert(base, [self.elements(v) for v in plain], frame, call)
+        else:
+            self._insert(base, plain[-1:] if name == "insert" else plain, frame, call)
+
+    def _update(self, base: Value, plain: list[Value], named: Mapping[str, Value]) -> None:
+        for obj in base.pts if plain else ():
+            if obj.kind == "sequence":
+                self.add_element(pointer(obj), join_all(self.elements(v) for v in plain))
+            elif obj.kind in ("mapping", "lib", "instance"):
+                for value in plain:
+                    self.absorb(obj, value)
+        for name, value in named.items():
+            self.write_field(base, item_field(name), value)
+
+    def _insert(self, base: Value, values: list[Value], frame: Frame, call: ir.Call) -> None:
+        news = join_all(values)
+        if news is BOTTOM:
             return
         function = call.function
         news = self.through_statement(news, frame, call)

@@ -6,14 +6,19 @@ from `raise`. Sets of statements are bit masks.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Final
 
 from tarl_lint.valueflow import ir
 
 Branch = tuple[int, str]  # number of the deciding statement, the way it went
 
+Raising = Mapping[int, Iterable[str]]
+
 EXIT = 0
+NOTHING_RAISES: Raising = {}
+ALL: Final = frozenset(["Exception", "BaseException"])
 
 
 @dataclass(slots=True)
@@ -30,6 +35,7 @@ class _Graph:
     """Control-flow edges: statement → its successors by the way that leads there."""
 
     edges: dict[int, dict[str, int]] = field(default_factory=dict)
+    raising: Raising = field(default_factory=dict)
 
     def link(self, source: int, way: str, target: int) -> None:
         self.edges.setdefault(source, {})[way] = target
@@ -41,12 +47,21 @@ class _Exits:
 
     on_break: int = EXIT
     on_continue: int = EXIT
-    on_raise: int = EXIT
+    on_raise: int = EXIT  # where no handler is
+    handlers: tuple[tuple[frozenset[str], int], ...] = ()  # names of what each takes, none for all
+
+    def of(self, name: str) -> int:
+        """Return where an exception leads: the handler that names it, else one for all, else the first."""
+        if not self.handlers:
+            return self.on_raise
+        named = [entry for names, entry in self.handlers if name and name in names]
+        general = [entry for names, entry in self.handlers if not names]
+        return next(iter([*named, *general]), self.handlers[0][1])
 
 
-def control_dependence(body: Sequence[ir.Stmt]) -> Control:
-    """Return the control dependence of a function's statements."""
-    graph = _Graph()
+def control_dependence(body: Sequence[ir.Stmt], raising: Raising = NOTHING_RAISES) -> Control:
+    """Return the control dependence of a function's statements. `raising` names what calls in a statement raise."""
+    graph = _Graph(raising=raising)
     entry = _block(graph, body, EXIT, _Exits())
     order = _reachable(graph, entry)
     after = _postdominators(graph, order)
@@ -67,7 +82,7 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
         graph.link(s.id, "then", _block(graph, s.body, follow, exits))
         graph.link(s.id, "else", _block(graph, s.orelse, follow, exits))
     elif isinstance(s, ir.Loop):
-        inner = _Exits(follow, s.id, exits.on_raise)
+        inner = _Exits(follow, s.id, exits.on_raise, exits.handlers)
         graph.link(s.id, "body", _block(graph, s.body, s.id, inner))
         if not s.endless:
             graph.link(s.id, "done", _block(graph, s.orelse, follow, exits))
@@ -80,19 +95,36 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
     elif isinstance(s, ir.Return):
         graph.link(s.id, "", EXIT)
     elif isinstance(s, ir.Raise):
-        graph.link(s.id, "", exits.on_raise)
+        graph.link(s.id, "", exits.of(raised(s.value)))
     elif isinstance(s, ir.Jump):
         graph.link(s.id, "", exits.on_break if s.kind == "break" else exits.on_continue)
     else:
         graph.link(s.id, "", follow)
+    for name in graph.raising.get(s.id, ()):
+        graph.link(s.id, f"raises {name}", exits.of(name))
     return s.id
+
+
+def raised(expr: ir.Expr | None) -> str:
+    """Return the name of the class that is raised, "" when nothing tells."""
+    if isinstance(expr, ir.Call):
+        expr = expr.function
+    return expr.name if isinstance(expr, (ir.Name, ir.Attribute)) else ""
+
+
+def _taken(types: ir.Expr | None) -> frozenset[str]:
+    """Return the names of the classes that a handler takes, none for all."""
+    parts = types.items if isinstance(types, ir.SequenceDisplay) else [types]
+    names = frozenset(raised(part) for part in parts)
+    return frozenset() if names & (ALL | {""}) else names
 
 
 def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
     """The statement itself chooses a handler: which one, nothing tells."""
     after = _block(graph, s.final, follow, exits)
     handlers = [_block(graph, body, after, exits) for _, _, body in s.handlers]
-    inner = _Exits(exits.on_break, exits.on_continue, handlers[0] if handlers else after)
+    takes = tuple((_taken(types), entry) for (types, _, _), entry in zip(s.handlers, handlers, strict=True))
+    inner = _Exits(exits.on_break, exits.on_continue, after, takes)
     orelse = _block(graph, s.orelse, after, exits)
     graph.link(s.id, "body", _block(graph, s.body, orelse, inner))
     for number, handler in enumerate(handlers):

@@ -122,8 +122,9 @@ class Evaluation(Displays):
     def element(self, obj: Obj, key: object) -> Value:
         """Return one element by a constant index or key."""
         name = item_field(key)
-        if obj.kind in ("sequence",) and isinstance(key, int) and key < 0:
-            return self.read_any(obj)
+        if obj.kind == "sequence" and isinstance(key, int) and key < 0:
+            known = self.unpacked(pointer(obj))
+            return known[key] if known and -key <= len(known) else self.read_any(obj)
         if obj.kind == "sequence" and self.store.get((obj, name)) is None and self.content(obj) is BOTTOM:
             return BOTTOM
         value = self.read_field(obj, name)
@@ -144,11 +145,14 @@ class Evaluation(Displays):
     def _choice(self, expr: ir.Choice, frame: Frame) -> Value:
         test = self.evaluate(expr.test, frame)
         known, constant = test.constant()
-        if known and not test.deps:
+        if known:
             return self.evaluate(expr.then if constant else expr.other, frame)
+        guard = self.guard(self.truth(test, frame, expr.slot), frame, expr.slot)
+        self.guards.append(guard)
         then, other = self.evaluate(expr.then, frame), self.evaluate(expr.other, frame)
+        self.guards.pop()
         node = self.node(frame, ("choice", expr.slot), "condition")
-        self.graph.control[node].update(self.use(test))
+        self.graph.control[node].add(guard)
         both = join(then, other)
         return Value(both.deps | {node}, both.pts, both.consts)
 

@@ -6,13 +6,16 @@ from collections.abc import Callable, Mapping, Sequence
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.branches import Branches
-from tarl_lint.valueflow.control import control_dependence
+from tarl_lint.valueflow.control import control_dependence, raised
+from tarl_lint.valueflow.heap import item_field
 from tarl_lint.valueflow.lower import lower_body
 from tarl_lint.valueflow.machine import Invocation, Publisher
 from tarl_lint.valueflow.values import (
+    ABSENT,
     BOTTOM,
     UNKNOWN,
     ClassInfo,
+    Escape,
     Frame,
     Obj,
     Value,
@@ -153,13 +156,16 @@ class Execution(Branches):
         return frame.depth_of_layers
 
     def _raised(self, s: ir.Raise, frame: Frame) -> bool:
+        value = UNKNOWN
         if s.value is not None:
-            raised = self.evaluate(s.value, frame)
-            for cls in sorted((o for o in raised.pts if o.kind == "class"), key=lambda o: str(o.key)):
-                self.instantiate(cls, ([], {}), frame, ir.Call(s.value, (), (), s.pos, -1))
+            value = self.evaluate(s.value, frame)
+            frame.statement = s
+            whole = Value(self.use(value), value.pts)  # what is inside is forgotten with the function's state
+            value = self.carry(whole, self.node(frame, ("raise",), "call"))
         if frame.tries:
-            depth, states = frame.tries[-1]
-            states.append(self.store.since(depth))
+            attempt = frame.tries[-1]
+            attempt.states.append(self.store.since(attempt.depth))
+        self.leave(Escape(frame, s, raised(s.value), value), frame)
         return False
 
     def _jump(self, s: ir.Jump, frame: Frame) -> bool:
@@ -172,7 +178,18 @@ class Execution(Branches):
         for target in s.targets:
             if isinstance(target, ir.Name):
                 self.store.put((self.holder(target, frame), target.name), UNKNOWN)
+            elif isinstance(target, ir.Item):
+                self.remove(self.evaluate(target.base, frame), target.index, frame)
         return True
+
+    def remove(self, base: Value, index: ir.Expr, frame: Frame) -> None:
+        """Take an element out of a mapping, or all elements out of a sequence."""
+        known, key = self.evaluate(index, frame).constant()
+        for obj in base.pts if len(base.pts) == 1 else ():
+            if isinstance(index, ir.Slice) and not index.parts:
+                self.empty(obj)
+            elif known and obj.kind == "mapping" and self.content(obj) is BOTTOM:
+                self.store.put((obj, item_field(key)), ABSENT)
 
     # --- branches -----------------------------------------------------------------------------------------
 

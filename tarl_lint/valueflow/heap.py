@@ -248,7 +248,22 @@ class Heap(Allocation):
         if index.consts is None or not index.consts or len(index.consts) > 1:
             self.add_element(base, value)
             return
-        self.write_field(base, item_field(next(iter(index.consts))), value)
+        key = next(iter(index.consts))
+        if isinstance(key, int) and key < 0 and any(o.kind == "sequence" for o in base.pts):
+            key = self.from_end(base, key)
+            if key < 0:
+                self.add_element(base, value)
+                return
+        self.write_field(base, item_field(key), value)
+
+    def from_end(self, base: Value, key: int) -> int:
+        """Return a negative index counted from the start, where the length is known."""
+        known = self.unpacked(base)
+        return key + len(known) if known and -key <= len(known) else key
+
+    def unpacked(self, value: Value) -> list[Value] | None:
+        """Return the elements of a sequence whose elements are known one by one."""
+        raise NotImplementedError
 
 
 def _binding(obj: Obj) -> str:

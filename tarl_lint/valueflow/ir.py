@@ -167,6 +167,7 @@ class Function:
     pos: Pos
     body: Sequence[Stmt] | None = None
     control: object = None
+    raising: dict[int, dict[str, None]] = field(default_factory=dict)  # statement → what its calls raise
     generator: bool = False
 
 

@@ -126,6 +126,7 @@ class Machine:
         self.delivered: frozenset[Obj] = frozenset()  # messages that ROS hands over in this run
         self.patient = True  # what is not known yet may be stored by a root that runs later
         self.waiting: dict[Root, None] = {}  # roots that met such a thing
+        self.guards: list[int] = []  # decisions inside the expression that is being evaluated
         self.spent = 0  # statements executed in this run of a root
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.sources: dict[tuple[str, ir.Pos], SourceRecord] = {}
@@ -169,13 +170,14 @@ class Machine:
 
     def control(self, frame: Frame) -> Control:
         """Return the control dependence of a frame's function."""
-        if frame.control is None:
-            function = frame.function
+        function = frame.function
+        if frame.cls is None and (frame.control is None or frame.control is not function.control):
             if function.control is None:
                 body = lower_body(function, frame.program.package)
-                function.control = control_dependence(body)
+                function.control = control_dependence(body, function.raising)
             frame.control = function.control
-        assert isinstance(frame.control, Control)  # noqa: S101 - set above
+            frame.closures = {}
+        assert isinstance(frame.control, Control)  # noqa: S101 - set above, for classes when they are made
         return frame.control
 
     def node(self, frame: Frame, slot: Hashable, role: str, pos: ir.Pos | None = None) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from typing import Any
 
 from tarl_lint.valueflow import ir
@@ -13,6 +13,7 @@ from tarl_lint.valueflow.values import (
     NONE,
     Frame,
     Nodes,
+    Obj,
     Value,
     join,
 )
@@ -34,6 +35,8 @@ FOLDED: Mapping[str, Callable[..., object]] = {
     ">": operator.gt,
     ">=": operator.ge,
 }
+CONTAINERS = frozenset(["sequence", "mapping"])
+CALLING = (ir.Call, ir.Choice, ir.Operation)  # parts in which calls may depend on those before
 OURS = frozenset(["instance", "sequence", "mapping"])  # whose type is in the files, whatever is in them
 MESSAGES = frozenset(["message", "goal"])
 MAX_TEXT = 300
@@ -43,9 +46,9 @@ class Operators(Combining):
     """Evaluates operators."""
 
     def _operation(self, expr: ir.Operation, frame: Frame) -> Value:
-        values = [self.evaluate(p, frame) for p in expr.parts]
         if expr.operator in ("or", "and"):
-            return self.boolean(expr.operator, values)
+            return self.boolean(expr, frame)
+        values = [self.evaluate(p, frame) for p in expr.parts]
         if expr.operator in ("+=", "|=") and values[0].pts:
             return self.grown(expr.operator, values)
         if expr.operator in COMBINING and any(v.pts for v in values):
@@ -53,11 +56,11 @@ class Operators(Combining):
             if made is not None:
                 return made
         deps = NONE
-        for value in values:
-            deps |= self.tested(expr.operator, value)
+        for number, value in enumerate(values):
+            deps |= self.tested(expr.operator, value, frame, (expr.pos, number))
         return Value(deps, consts=self.fold(expr.operator, values))
 
-    def tested(self, name: str, value: Value) -> Nodes:
+    def tested(self, name: str, value: Value, frame: Frame, slot: Hashable) -> Nodes:
         """Return the nodes whose data an operator uses. Whether a message is there at all is not data of it."""
         if name == "shape":
             return self.length(value)
@@ -65,26 +68,53 @@ class Operators(Combining):
             return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in OURS)))
         if name in ("is", "is not"):
             return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in MESSAGES)))
-        return self.truth(value) if name == "not" else self.use(value)
+        return self.truth(value, frame, slot) if name == "not" else self.use(value)
 
-    def truth(self, value: Value) -> Nodes:
-        """Return the nodes that decide whether a value counts as true: a whole message always does."""
-        kept = frozenset(o for o in value.pts if o.kind not in MESSAGES or o.parent is not None)
-        return self.use(value if len(kept) == len(value.pts) else Value(value.deps, kept))
+    def truth(self, value: Value, frame: Frame, slot: Hashable) -> Nodes:
+        """Return the nodes that decide whether a value counts as true.
 
-    def boolean(self, name: str, values: list[Value]) -> Value:
-        """Return what `a or b` may be: one of them, decided by the former."""
-        result, deps = BOTTOM, NONE
-        for value in values:
+        A whole message always does, and so does an object that says nothing else; of a container it is the length.
+        """
+        if not value.pts:
+            return value.deps
+        ours = frozenset(o for o in value.pts if o.kind in CONTAINERS)
+        kept = frozenset(o for o in value.pts if o.kind not in CONTAINERS and not self._always_true(o))
+        deps = self.use(Value(value.deps, kept)) | self.length(Value(pts=ours))
+        if ours:
+            node = self.node(frame, ("truth", slot), "condition")
+            self.graph.choice(self.deep(ours), node)
+            deps |= {node}
+        return deps
+
+    def _always_true(self, obj: Obj) -> bool:
+        if obj.kind == "instance":
+            return not any(self.read_field(obj, name).pts for name in ("__bool__", "__len__"))
+        return obj.kind in MESSAGES and obj.parent is None
+
+    def boolean(self, expr: ir.Operation, frame: Frame) -> Value:
+        """Return what `a or b` may be: one of them, decided by the former, on which the rest depends."""
+        result, deps, guards = BOTTOM, NONE, len(self.guards)
+        for number, part in enumerate(expr.parts):
+            value = self.evaluate(part, frame)
+            last = number + 1 == len(expr.parts)
             known, constant = value.constant()
-            decided = known and not value.deps and bool(constant) is (name == "or")
-            passed = known and not value.deps and not decided and value is not values[-1]
-            deps |= self.truth(value)
-            if not passed:
+            decided = known and bool(constant) is (expr.operator == "or")
+            decides = self.truth(value, frame, (expr.pos, number))
+            deps |= decides
+            if last or decided or not known:
                 result = join(result, value)
             if decided:
                 break
+            if not last and not known and isinstance(expr.parts[number + 1], CALLING):
+                self.guards.append(self.guard(decides, frame, (expr.pos, number)))
+        del self.guards[guards:]
         return Value(result.deps | deps, result.pts, result.consts)
+
+    def guard(self, decides: Nodes, frame: Frame, slot: Hashable) -> int:
+        """Return the node of a decision inside an expression."""
+        node = self.node(frame, ("guard", slot), "condition")
+        self.graph.flow(decides, node)
+        return node
 
     def fold(self, name: str, values: list[Value]) -> frozenset[object] | None:
         """Return the constants that an operator makes of constants."""

@@ -56,6 +56,8 @@ class Records(Containers):
                 self.store.put((obj, item_field(number)), value)
         for name, value in given.items():
             self.store.put((obj, name), value)
+        if plain and isinstance(cls.info, ClassInfo) and cls.info.external and not numbered:
+            self.add_element(pointer(obj), Value(self.all_used((plain, {}))))
         self._after(obj, cls, frame, call)
 
     def _after(self, obj: Obj, cls: Obj, frame: Frame, call: ir.Call) -> None:

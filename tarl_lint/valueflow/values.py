@@ -76,6 +76,27 @@ class Obj:
 Key = tuple[Obj, str]
 
 
+@dataclass(slots=True, eq=False)
+class Attempt:
+    """A `try` whose body is being executed: states in which a handler can be entered, and what it is given."""
+
+    depth: int
+    states: list[dict[Key, Value]]
+    handled: bool
+    raised: Value
+
+
+@dataclass(slots=True, eq=False)
+class Escape:
+    """An exception that leaves a function: where, what, and the decision of the call that it comes from."""
+
+    frame: Frame
+    statement: ir.Stmt
+    name: str
+    value: Value
+    decision: int | None = None
+
+
 class Frame(Obj):
     """One activation of a function, known by its chain of calls. Its fields are the local variables."""
 
@@ -91,7 +112,9 @@ class Frame(Obj):
         "cls",
         "control",
         "depth_of_layers",
+        "escapes",
         "function",
+        "guards",
         "id",
         "jumps",
         "module",
@@ -120,6 +143,7 @@ class Frame(Obj):
         self.call_pos: ir.Pos | None = None
         self.slot: object = 0
         self.answer: object = None  # who gets what the function returns, when ROS asked for it
+        self.guards: frozenset[int] = frozenset()  # decisions inside the calling expression
         self.outer: Frame | None = None
         self.owner: Obj | None = None  # the class a method is defined in, for super()
         self.cls: Obj | None = None  # the class that is being made, when this is a class body
@@ -132,7 +156,8 @@ class Frame(Obj):
         self.jumps: list[tuple[int, dict[str, list[dict[Key, Value]]]]] = []
         self.depth_of_layers = 0
         self.root_waits = False  # runs beside callbacks: every turn of a loop may find news
-        self.tries: list[tuple[int, list[dict[Key, Value]]]] = []
+        self.tries: list[Attempt] = []
+        self.escapes: list[Escape] = []
         self.result = BOTTOM
         self.yielded = BOTTOM
         self.arguments: list[Value] = []
@@ -245,7 +270,12 @@ class ClassInfo:
     def opaque(self) -> bool:
         """Tell whether code that is not analysed may see its instances' attributes and call its methods."""
         inherited = any(isinstance(b.info, ClassInfo) and b.info.opaque for b in self.bases)
-        return inherited or any(e not in PLAIN_BASES for e in self.external)
+        return inherited or any(not _plain(e) for e in self.external)
+
+
+def _plain(base: str) -> bool:
+    """Tell whether a class of a library calls no methods that its heirs add: exceptions, containers, and the like."""
+    return base in PLAIN_BASES or base.startswith("builtins.")
 
 
 def lineage(cls: Obj) -> list[Obj]:
