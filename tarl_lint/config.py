@@ -40,6 +40,8 @@ class Options:
     fail_on: FailOn | None = None
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] | None = None
     stdin: Stdin | None = None
+    cache: bool = True
+    jobs: int | None = None  # processes; None: as many as pay
 
 
 @dataclass(frozen=True)

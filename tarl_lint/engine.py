@@ -2,27 +2,44 @@
 
 from __future__ import annotations
 
-import gc
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Final
 
 from tarl_lint.config import Config
 from tarl_lint.evidence import Evidence
+from tarl_lint.memory import without_collection
 from tarl_lint.model import Finding, Flow
-from tarl_lint.relevance import relevant
+from tarl_lint.relevance import groups, relevant
 from tarl_lint.rules import tarl101, tarl102, tarl201, tarl202, tarl203, tarl204
 from tarl_lint.source import Module
 from tarl_lint.taint import Tracer
 from tarl_lint.valueflow.link import Linker
 
+MAX_RECURSION: Final = 5_000
 HAZARDS: Final = (tarl201, tarl202, tarl203, tarl204)
 
 
 def lint(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
     """Return every finding: flows, and hazards of the rules that are wanted."""
-    machine, flows = trace(modules, config)
-    return (*findings(flows), *hazards(machine, flows, config))
+    return tuple(f for group in groups(modules, config) for f in examine(group, config)[0])
+
+
+def examine(
+    modules: Sequence[Module], config: Config, *, isolate: bool = False
+) -> tuple[tuple[Finding, ...], dict[str, Exception]]:
+    """Return the findings in modules that belong together, and on which files the analysis itself failed.
+
+    Unless isolated, failures are raised. The rest is found all the same, as if what failed did nothing.
+    """
+    failures: dict[str, Exception] | None = {} if isolate else None
+    with without_collection(), deep_recursion():
+        machine = Linker(modules, config, failures)
+        machine.link()
+        flows = Tracer(machine).flows()
+        found = (*findings(flows), *hazards(machine, flows, config))
+    return found, failures or {}
 
 
 def analyse(modules: Sequence[Module], config: Config) -> tuple[Flow, ...]:
@@ -32,8 +49,8 @@ def analyse(modules: Sequence[Module], config: Config) -> tuple[Flow, ...]:
 
 def trace(modules: Sequence[Module], config: Config) -> tuple[Linker, tuple[Flow, ...]]:
     """Return the flows and the machine that found them, which can be asked more."""
-    machine = Linker(relevant(sorted(modules, key=lambda m: m.path), config), config)
-    with _without_collection():
+    with without_collection(), deep_recursion():
+        machine = Linker(relevant(modules, config), config)
         machine.link()
         flows = Tracer(machine).flows()
     return machine, flows
@@ -57,12 +74,11 @@ def hazards(machine: Linker, flows: Sequence[Flow], config: Config) -> tuple[Fin
 
 
 @contextmanager
-def _without_collection() -> Iterator[None]:
-    """Keep the garbage collector from walking the live trees again and again."""
-    active = gc.isenabled()
-    gc.disable()
+def deep_recursion() -> Iterator[None]:
+    """Allow calls as deep as calls and expressions of real programs are nested: each takes several of ours."""
+    before = sys.getrecursionlimit()
+    sys.setrecursionlimit(max(before, MAX_RECURSION))
     try:
         yield
     finally:
-        if active:
-            gc.enable()
+        sys.setrecursionlimit(before)

@@ -4,27 +4,51 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterable, Mapping
+from typing import Generic, Protocol, TypeVar
 
-from tarl_lint.source import Module
+
+class Named(Protocol):
+    """A file of Python, parsed or not."""
+
+    @property
+    def path(self) -> str:
+        """Return the path as shown to people."""
+
+    @property
+    def name(self) -> str:
+        """Return the dotted name."""
+
+    @property
+    def text(self) -> str:
+        """Return the source."""
+
+    @property
+    def is_package(self) -> bool:
+        """Tell whether it is a package's `__init__.py`."""
 
 
-class Index:
+M = TypeVar("M", bound=Named)
+
+
+class Index(Generic[M]):
     """The modules of one run by dotted name; a monorepo may have several of one name."""
 
-    def __init__(self, modules: Iterable[Module]) -> None:
-        self._by_name: dict[str, list[Module]] = {}
+    def __init__(self, modules: Iterable[M]) -> None:
+        self._by_name: dict[str, list[M]] = {}
         for module in modules:
             self._by_name.setdefault(module.name, []).append(module)
 
-    def find(self, name: str, importer: Module) -> Module | None:
+    def find(self, name: str, importer: Named) -> M | None:
         """Return the module that `importer` means: of several, the one that shares most of its path."""
-        candidates = self._by_name.get(name, [])
+        candidates = self._by_name.get(name)
         if not candidates:
             return None
+        if len(candidates) == 1:
+            return candidates[0]
         return max(candidates, key=lambda m: (_shared(m.path, importer.path), m.path))
 
     @property
-    def names(self) -> Mapping[str, list[Module]]:
+    def names(self) -> Mapping[str, list[M]]:
         """Return the modules by name."""
         return self._by_name
 

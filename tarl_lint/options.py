@@ -75,6 +75,7 @@ def parser() -> argparse.ArgumentParser:
     _add_output(made.add_argument_group("what is shown"))
     _add_choice(made.add_argument_group("what is reported"))
     _add_policy(made.add_argument_group("when to fail"))
+    _add_speed(made.add_argument_group("how fast"))
     return made
 
 
@@ -133,6 +134,28 @@ def _add_policy(group: argparse._ArgumentGroup) -> None:
     group.add_argument("--write-baseline", action="store_true", help="accept all present flows")
 
 
+def _add_speed(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--jobs",
+        type=_jobs,
+        metavar="N",
+        help="analyse in N processes; auto (default): as many as there are processors, for large trees",
+    )
+    group.add_argument(
+        "--no-cache",
+        action="store_true",
+        help="neither read nor write .tarl/cache/lint, where results are kept",
+    )
+
+
+def _jobs(text: str) -> int | None:
+    if text == "auto":
+        return None
+    if not text.isdecimal() or int(text) == 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of processes: write 1 or more, or auto")
+    return int(text)
+
+
 def options(typed: argparse.Namespace) -> Options:
     """Return what the user typed, as far as it decides what is found. Raises UsageError for contradictions."""
     if typed.no_baseline and (typed.write_baseline or typed.baseline):
@@ -152,6 +175,8 @@ def options(typed: argparse.Namespace) -> Options:
         write_baseline=typed.write_baseline,
         fail_on=typed.fail_on,
         per_file_ignores=tuple(typed.per_file_ignores) if typed.per_file_ignores else None,
+        cache=not typed.no_cache,
+        jobs=typed.jobs,
     )
 
 

@@ -1,54 +1,73 @@
-"""Which modules can matter: those that subscribe or publish, what they import, and what imports them."""
+"""Which modules can matter, told by their text alone, and which of them may share a flow."""
 
 from __future__ import annotations
 
-import ast
-from collections.abc import Iterable, Iterator, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Final, TypeVar
 
 from tarl_lint import catalog
 from tarl_lint.config import Config
-from tarl_lint.names import Index
-from tarl_lint.source import Module
+from tarl_lint.names import Index, Named
+
+M = TypeVar("M", bound=Named)
+
+IMPORT: Final = re.compile(
+    r"""(?:^|[;:])[ \t]*
+        (?: from[ \t]+ (?P<base>[.\w][.\w \t]*?) [ \t]+ import[ \t]*
+            (?: \( (?P<inside> (?: [^)#] | \#[^\n]* )* ) | (?P<members> (?: [^\n\\;\#(] | \\\n )+ ) )
+          | import[ \t]+ (?P<modules> (?: [^\n\\;\#] | \\\n )+ )
+        )""",
+    re.VERBOSE | re.MULTILINE,
+)
+COMMENT: Final = re.compile(r"#[^\n]*")
+DOTTED: Final = re.compile(r"(?:^|,)[\s\\(]*([.\w]+)")
 
 
-def concerned(modules: Sequence[Module], config: Config) -> bool:
+def concerned(modules: Sequence[Named], config: Config) -> bool:
     """Tell whether any module subscribes or publishes, as far as words tell: if none does, nothing is found."""
-    sources, sinks = _words(config)
-    return any(_mentions(module, (*sources, *sinks)) for module in modules)
+    return any(True for _ in _mentioning(modules, config))
 
 
-def _words(config: Config) -> tuple[list[str], list[str]]:
-    """Return words without which a module neither subscribes nor publishes. A wrapper may do either."""
-    wrappers = [w.name.rpartition(".")[2] for w in config.wrappers]
-    sources = [*catalog.SOURCE_WORDS, *wrappers, *(s.rpartition(".")[2] for s in config.sources)]
-    sources += sorted(catalog.LOOKUPS) if config.tf2 else []
-    sinks = [*catalog.SINK_WORDS, *wrappers, *(s.rpartition(".")[2] for s in config.sinks)]
-    return sources, sinks
-
-
-def relevant(modules: Sequence[Module], config: Config) -> list[Module]:
+def relevant(modules: Sequence[M], config: Config) -> list[M]:
     """Return the modules that a flow may pass through, or a subscription or publisher that leads nowhere."""
-    sources, sinks = _words(config)
-    receiving = [m for m in modules if _mentions(m, sources)]
-    sending = [m for m in modules if _mentions(m, sinks)]
-    if not receiving and not sending:
+    return sorted((m for group in groups(modules, config) for m in group), key=lambda m: m.path)
+
+
+def groups(modules: Sequence[M], config: Config) -> list[tuple[M, ...]]:
+    """Return the modules that can matter, apart as far as none of one group imports one of another.
+
+    Those that subscribe or publish matter, those that import them, and what all of these import.
+    """
+    start = list(_mentioning(modules, config))
+    if not start:
         return []
     index = Index(modules)
     imports = {m.path: [i for i in _imports(m, index) if i is not m] for m in modules}
-    importers: dict[str, list[Module]] = {m.path: [] for m in modules}
+    importers: dict[str, list[M]] = {m.path: [] for m in modules}
     for module in modules:
         for imported in imports[module.path]:
             importers[imported.path].append(module)
-    above = _closure([*receiving, *sending], importers)
-    kept = {m.path for m in _closure(above, imports)}
-    return [m for m in modules if m.path in kept]
+    kept = {m.path: m for m in _closure(_closure(start, importers), imports)}
+    either = {p: [n for n in (*imports[p], *importers[p]) if n.path in kept] for p in kept}
+    return list(_connected(kept, either))
 
 
-def _mentions(module: Module, words: Iterable[str]) -> bool:
-    return any(word in module.text for word in words)
+def _mentioning(modules: Iterable[M], config: Config) -> Iterator[M]:
+    """Yield the modules with a word without which a module neither subscribes nor publishes."""
+    named = (*(w.name for w in config.wrappers), *config.sources, *config.sinks)
+    words = {*catalog.SOURCE_WORDS, *catalog.SINK_WORDS, *(name.rpartition(".")[2] for name in named)}
+    words |= set(catalog.LOOKUPS) if config.tf2 else set()
+    search = re.compile("|".join(_whole(word) for word in sorted(words))).search
+    return (m for m in modules if search(m.text))
 
 
-def _closure(start: Iterable[Module], edges: dict[str, list[Module]]) -> list[Module]:
+def _whole(word: str) -> str:
+    """Return a pattern for a word that is no part of a longer name (`publish` of `robot_state_publisher`)."""
+    return rf"\b{re.escape(word)}" + (r"\b" if word[-1].isalnum() else "")
+
+
+def _closure(start: Iterable[M], edges: Mapping[str, Sequence[M]]) -> list[M]:
     found = {m.path: m for m in start}
     pending = list(found.values())
     while pending:
@@ -59,25 +78,45 @@ def _closure(start: Iterable[Module], edges: dict[str, list[Module]]) -> list[Mo
     return list(found.values())
 
 
-def _imports(module: Module, index: Index) -> Iterator[Module]:
+def _connected(modules: Mapping[str, M], edges: Mapping[str, Sequence[M]]) -> Iterator[tuple[M, ...]]:
+    left = dict(sorted(modules.items()))
+    while left:
+        _, first = next(iter(left.items()))
+        group = _closure([first], edges)
+        for module in group:
+            del left[module.path]
+        yield tuple(sorted(group, key=lambda m: m.path))
+
+
+def _imports(module: M, index: Index[M]) -> Iterator[M]:
     """Yield the modules of the set that a module imports anywhere."""
-    if not any(name.rpartition(".")[2] in module.text for name in index.names):
+    if "import" not in module.text:
         return
-    for node in ast.walk(module.tree):
-        for name in _imported_names(node, module):
-            found = index.find(name, module)
-            if found is not None:
-                yield found
+    for name in dict.fromkeys(_imported_names(module)):
+        found = index.find(name, module)
+        if found is not None:
+            yield found
 
 
-def _imported_names(node: ast.AST, module: Module) -> list[str]:
-    if isinstance(node, ast.Import):
-        return [a.name for a in node.names]
-    if not isinstance(node, ast.ImportFrom):
-        return []
-    base = node.module or ""
-    if node.level:
-        parts = module.name.split(".") if module.is_package else module.name.split(".")[:-1]
-        kept = parts[: len(parts) - node.level + 1]
-        base = ".".join([*kept, base] if base else kept)
-    return [base, *(f"{base}.{a.name}" if base else a.name for a in node.names)]
+def _imported_names(module: Named) -> Iterator[str]:
+    """Yield the dotted names in import statements, and what looks like one in a text."""
+    for statement in IMPORT.finditer(module.text):
+        base, inside, members, modules = statement.groups()
+        if base is None:
+            yield from DOTTED.findall(modules)
+            continue
+        origin = _absolute(base.replace(" ", "").replace("\t", ""), module)
+        yield origin
+        for name in DOTTED.findall(COMMENT.sub("", inside) if inside is not None else members):
+            yield f"{origin}.{name}" if origin else name
+
+
+def _absolute(base: str, module: Named) -> str:
+    """Return the module that `from base import` means."""
+    name = base.lstrip(".")
+    level = len(base) - len(name)
+    if not level:
+        return base
+    parts = module.name.split(".") if module.is_package else module.name.split(".")[:-1]
+    kept = parts[: len(parts) - level + 1]
+    return ".".join([*kept, name] if name else kept)

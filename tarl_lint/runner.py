@@ -9,8 +9,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
 
-from tarl_lint import baseline, discover, suppress
+from tarl_lint import baseline, batch, cache, discover, source, suppress
 from tarl_lint.baseline import Accepted, Baseline, Fingerprint
+from tarl_lint.cache import Cache, Report
 from tarl_lint.config import Config, Options, Stdin
 from tarl_lint.discover import Notes, SourceFile
 from tarl_lint.errors import AnalysisBug, UsageError
@@ -18,7 +19,7 @@ from tarl_lint.layout import Layout
 from tarl_lint.model import Finding, Kind
 from tarl_lint.perfile import FileIgnores
 from tarl_lint.progress import Tell, silent
-from tarl_lint.source import Module, SourceError, parse
+from tarl_lint.source import Script, SourceError
 from tarl_lint.suppress import Suppression
 
 UNREADABLE: Final = "TARL001"
@@ -74,11 +75,13 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
     if not discovery.files:
         raise UsageError(_nothing(options.paths, discovery.notes))
     known = _accepted(options, config)
-    modules, errors = read(discovery.files, options.stdin, tell)
-    texts = {module.path: module.text for module in modules}
+    scripts, unread = read(discovery.files, options.stdin, tell)
+    report = _examine(scripts, options, config, tell)
+    errors = tuple(sorted((*unread, *report.errors), key=lambda e: (e.path, e.line)))
+    broken = {error.path for error in errors if not error.bug}
+    texts = {script.path: script.text for script in scripts if script.path not in broken}
     identities = _Identities(discovery.files, config)
-    tell(f"Following values through {len(modules)} {'file' if len(modules) == 1 else 'files'}")
-    wanted = tuple(identities.mark(f) for f in _analyse(modules, config) if config.enabled(f.code))
+    wanted = tuple(identities.mark(f) for f in report.findings if config.enabled(f.code))
     heard, unused = suppress.apply(wanted, texts)
     elsewhere = FileIgnores(config.root or Path.cwd(), config.per_file_ignores)
     silenced = len(wanted) - len(heard)
@@ -94,7 +97,7 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
         kept=kept,
         unused=tuple(s for s in unused if config.enabled(s.code or "TARL")),
         texts=texts,
-        statistics=Statistics(len(modules), lines, silenced, discovery.notes),
+        statistics=Statistics(len(texts), lines, silenced, discovery.notes),
         baseline=config.baseline if known.entries else None,
         names_errors=config.enabled(UNREADABLE),
         failing=failing(findings, config),
@@ -121,44 +124,33 @@ def failing(findings: Sequence[Finding], config: Config) -> frozenset[str]:
 
 def read(
     files: Sequence[SourceFile], stdin: Stdin | None = None, tell: Tell = silent
-) -> tuple[tuple[Module, ...], tuple[SourceError, ...]]:
-    """Parse the files. One that cannot be read, or on which the parser fails, becomes an error."""
-    parsed: list[Module | SourceError] = []
-    for number, file in enumerate(files, 1):
-        tell(f"Reading file {number} of {len(files)}")
-        parsed.append(_read(file, stdin))
-    modules = tuple(p for p in parsed if isinstance(p, Module))
-    return modules, tuple(p for p in parsed if isinstance(p, SourceError))
+) -> tuple[tuple[Script, ...], tuple[SourceError, ...]]:
+    """Read the files. One that cannot be read becomes an error."""
+    tell(f"Reading {len(files)} {'file' if len(files) == 1 else 'files'}")
+    found = [_read(file, stdin) for file in files]
+    scripts = tuple(f for f in found if isinstance(f, Script))
+    return scripts, tuple(f for f in found if isinstance(f, SourceError))
 
 
-def _read(file: SourceFile, stdin: Stdin | None) -> Module | SourceError:
+def _read(file: SourceFile, stdin: Stdin | None) -> Script | SourceError:
     try:
         typed = stdin is not None and stdin.path.absolute() == file.path
         data = stdin.data if stdin is not None and typed else file.path.read_bytes()
-        found = parse(file.shown, data, file.name)
     except OSError as error:
         return SourceError(file.shown, 1, f"This file cannot be read: {error.strerror}.")
-    except Exception as error:
-        if _debugging():
-            raise
-        what = f"{type(error).__name__}: {error}".rstrip(": ")
-        return SourceError(file.shown, 1, f"tarl-lint failed on this file ({what}); the fault is ours.")
-    if isinstance(found, Module) and found.is_package != file.is_package:
+    found = source.read(file.shown, data, file.name)
+    if isinstance(found, Script) and found.is_package != file.is_package:
         return replace(found, is_package=file.is_package)
     return found
 
 
-def _analyse(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
-    from tarl_lint.relevance import concerned
-
-    if not concerned(modules, config):
-        return ()
-    from tarl_lint import engine  # takes longer to import than most files to check
-
+def _examine(scripts: Sequence[Script], options: Options, config: Config, tell: Tell) -> Report:
+    keeps = options.cache and options.stdin is None
     try:
-        return engine.lint(modules, config)
+        known = cache.opened(options.paths, config) if keeps else Cache(None)
+        return batch.examine(scripts, config, known, options.jobs, tell)
     except Exception as error:
-        if _debugging():
+        if batch.debugging():
             raise
         import traceback
 
@@ -168,10 +160,6 @@ def _analyse(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
             f"tarl-lint has a bug and could not finish ({what}, {Path(last.filename).name}:{last.lineno}). "
             "Run it with TARL_DEBUG=1 for the traceback and report that, please; --exclude helps meanwhile."
         ) from None
-
-
-def _debugging() -> bool:
-    return os.environ.get("TARL_DEBUG", "") not in ("", "0")
 
 
 def _accepted(options: Options, config: Config) -> Baseline:

@@ -22,12 +22,23 @@ class Module:
 
 
 @dataclass(frozen=True)
+class Script:
+    """The same as far as it is known before it is parsed."""
+
+    path: str
+    name: str
+    text: str
+    is_package: bool = False
+
+
+@dataclass(frozen=True)
 class SourceError:
-    """Why a file cannot be analysed: a sentence, and the line it is about."""
+    """Why a file cannot be analysed: a sentence, and the line it is about. `bug` when the reason is ours."""
 
     path: str
     line: int
     message: str
+    bug: bool = False
 
 
 PYTHON_2 = re.compile(
@@ -43,6 +54,12 @@ PYTHON_2 = re.compile(
 
 def parse(path: str, data: bytes, name: str) -> Module | SourceError:
     """Decode as PEP 263 says and parse. Never raises."""
+    script = read(path, data, name)
+    return parsed(script) if isinstance(script, Script) else script
+
+
+def read(path: str, data: bytes, name: str) -> Script | SourceError:
+    """Decode as PEP 263 says. Never raises."""
     decoded = _decode(path, data)
     if isinstance(decoded, SourceError):
         return decoded
@@ -51,17 +68,23 @@ def parse(path: str, data: bytes, name: str) -> Module | SourceError:
         return SourceError(
             path, line, "The file holds a null byte, so it is not Python source: leave it out."
         )
+    return Script(path, name, decoded, path.rpartition("/")[2] == "__init__.py")
+
+
+def parsed(script: Script) -> Module | SourceError:
+    """Parse a file. Never raises."""
+    path = script.path
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # invalid escapes and the like are another linter's business
-            tree = ast.parse(decoded)
+            tree = ast.parse(script.text)
     except SyntaxError as error:
-        return _syntax_error(path, decoded, error)
+        return _syntax_error(path, script.text, error)
     except (RecursionError, MemoryError):
         return SourceError(path, 1, "The code is nested too deeply to be parsed: split the expression.")
     except ValueError as error:
         return SourceError(path, 1, f"The file cannot be parsed: {error}.")
-    return Module(path, name, decoded, tree, path.rpartition("/")[2] == "__init__.py")
+    return Module(path, script.name, script.text, tree, script.is_package)
 
 
 def _decode(path: str, data: bytes) -> str | SourceError:

@@ -93,9 +93,9 @@ class Graph:
             return content
         found: set[int] = set()
         rest = content
-        for carrier in sorted(carriers):
+        for carrier in carriers:
             inside = self.held.get(self._first(carrier))
-            for item in sorted(content & inside) if inside else ():
+            for item in content & inside if inside else ():
                 arrived = self._by(carrier, item)
                 if arrived:
                     found |= arrived

@@ -22,15 +22,33 @@ STARTS = frozenset(["init_node", "init", "create_node", "spin", "Subscriber", "c
 class Linker(Execution):
     """Runs modules, then callbacks, timers, threads and main functions, until the shared memory is stable."""
 
-    def __init__(self, modules: Sequence[Module], config: Config) -> None:
+    def __init__(
+        self, modules: Sequence[Module], config: Config, failures: dict[str, Exception] | None = None
+    ) -> None:
+        """With `failures`, what goes wrong is noted there by file, and the rest goes on."""
         super().__init__(modules, config)
         self.pending: dict[Root, None] = {}
+        self.failures = failures
         for module in modules:
-            program = lower_module(module)
+            program = self._lowered(module)
+            if program is None:
+                continue
             key = module.name if module.name not in self.programs else module.path
             program.name = key
             self.programs[key] = program
             self.module_objects[key] = Obj("module", key, key)
+
+    def _lowered(self, module: Module) -> ir.Program | None:
+        try:
+            return lower_module(module)
+        except Exception as error:
+            self._failed(module.path, error)
+            return None
+
+    def _failed(self, path: str, error: Exception) -> None:
+        if self.failures is None:
+            raise error
+        self.failures.setdefault(path, error)
 
     def link(self) -> None:
         """Run everything to the fixed point."""
@@ -85,7 +103,12 @@ class Linker(Execution):
         self.stack = []
         self.spent = 0
         self.delivered = frozenset()
-        run(root)
+        try:
+            run(root)
+        except Exception as error:
+            where = self.stack[-1].program if self.stack else next(iter(self.programs.values()))
+            self._failed(where.path, error)
+            return
         for key in self.store.own():
             value = self._at_end(key)
             value = self.store.mine(key, value) if value is not None else None

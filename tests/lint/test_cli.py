@@ -151,7 +151,7 @@ def test_settings_are_shown_as_they_would_be_written(node, capsys):
 
 
 def test_a_bug_of_ours_is_one_sentence(node, capsys, monkeypatch):
-    monkeypatch.setattr("tarl_lint.engine.lint", lambda modules, config: 1 / 0)
+    monkeypatch.setattr("tarl_lint.engine.examine", lambda modules, config, isolate: 1 / 0)
     code, out, err = lint(capsys)
     assert (code, out) == (2, "")
     assert "tarl-lint has a bug and could not finish (ZeroDivisionError" in err
@@ -287,4 +287,6 @@ def test_progress_is_told_on_terminals_only(node, capsys, monkeypatch):
     assert told == []
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     lint(capsys)
-    assert told == ["Looking for files", "Reading file 1 of 1", "Following values through 1 file"]
+    assert told == ["Looking for files", "Reading 1 file"]  # the rest was cached
+    lint(capsys, "--no-cache")
+    assert told[2:] == ["Looking for files", "Reading 1 file", "Analysing node.py (1 of 1)"]

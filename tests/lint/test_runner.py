@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import tarl_lint
-from tarl_lint import baseline, runner
+from tarl_lint import baseline, batch
 from tarl_lint.config import Options, resolve
 from tarl_lint.errors import AnalysisBug, UsageError
 from tarl_lint.runner import Result, exceeds, run
@@ -36,11 +36,11 @@ def accept(lint) -> Callable[..., Path]:
 
 @pytest.fixture
 def crash(monkeypatch):
-    def lint(modules, config):
+    def examine(modules, config, isolate):
         raise KeyError("graph")
 
     broken = types.ModuleType("tarl_lint.engine")
-    broken.lint = lint
+    broken.examine = examine
     monkeypatch.setitem(sys.modules, "tarl_lint.engine", broken)
     monkeypatch.setattr(tarl_lint, "engine", broken, raising=False)
 
@@ -63,13 +63,13 @@ def test_a_file_that_cannot_be_parsed_is_an_error_and_the_rest_is_linted(example
 
 
 def test_a_file_on_which_the_parser_crashes_is_an_error(example, in_directory, lint, monkeypatch):
-    def parse(path, data, name):
-        if path == "odd.py":
+    def parsed(script):
+        if script.path == "odd.py":
             raise AssertionError("boom")
-        return original(path, data, name)
+        return original(script)
 
-    original = runner.parse
-    monkeypatch.setattr(runner, "parse", parse)
+    original = batch.parsed
+    monkeypatch.setattr(batch, "parsed", parsed)
     in_directory({"node.py": example.text, "odd.py": ""})
     result = lint()
     assert [e.message for e in result.errors] == [

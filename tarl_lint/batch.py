@@ -1,0 +1,145 @@
+"""All files of a run, group by group: what an earlier run knows is taken from there, the rest is analysed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Final
+
+from tarl_lint.cache import Cache, Report, digest
+from tarl_lint.config import Config
+from tarl_lint.memory import tidy, without_collection
+from tarl_lint.progress import Tell, silent
+from tarl_lint.relevance import groups
+from tarl_lint.source import Module, Script, SourceError, parsed
+
+MANY_LINES: Final = 30_000  # to analyse; with fewer, starting processes takes longer than they save
+UNTIDY: Final = 20_000  # lines after which what holds itself is freed
+
+
+@dataclass(frozen=True)
+class Task:
+    """Files to be analysed together, or one that only has to be readable."""
+
+    scripts: tuple[Script, ...]
+    analyse: bool
+
+    @property
+    def lines(self) -> int:
+        """Return how much there is to analyse."""
+        return sum(s.text.count("\n") for s in self.scripts) if self.analyse else 0
+
+
+def examine(
+    scripts: Sequence[Script], config: Config, cache: Cache, jobs: int | None = 1, tell: Tell = silent
+) -> Report:
+    """Return what is found in the files, whatever the number of processes (None: as many as pay)."""
+    digests = {s.path: digest([s.path, s.name, str(s.is_package), s.text]) for s in scripts}
+    whole = digest(digests.values())
+    known = cache.plan(whole)
+    if known:
+        reports = [report for key in known if (report := cache.report(key)) is not None]
+    else:
+        tasks = _tasks(scripts, config)
+        keys = [digest([str(task.analyse), *(digests[s.path] for s in task.scripts)]) for task in tasks]
+        reports = _reports(tasks, keys, config, cache, jobs, tell)
+        cache.put_plan(whole, keys)
+    cache.save()
+    errors = sorted((e for r in reports for e in r.errors), key=lambda e: (e.path, e.line, e.message))
+    return Report(tuple(f for r in reports for f in r.findings), tuple(errors))
+
+
+def _tasks(scripts: Sequence[Script], config: Config) -> list[Task]:
+    grouped = [Task(group, analyse=True) for group in groups(scripts, config)]
+    inside = {s.path for task in grouped for s in task.scripts}
+    return [*grouped, *(Task((s,), analyse=False) for s in scripts if s.path not in inside)]
+
+
+def _reports(
+    tasks: Sequence[Task], keys: Sequence[str], config: Config, cache: Cache, jobs: int | None, tell: Tell
+) -> list[Report]:
+    found = [cache.report(key) for key in keys]
+    missing = [number for number, report in enumerate(found) if report is None]
+    work = [tasks[number] for number in missing]
+    for number, report in zip(missing, _made(work, config, _workers(work, jobs), tell), strict=True):
+        found[number] = report
+        cache.put(keys[number], report)
+    return [report for report in found if report is not None]
+
+
+def _workers(tasks: Sequence[Task], jobs: int | None) -> int:
+    """Return how many processes to use: never more than there are groups to analyse."""
+    wanted = sum(task.analyse for task in tasks)
+    if jobs is None:
+        jobs = _processors() if sum(task.lines for task in tasks) >= MANY_LINES else 1
+    return max(1, min(jobs, wanted))
+
+
+def _processors() -> int:
+    allowed = getattr(os, "sched_getaffinity", None)
+    return len(allowed(0)) if allowed is not None else os.cpu_count() or 1
+
+
+def _made(tasks: Sequence[Task], config: Config, workers: int, tell: Tell) -> Iterator[Report]:
+    if workers > 1:
+        yield from _in_processes(tasks, config, workers, tell)
+        return
+    lines = 0
+    with without_collection():
+        for number, task in enumerate(tasks, 1):
+            tell(f"Analysing {task.scripts[0].path} ({number} of {len(tasks)})")
+            yield perform(task, config)
+            lines += task.lines
+            if lines > UNTIDY:
+                tidy()
+                lines = 0
+
+
+def _in_processes(tasks: Sequence[Task], config: Config, workers: int, tell: Tell) -> Iterator[Report]:
+    """The largest first, so that nobody waits for a large one that came last."""
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    tell(f"Analysing in {workers} processes")
+    order = sorted(range(len(tasks)), key=lambda number: -tasks[number].lines)
+    with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
+        chunk = 1 + len(tasks) // (workers * 16)
+        done = pool.map(partial(perform, config=config), [tasks[n] for n in order], chunksize=chunk)
+        reports = dict(zip(order, done, strict=True))
+    yield from (reports[number] for number in range(len(tasks)))
+
+
+def perform(task: Task, config: Config) -> Report:
+    """Parse the files of a task and analyse them. A file on which we fail is reported as our mistake."""
+    with without_collection():
+        results = [_parsed(script) for script in task.scripts]
+        errors = tuple(r for r in results if isinstance(r, SourceError))
+        modules = [r for r in results if isinstance(r, Module)]
+        if not task.analyse or not modules:
+            return Report((), errors)
+        from tarl_lint import engine  # takes longer to import than most files to check
+
+        findings, failures = engine.examine(modules, config, isolate=not debugging())
+    return Report(findings, (*errors, *(failure(path, error) for path, error in failures.items())))
+
+
+def _parsed(script: Script) -> Module | SourceError:
+    try:
+        return parsed(script)
+    except Exception as error:
+        if debugging():
+            raise
+        return failure(script.path, error)
+
+
+def failure(path: str, error: Exception) -> SourceError:
+    """Say that a file could not be analysed by our fault."""
+    what = f"{type(error).__name__}: {error}".rstrip(": ")
+    return SourceError(path, 1, f"tarl-lint failed on this file ({what}); the fault is ours.", bug=True)
+
+
+def debugging() -> bool:
+    """Tell whether mistakes of ours are to be shown with their traceback."""
+    return os.environ.get("TARL_DEBUG", "") not in ("", "0")

@@ -1,0 +1,164 @@
+"""What earlier runs found, by content, settings and version. Trouble with it never fails a run.
+
+One file holds the entries of the last run on the same paths with the same settings. Its first line is the digest
+of the rest, so what is damaged is not read; it is written aside and renamed, so runs at the same time only
+replace each other's.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from hashlib import blake2b
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+from tarl_lint import __version__
+from tarl_lint.config import Config
+from tarl_lint.files import write_whole
+from tarl_lint.model import Finding, Flow, Sink, SiteId, Source, Span, Step
+from tarl_lint.source import SourceError
+
+T = TypeVar("T")
+
+FORMAT: Final = 1
+PLACE: Final = (".tarl", "cache", "lint")
+AFTERWARDS: Final = frozenset(
+    ["root", "exclude", "baseline", "fail_on", "per_file_ignores", "file", "origins"]
+)  # settings that change nothing in what is found in given files
+
+
+@dataclass(frozen=True)
+class Report:
+    """What was found in some files: findings without fingerprints, and files that could not be analysed."""
+
+    findings: tuple[Finding, ...] = ()
+    errors: tuple[SourceError, ...] = ()
+
+
+class Cache:
+    """Reports by key, and keys by plan: which keys make up a whole run. Without a file it forgets everything."""
+
+    def __init__(self, file: Path | None) -> None:
+        self._file = file
+        self._reports: dict[str, Any] = {}
+        self._plans: dict[str, list[str]] = {}
+        self._used: dict[str, Any] = {}
+        self._plan: tuple[str, list[str]] | None = None
+        if file is not None:
+            self._load(file)
+
+    def report(self, key: str) -> Report | None:
+        """Return what was stored under a key, None when there is nothing."""
+        packed = self._reports.get(key)
+        if packed is None:
+            return None
+        self._used[key] = packed
+        findings, errors = packed
+        return Report(tuple(_unpacked(Finding, f) for f in findings), tuple(SourceError(*e) for e in errors))
+
+    def put(self, key: str, report: Report) -> None:
+        """Store a report, unless a mistake of ours is in it: the next version may do better."""
+        if not any(error.bug for error in report.errors):
+            self._used[key] = [_packed(report.findings), _packed(report.errors)]
+
+    def plan(self, key: str) -> Sequence[str]:
+        """Return the keys of the reports of a whole run, empty when one of them is missing."""
+        keys = self._plans.get(key, [])
+        return keys if all(k in self._reports for k in keys) else []
+
+    def put_plan(self, key: str, keys: Sequence[str]) -> None:
+        """Store which reports make up a whole run."""
+        self._plan = (key, list(keys))
+
+    def save(self) -> None:
+        """Write what was used in this run, if that is not what is there already."""
+        if self._file is None or (self._plan is None and self._used.keys() == self._reports.keys()):
+            return
+        plans = dict([self._plan]) if self._plan is not None else self._plans
+        text = json.dumps([self._used, plans], ensure_ascii=True, separators=(",", ":"))
+        try:
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            ignore = self._file.parent / ".gitignore"
+            if not ignore.exists():
+                write_whole(ignore, "*\n")
+            write_whole(self._file, f"{digest([text])}\n{text}")
+        except OSError:
+            self._file = None  # a place that cannot be written to: the next run is as slow as this one
+
+    def _load(self, file: Path) -> None:
+        try:
+            stated, _, text = file.read_text("utf-8").partition("\n")
+            if stated == digest([text]):
+                self._reports, self._plans = json.loads(text)
+        except (OSError, ValueError):
+            pass  # not there, or not ours: as if there were none
+
+
+def opened(paths: Sequence[Path], config: Config) -> Cache:
+    """Return the cache of runs on these paths with these settings."""
+    settings = [f"{f.name}={getattr(config, f.name)!r}" for f in fields(config) if f.name not in AFTERWARDS]
+    places = [os.path.abspath(p) for p in paths]  # noqa: PTH100 - as text, also for what does not exist
+    here = os.getcwd()  # noqa: PTH109
+    name = digest([str(FORMAT), __version__, sys.version, *_ourselves(), *settings, here, *places])
+    return Cache((config.root or Path.cwd()).joinpath(*PLACE, f"{name}.json"))
+
+
+def digest(texts: Iterable[str]) -> str:
+    """Return a name for a sequence of texts."""
+    made = blake2b(digest_size=16)
+    for text in texts:
+        data = text.encode("utf-8", "surrogatepass")
+        made.update(len(data).to_bytes(8, "big"))
+        made.update(data)
+    return made.hexdigest()
+
+
+def _ourselves() -> list[str]:
+    """Return what tells this copy of the linter from one with other rules, as while it is being developed."""
+    home = Path(__file__).parent
+    found = []
+    for place in (home, home / "valueflow", home / "rules"):
+        with os.scandir(place) as entries:
+            files = [(e.name, e.stat()) for e in entries if e.name.endswith(".py")]
+        found += [f"{name} {stat.st_mtime_ns} {stat.st_size}" for name, stat in sorted(files)]
+    return found
+
+
+def _packed(value: object) -> object:
+    """Return dataclasses as lists of their fields."""
+    if isinstance(value, tuple):
+        return [_packed(item) for item in value]
+    names = getattr(value, "__dataclass_fields__", None)
+    return [_packed(getattr(value, name)) for name in names] if names is not None else value
+
+
+def _unpacked(kind: type[T], values: Sequence[Any]) -> T:
+    """Return a dataclass from its packed fields."""
+    names = getattr(kind, "__dataclass_fields__", {})
+    made = (PARTS.get(name, _same)(value) for name, value in zip(names, values, strict=True))
+    return kind(*made)
+
+
+def _same(value: Any) -> Any:
+    return value
+
+
+def _spans(packed: Any) -> tuple[Span, ...]:
+    return tuple(Span(*span) for span in packed)
+
+
+PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
+    "span": lambda packed: Span(*packed),
+    "site": lambda packed: SiteId(*packed),
+    "topics": tuple,
+    "registered": _spans,
+    "via": _spans,
+    "source": lambda packed: _unpacked(Source, packed),
+    "sink": lambda packed: _unpacked(Sink, packed),
+    "steps": lambda packed: tuple(_unpacked(Step, step) for step in packed),
+    "flow": lambda packed: None if packed is None else _unpacked(Flow, packed),
+}  # by the names of fields
