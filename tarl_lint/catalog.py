@@ -86,6 +86,12 @@ METHODS: Final[Mapping[str, Fact]] = {
         "call later", "rclpy.add_on_set_parameters_callback", callback=(0, "callback")
     ),
     "declare_parameter": Fact("declare", "rclpy.declare_parameter", (0, "name"), extra=(1, "value")),
+    "declare_parameters": Fact(
+        "declare all", "rclpy.declare_parameters", (0, "namespace"), extra=(1, "parameters")
+    ),
+    "get_parameter_or": Fact(
+        "parameter or", "rclpy.get_parameter_or", (0, "name"), extra=(1, "alternative_value")
+    ),
     "get_parameter": Fact("parameter object", "rclpy.get_parameter", (0, "name")),
     **{name: Fact("transform", f"tf2.{name}") for name in sorted(LOOKUPS)},
     "registerCallback": Fact("register", "message_filters", callback=(0, "cb")),
@@ -142,6 +148,9 @@ AWAITING: Final = (
     "asyncio.run", "asyncio.create_task", "asyncio.ensure_future", "asyncio.wait_for", "asyncio.shield",
     "asyncio.run_coroutine_threadsafe",
 )  # fmt: skip
+
+SAME_TEXT: Final = ("rospy.resolve_name", "rospy.remap_name", "rospy.names.resolve_name")
+PATH_JOINS: Final = ("rospy.names.ns_join", "roslib.names.ns_join", "os.path.join", "posixpath.join")
 
 WAITING_METHODS: Final = frozenset(
     [

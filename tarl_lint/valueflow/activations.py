@@ -60,7 +60,7 @@ class Activations(Evaluation):
             frame = Frame(key, len(self.frames) + 1, function, program, self.module_objects[program.name])
             self.frames[key] = frame
             frame.caller, frame.call, frame.slot, frame.outer = caller, caller.statement, call.slot, outer
-            frame.base = self.branches(caller, caller.statement)
+            frame.base = self.branches(caller, caller.statement) | frozenset(self.guards)
             frame.call_pos = call.pos
             frame.owner = owner or cls
             frame.answer = caller.answer if caller.statement is None and caller.caller is None else None

@@ -63,9 +63,12 @@ class Calls(Activations):
         if len(targets) == 1:
             return self._call_member(base, *targets[0], function.name, arguments, frame, expr)
         result, deltas = BOTTOM, []
-        for obj, member in targets:
+        guard = self.guard(base.deps, frame, ("dispatch", expr.slot))
+        for number, (obj, member) in enumerate(targets):
             self.store.push()
+            self.guards.append((guard, str(number)))
             value = self._call_member(base, obj, member, function.name, arguments, frame, expr)
+            self.guards.pop()
             result = join(result, value)
             deltas.append(self.store.pop())
         self.merge(deltas)
@@ -98,9 +101,12 @@ class Calls(Activations):
         if len(targets) == 1:
             return self.call_object(targets[0], arguments, frame, call)
         result, deltas = BOTTOM, []
-        for target in targets:
+        guard = self.guard(function.deps, frame, ("dispatch", call.slot))
+        for number, target in enumerate(targets):
             self.store.push()
+            self.guards.append((guard, str(number)))
             result = join(result, self.call_object(target, arguments, frame, call))
+            self.guards.pop()
             deltas.append(self.store.pop())
         self.merge(deltas)
         return result

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from typing import Any
 
 from tarl_lint.valueflow import ir
@@ -41,11 +41,12 @@ class Containers(Calls):
             for obj in base.pts if len(base.pts) == 1 else ():
                 self.empty(obj)
         elif name == "setdefault" and len(plain) > 1:
+            news = self.through_statement(plain[1], frame, call)
             for obj in base.pts:
                 for key in plain[0].consts or (None,):
-                    self.weaken(obj, ANY if key is None else item_field(key), plain[1])
+                    self.weaken(obj, ANY if key is None else item_field(key), news)
         elif name == "update" and base.pts:
-            self._update(base, plain, named)
+            self._update(base, plain, named, frame, call)
         elif name in ("extend", "extendleft"):
             for obj in base.pts if plain else ():
                 self.lengthen(obj, plain[0])
@@ -53,15 +54,18 @@ class Containers(Calls):
         else:
             self._insert(base, plain[-1:] if name == "insert" else plain, frame, call)
 
-    def _update(self, base: Value, plain: list[Value], named: Mapping[str, Value]) -> None:
-        for obj in base.pts if plain else ():
-            if obj.kind == "sequence":
-                self.add_element(pointer(obj), join_all(self.elements(v) for v in plain))
-            elif obj.kind in ("mapping", "lib", "instance"):
-                for value in plain:
-                    self.absorb(obj, value)
+    def _update(
+        self, base: Value, plain: list[Value], named: Mapping[str, Value], frame: Frame, call: ir.Call
+    ) -> None:
+        for number, value in enumerate(plain):
+            news = self.through_statement(value, frame, call, number)
+            for obj in base.pts:
+                if obj.kind == "sequence":
+                    self.add_element(pointer(obj), self.elements(news))
+                elif obj.kind in ("mapping", "lib", "instance"):
+                    self.absorb(obj, news)
         for name, value in named.items():
-            self.write_field(base, item_field(name), value)
+            self.write_field(base, item_field(name), self.through_statement(value, frame, call, name))
 
     def _insert(self, base: Value, values: list[Value], frame: Frame, call: ir.Call) -> None:
         news = join_all(values)
@@ -71,11 +75,11 @@ class Containers(Calls):
         news = self.through_statement(news, frame, call)
         self.change(base, news, [function.base] if isinstance(function, ir.Attribute) else [], frame)
 
-    def through_statement(self, value: Value, frame: Frame, call: ir.Call) -> Value:
+    def through_statement(self, value: Value, frame: Frame, call: ir.Call, number: Hashable = 0) -> Value:
         """Let a value that a call stores pass through the calling statement."""
         if frame.statement is None:
             return value
-        return self.carry(value, self.node(frame, ("stored", call.slot), "call"))
+        return self.carry(value, self.node(frame, ("stored", call.slot, number), "call"))
 
     def _read_get(self, it: Invocation) -> Value:
         plain = it.arguments[0]

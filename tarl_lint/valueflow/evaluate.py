@@ -148,13 +148,19 @@ class Evaluation(Displays):
         if known:
             return self.evaluate(expr.then if constant else expr.other, frame)
         guard = self.guard(self.truth(test, frame, expr.slot), frame, expr.slot)
-        self.guards.append(guard)
-        then, other = self.evaluate(expr.then, frame), self.evaluate(expr.other, frame)
-        self.guards.pop()
+        then = self.under_guard(expr.then, (guard, "then"), frame)
+        other = self.under_guard(expr.other, (guard, "other"), frame)
         node = self.node(frame, ("choice", expr.slot), "condition")
         self.graph.control[node].add(guard)
         both = join(then, other)
         return Value(both.deps | {node}, both.pts, both.consts)
+
+    def under_guard(self, expr: ir.Expr, guard: tuple[int, str], frame: Frame) -> Value:
+        """Evaluate an expression to which a decision leads."""
+        self.guards.append(guard)
+        value = self.evaluate(expr, frame)
+        self.guards.pop()
+        return value
 
     def _starred(self, expr: ir.Starred, frame: Frame) -> Value:
         return self.evaluate(expr.value, frame)

@@ -8,9 +8,10 @@ from tarl_lint import catalog
 from tarl_lint.catalog import Fact
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.containers import CONTAINERS
-from tarl_lint.valueflow.futures import READERS, Futures
+from tarl_lint.valueflow.futures import READERS
 from tarl_lint.valueflow.heap import ANY
 from tarl_lint.valueflow.machine import Arguments, Invocation, Publisher
+from tarl_lint.valueflow.texts import TEXT_METHODS, Texts
 from tarl_lint.valueflow.values import (
     BOTTOM,
     NONE,
@@ -25,7 +26,7 @@ from tarl_lint.valueflow.values import (
 from tarl_lint.wrapping import facts
 
 
-class Library(Futures):
+class Library(Texts):
     """Performs calls of functions, classes and methods that are not analysed."""
 
     def call_library(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
@@ -71,7 +72,8 @@ class Library(Futures):
         self.call_back(arguments, frame)
         written = catalog.ARGUMENT_WRITERS.get(qualified)
         if written is not None and written < len(arguments[0]):
-            self.change(arguments[0][written], Value(deps), call.arguments[written:], frame)
+            news = self.through_statement(Value(deps), frame, call)
+            self.change(arguments[0][written], news, call.arguments[written:], frame)
         if catalog.scalar(qualified):
             same = qualified == "builtins.float" and len(arguments[0]) == 1
             return Value(deps, arguments[0][0].pts if same else frozenset())
@@ -155,25 +157,14 @@ class Library(Futures):
         self, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
     ) -> Value:
         self.call_back(arguments, frame)
-        if isinstance(call.function, ir.Attribute) and name == "format":
-            return Value(self.use(base) | self.all_used(arguments), consts=self._format(base, arguments))
+        if name in TEXT_METHODS and not base.pts and base.consts:
+            return Value(
+                self.use(base) | self.all_used(arguments), consts=self.text_of(base, name, arguments)
+            )
         deps = self.use(base) | self.all_used(arguments)
         if not deps and not base.pts:
             return UNKNOWN
         return self.new_object(arguments, deps, frame, call, fields=False)
-
-    def _format(self, base: Value, arguments: Arguments) -> frozenset[object] | None:
-        known, text = base.constant()
-        constants = [v.constant() for v in arguments[0]]
-        named = {k: v.constant() for k, v in arguments[1].items()}
-        if not known or not isinstance(text, str) or not all(k for k, _ in (*constants, *named.values())):
-            return None
-        try:
-            return frozenset(
-                [text.format(*(c for _, c in constants), **{k: c for k, (_, c) in named.items()})]
-            )
-        except Exception:
-            return None
 
     # --- builtins -----------------------------------------------------------------------------------------
 
@@ -239,6 +230,9 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "dataclasses.replace": Library._replaced,
     "copy.replace": Library._replaced,
     "len": Library._counted,
+    "str": Library.as_text,
+    **dict.fromkeys(catalog.SAME_TEXT, Library.same_text),
+    **dict.fromkeys(catalog.PATH_JOINS, Library.joined_path),
     "enumerate": Library._zipped,
     "zip": Library._zipped,
     "map": Library._mapped,

@@ -126,7 +126,7 @@ class Machine:
         self.delivered: frozenset[Obj] = frozenset()  # messages that ROS hands over in this run
         self.patient = True  # what is not known yet may be stored by a root that runs later
         self.waiting: dict[Root, None] = {}  # roots that met such a thing
-        self.guards: list[int] = []  # decisions inside the expression that is being evaluated
+        self.guards: list[tuple[int, str]] = []  # decisions inside the expression that is being evaluated
         self.spent = 0  # statements executed in this run of a root
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.sources: dict[tuple[str, ir.Pos], SourceRecord] = {}

@@ -106,7 +106,7 @@ class Operators(Combining):
             if decided:
                 break
             if not last and not known and isinstance(expr.parts[number + 1], CALLING):
-                self.guards.append(self.guard(decides, frame, (expr.pos, number)))
+                self.guards.append((self.guard(decides, frame, (expr.pos, number)), "rest"))
         del self.guards[guards:]
         return Value(result.deps | deps, result.pts, result.consts)
 
@@ -116,10 +116,16 @@ class Operators(Combining):
         self.graph.flow(decides, node)
         return node
 
+    def remainder(self, values: list[Value]) -> frozenset[object] | None:
+        """Return `text % values` where all is known."""
+        raise NotImplementedError
+
     def fold(self, name: str, values: list[Value]) -> frozenset[object] | None:
         """Return the constants that an operator makes of constants."""
         if name == "text":
             return self._fold_text(values)
+        if name == "%" and len(values) == 2 and values[1].pts:
+            return self.remainder(values)
         function = FOLDED.get(name)
         if function is None or any(v.pts for v in values):
             return None if any(v.pts or v.consts is None for v in values) or function is None else frozenset()

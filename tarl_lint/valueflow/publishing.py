@@ -39,7 +39,7 @@ class Sinks(Library):
         self.graph.flow(self.all_used(it.arguments), node)
         self.graph.choice(it.base.deps, node)
         self.graph.control[node] |= it.base.deps  # which publisher it is
-        self.graph.control[node].update(self.guards)
+        self.graph.control[node].update(n for n, _ in self.guards)
         if frame.statement is not None:
             self.under(frame, frame.statement, node)
         record.nodes.add(node)
@@ -77,7 +77,7 @@ class Sinks(Library):
         if key not in self.graph.numbers:
             waypoint = self.graph.node(key, Place(caller, call, "call", call.pos), frozenset())
             self.under(caller, call, waypoint)
-            self.graph.control[waypoint].update(frame.guards)
+            self.graph.control[waypoint].update(n for n, _ in frame.guards)
         self.graph.control[node].add(self.graph.numbers[key])
 
     def qualname(self, frame: Frame) -> str:

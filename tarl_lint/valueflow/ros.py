@@ -7,7 +7,7 @@ from collections.abc import Callable, Hashable, Mapping
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.machine import Invocation
 from tarl_lint.valueflow.serving import Serving
-from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Value, pointer
+from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Value, join, pointer
 
 
 class Ros(Serving):
@@ -86,6 +86,26 @@ class Ros(Serving):
             self.store.put((obj, "value"), value)
         return found
 
+    def declare_all(self, it: Invocation) -> Value:
+        """Remember the defaults of several declared parameters: tuples of a name and a default."""
+        prefix = it.argument(it.fact.topic).texts()
+        for number, entry in enumerate(self.unpacked(it.argument(it.fact.extra)) or ()):
+            parts = self.unpacked(entry) or []
+            names = [
+                f"{p}.{t}" if p else t for p in prefix or ("",) for t in (parts[0].texts() if parts else ())
+            ]
+            if len(parts) < 2:
+                continue
+            value = self._default_of(parts[1], None, it.frame, ("parameter", it.call.slot, number))
+            for obj in self._parameters(it.base, Value(consts=frozenset(names))).pts:
+                self.store.put((obj, "value"), value)
+        return UNKNOWN
+
+    def parameter_or(self, it: Invocation) -> Value:
+        """Return a parameter, or the one given instead."""
+        found = self._parameters(it.base, it.argument(it.fact.topic))
+        return join(found, it.argument(it.fact.extra))
+
     def _parameter_object(self, it: Invocation) -> Value:
         return self._parameters(it.base, it.argument(it.fact.topic))
 
@@ -112,7 +132,9 @@ ACTIONS: Mapping[str, Callable[..., Value]] = {
     "copy": Ros._copied,
     "parameter": Ros.parameter,
     "declare": Ros.declare,
+    "declare all": Ros.declare_all,
     "parameter object": Ros._parameter_object,
+    "parameter or": Ros.parameter_or,
 }
 
 

@@ -143,7 +143,7 @@ class Frame(Obj):
         self.call_pos: ir.Pos | None = None
         self.slot: object = 0
         self.answer: object = None  # who gets what the function returns, when ROS asked for it
-        self.guards: frozenset[int] = frozenset()  # decisions inside the calling expression
+        self.guards: Branches = frozenset()  # decisions inside the calling expression
         self.outer: Frame | None = None
         self.owner: Obj | None = None  # the class a method is defined in, for super()
         self.cls: Obj | None = None  # the class that is being made, when this is a class body
