@@ -176,7 +176,9 @@ class Evaluation(Displays):
         if expr.kind == "await":
             self.wait(frame)
             return value
-        frame.yielded = join(frame.yielded, self.elements(value) if expr.kind == "from" else value)
+        value = self.elements(value) if expr.kind == "from" else value
+        value = self.carry(value, self.node(frame, ("yield", expr.pos), "return"))
+        frame.yielded = join(frame.yielded, value)
         return UNKNOWN
 
     def _lambda(self, expr: ir.Lambda, frame: Frame) -> Value:

@@ -96,6 +96,8 @@ class Execution(Branches):
                 self.write_field(base, target.name, value)
         elif isinstance(target, ir.Item):
             base, index = self.evaluate(target.base, frame), self.evaluate(target.index, frame)
+            if (index.deps or index.pts) and any(o.kind == "mapping" for o in base.pts):
+                index = self.carry(index, self.node(frame, ("key", target.pos), "assign"))
             if isinstance(target.index, ir.Slice):
                 value = self.elements(value)
             value = Value(value.deps | self.use(index), value.pts, value.consts)

@@ -30,6 +30,8 @@ OPERATORS: dict[type[ast.AST], str] = {
     ast.Or: "or",
 }
 
+AS_TEXT = (-1, ord("s"))  # conversions of a formatted value that `str` makes too
+
 
 def position(node: ast.expr | ast.stmt | ast.excepthandler) -> ir.Pos:
     """Return where a node stands."""
@@ -117,6 +119,13 @@ class Expressions:
 
     def _text(self, node: ast.JoinedStr, scope: Scope) -> ir.Expr:
         return ir.Operation("text", self.all(node.values, scope), position(node))
+
+    def _formatted(self, node: ast.FormattedValue, scope: Scope) -> ir.Expr:
+        inner = self.expr(node.value, scope)
+        if node.format_spec is None and node.conversion in AS_TEXT:
+            return inner
+        spec = [self.expr(node.format_spec, scope)] if node.format_spec is not None else []
+        return ir.Operation("", [inner, *spec], position(node))
 
     def _comprehension(
         self, node: ast.ListComp | ast.SetComp | ast.GeneratorExp | ast.DictComp, scope: Scope
@@ -209,6 +218,7 @@ LOWER: dict[type[ast.AST], Callable[..., ir.Expr]] = {
     ast.Set: Expressions._sequence,
     ast.Dict: Expressions._mapping,
     ast.JoinedStr: Expressions._text,
+    ast.FormattedValue: Expressions._formatted,
     ast.ListComp: Expressions._comprehension,
     ast.SetComp: Expressions._comprehension,
     ast.GeneratorExp: Expressions._comprehension,

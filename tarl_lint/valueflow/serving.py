@@ -87,7 +87,8 @@ class Serving(Sources):
         if not isinstance(server, Server):
             return UNKNOWN
         if it.name in server.sends.methods:
-            return self.send(it, server.sends)
+            given = bool(it.arguments[0] or it.arguments[1])  # without a result there is nothing to send
+            return self.send(it, server.sends) if given else UNKNOWN
         if it.name in catalog.GOAL_READERS:
             if server.handle:
                 return self.read(pointer(target), catalog.GOAL_FIELD)

@@ -1,0 +1,65 @@
+"""Names of topics are followed through the texts they are made of, and are left empty where they are not known."""
+
+import pytest
+
+from tarl_lint import engine
+from tarl_lint.config import Config
+from tarl_lint.source import Module, parse
+
+NODE = """
+import os
+import rospy
+from std_msgs.msg import Float64
+
+NAMES = ("left", "right")
+prefix = "robot"
+
+
+def subscribe(topic, callback):
+    rospy.Subscriber(topic, Float64, callback)
+
+
+def on_value(msg):
+    pub.publish(msg.data)
+
+
+rospy.init_node("node")
+pub = rospy.Publisher("out", Float64, queue_size=1)
+"""
+
+
+def topics(statement):
+    module = parse("node.py", (NODE + statement + "\n").encode(), "node")
+    assert isinstance(module, Module)
+    return [flow.source.topics for flow in engine.analyse([module], Config())]
+
+
+@pytest.mark.parametrize(
+    ("expression", "wanted"),
+    [
+        ('"in"', ("in",)),
+        ('prefix + "/in"', ("robot/in",)),
+        ('f"/{prefix}/in"', ("/robot/in",)),
+        ('"/%s/in" % prefix', ("/robot/in",)),
+        ('"/%s/%d" % (prefix, 2)', ("/robot/2",)),
+        ('"/{}/in".format(prefix)', ("/robot/in",)),
+        ('"/".join([prefix, "in"])', ("robot/in",)),
+        ('os.path.join(prefix, "in")', ("robot/in",)),
+        ('rospy.resolve_name("in")', ("in",)),
+        ('"/in".lstrip("/")', ("in",)),
+        ('prefix + str(3)', ("robot3",)),
+        ('rospy.get_param("~topic")', ()),
+        ('prefix + "/" + rospy.get_param("~topic")', ()),
+        ('rospy.get_name() + "/in"', ()),
+    ],
+)
+def test_the_topic_of_a_subscription(expression, wanted):
+    assert topics(f"rospy.Subscriber({expression}, Float64, on_value)") == [wanted]
+
+
+def test_a_helper_passes_its_topic_on():
+    assert topics('subscribe(prefix + "/in", on_value)') == [("robot/in",)]
+
+
+def test_a_loop_subscribes_to_all_its_topics():
+    assert topics("for name in NAMES:\n    rospy.Subscriber(name, Float64, on_value)") == [("left", "right")]
