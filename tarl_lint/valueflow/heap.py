@@ -81,6 +81,8 @@ class Heap(Allocation):
             return pointer(obj.sub(name))
         if kind in ("sequence", "mapping"):
             return self.content(obj) if name.startswith("[") else BOTTOM
+        if name == "__class__" and kind == "instance" and isinstance(obj.info, Obj):
+            return pointer(obj.info)
         if name == "__dict__":
             return pointer(obj)
         if kind == "instance" and isinstance(obj.info, Obj):

@@ -185,6 +185,16 @@ class Library(Texts):
                 self.add_element(plain[0], value)
         return UNKNOWN
 
+    def type_of(self, it: Invocation) -> Value:
+        """Return the class of objects of ours; what a type is, is not data."""
+        classes = [o.info for v in it.arguments[0][:1] for o in v.pts if o.kind == "instance"]
+        found = frozenset(c for c in classes if isinstance(c, Obj))
+        return Value(pts=found) if found else UNKNOWN
+
+    def of_type(self, it: Invocation) -> Value:  # noqa: ARG002 - one signature for all
+        """Return what a question about a type gives, which is not data either."""
+        return UNKNOWN
+
     def parent(self, it: Invocation) -> Value:
         """Return what `super()` gives: the object, seen from its class on."""
         receiver = it.frame
@@ -229,6 +239,8 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "dataclasses.field": Library._field,
     "dataclasses.replace": Library._replaced,
     "copy.replace": Library._replaced,
+    "type": Library.type_of,
+    **dict.fromkeys(("isinstance", "issubclass", "hasattr", "callable"), Library.of_type),
     "len": Library._counted,
     "str": Library.as_text,
     **dict.fromkeys(catalog.SAME_TEXT, Library.same_text),

@@ -11,6 +11,8 @@ class Shared:
 
 class Writer(Node):
     count = 0
+    last = 0.0
+    peak = 0.0
 
     def __init__(self):
         super().__init__("writer")
@@ -20,6 +22,8 @@ class Writer(Node):
         Shared.speed = msg.data
         Shared.limits[0] = msg.data
         type(self).count += 1
+        type(self).last = msg.data
+        self.__class__.peak = 2.0 * msg.data
 
 
 class Reader(Node):
@@ -35,6 +39,8 @@ class Reader(Node):
         self.pub.publish(Float32(data=Shared.limits[0]))  # sink speed
         self.pub.publish(Float32(data=float(len(Shared.name))))  # clean
         self.pub.publish(Float32(data=float(Writer.count)))  # clean
+        self.pub.publish(Float32(data=Writer.last))  # sink speed
+        self.pub.publish(Float32(data=Writer.peak))  # sink speed
 
 
 def main():
