@@ -177,6 +177,11 @@ class Records(Containers):
             if source.kind != "sequence":
                 self.absorb(obj, Value(value.deps, frozenset([source])))
                 continue
+            known = [self.unpacked(p) or [] for p in self.unpacked(pointer(source)) or ()]
+            if known and all(len(pair) == 2 for pair in known):
+                for key, item in known:
+                    self.write_item(pointer(obj), key, Value(item.deps | value.deps, item.pts, item.consts))
+                continue
             pair = self.elements(Value(value.deps, frozenset([source])))
             keys = self.use(self.read_item(pair, const(0)))
             if keys:

@@ -47,7 +47,7 @@ def topics(statement):
         ('os.path.join(prefix, "in")', ("robot/in",)),
         ('rospy.resolve_name("in")', ("in",)),
         ('"/in".lstrip("/")', ("in",)),
-        ('prefix + str(3)', ("robot3",)),
+        ("prefix + str(3)", ("robot3",)),
         ('rospy.get_param("~topic")', ()),
         ('prefix + "/" + rospy.get_param("~topic")', ()),
         ('rospy.get_name() + "/in"', ()),
