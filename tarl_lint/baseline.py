@@ -1,4 +1,4 @@
-"""Accepted flows, `tarl-flows.json`: fingerprints without lines, load, subtract, write."""
+"""Accepted flows and hazards, `tarl-flows.json`: load, subtract, write."""
 
 from __future__ import annotations
 
@@ -10,38 +10,15 @@ from typing import Any, Final
 
 from tarl_lint.errors import BaselineError
 from tarl_lint.files import write_whole
-from tarl_lint.model import Finding, Flow, Kind
+from tarl_lint.fingerprints import Fingerprint, OfFlow, OfHazard
+from tarl_lint.model import Finding
 
 FORMAT_VERSION: Final = 1  # 1: first format
-UNKNOWN: Final = "?"
-
-
-@dataclass(frozen=True)
-class Fingerprint:
-    """What a flow is, apart from its place and its steps. Topics are texts, `?` when unknown."""
-
-    package: str
-    owner: str  # the class that subscribes, "" for none
-    source: str
-    callback: str
-    sink: str
-    place: str  # qualified name of what publishes
-    kind: Kind
-
-    def texts(self) -> tuple[str, ...]:
-        """Return everything that tells flows apart, in the order that a baseline is sorted by."""
-        return (self.package, self.owner, self.source, self.callback, self.sink, self.place, self.kind)
-
-    def digest(self) -> str:
-        """Return the fingerprint as 16 hexadecimal digits."""
-        import hashlib  # OpenSSL, only where there are flows
-
-        return hashlib.sha256("\0".join(self.texts()).encode("utf-8", "surrogatepass")).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
 class Accepted:
-    """A fingerprint, how many flows have it, and their files as seen from the baseline's directory."""
+    """A fingerprint, how many findings have it, and their files as seen from the baseline's directory."""
 
     fingerprint: Fingerprint
     count: int
@@ -55,39 +32,15 @@ class Baseline:
     entries: tuple[Accepted, ...] = ()
 
     def counts(self) -> dict[str, int]:
-        """Return digest → number of accepted flows."""
+        """Return digest → number of accepted findings."""
         return {entry.fingerprint.digest(): entry.count for entry in self.entries}
 
 
-def fingerprint(flow: Flow, package: str) -> Fingerprint:
-    """Return a flow's identity. `package` is the ROS package of its source, "" where there is none.
-
-    Without one the Python package counts, and for a script its own name.
-    """
-    source, sink = flow.source, flow.sink
-    return Fingerprint(
-        package=package or source.module.rpartition(".")[0] or source.module,
-        owner=source.qualname.rpartition(".")[0],
-        source=topic_text(source.topics),
-        callback=source.callback,
-        sink=topic_text(sink.topics),
-        place=sink.qualname,
-        kind=flow.kind,
-    )
-
-
-def topic_text(topics: Sequence[str]) -> str:
-    """Write the topics that one call may have: `odom`, `left or right`, `?` when unknown."""
-    return " or ".join(topics) or UNKNOWN
-
-
 def subtract(findings: Sequence[Finding], accepted: Mapping[str, int]) -> tuple[Finding, ...]:
-    """Mark flows as accepted, unless their group is larger than what was accepted: then all of it is new."""
-    found = Counter(f.fingerprint for f in findings if f.flow)
+    """Mark findings as accepted, unless their group is larger than what was accepted: then all of it is new."""
+    found = Counter(f.fingerprint for f in findings)
     return tuple(
-        replace(f, status="accepted")
-        if f.flow and found[f.fingerprint] <= accepted.get(f.fingerprint, 0)
-        else f
+        replace(f, status="accepted") if found[f.fingerprint] <= accepted.get(f.fingerprint, 0) else f
         for f in findings
     )
 
@@ -95,7 +48,7 @@ def subtract(findings: Sequence[Finding], accepted: Mapping[str, int]) -> tuple[
 def missing(
     baseline: Baseline, found: Mapping[str, int], judged: Callable[[Accepted], bool]
 ) -> tuple[tuple[Accepted, ...], tuple[Accepted, ...]]:
-    """Return accepted flows that were not found, each with the number missing: (vanished, kept).
+    """Return accepted findings that were not found again, each with the number missing: (vanished, kept).
 
     `judged` tells whether this run can know of an entry. Not of one through a file that was not looked at or
     cannot be read: such entries are kept.
@@ -112,7 +65,7 @@ def merged(found: Iterable[Accepted], kept: Iterable[Accepted]) -> Baseline:
     for entry in (*found, *kept):
         counts[entry.fingerprint] += entry.count
         files.setdefault(entry.fingerprint, set()).update(entry.files)
-    ordered = sorted(counts, key=Fingerprint.texts)
+    ordered = sorted(counts, key=lambda f: (isinstance(f, OfHazard), f.texts()))
     return Baseline(tuple(Accepted(f, counts[f], tuple(sorted(files[f]))) for f in ordered))
 
 
@@ -135,7 +88,8 @@ def load(path: Path) -> Baseline:
             "use the tarl-lint that wrote it, or delete it and run --write-baseline."
         )
     try:
-        return merged((_entry(flow) for flow in document["flows"]), ())
+        flows = [_flow(entry) for entry in document["flows"]]
+        return merged([*flows, *(_hazard(entry) for entry in document.get("hazards", ()))], ())
     except (KeyError, TypeError, ValueError) as error:
         raise BaselineError(
             f"The baseline {path.as_posix()} is damaged ({_reason(error)}): {_REMEDY}"
@@ -143,45 +97,71 @@ def load(path: Path) -> Baseline:
 
 
 _REMEDY: Final = "restore it from version control, or delete it and run --write-baseline."
-_TEXTS: Final = {
+_FLOW: Final = {
     "source": "source",
     "callback": "callback",
     "sink": "sink",
     "in": "place",
     "class": "owner",
     "package": "package",
-}
+}  # key in the file → field
+_HAZARD: Final = {"rule": "rule", "about": "about", "in": "place", "package": "package"}
 
 
-def _entry(flow: Any) -> Accepted:
-    texts = {field: flow[key] for key, field in _TEXTS.items()}
-    files, count, kind = flow["files"], flow["count"], flow["kind"]
-    if not all(isinstance(text, str) for text in (*texts.values(), *files)):
-        raise ValueError("a flow has something else where a text should be")
-    if type(count) is not int or count < 1:
-        raise ValueError(f"a flow has the count {count!r}")
+def _flow(entry: Any) -> Accepted:
+    kind = entry["kind"]
     if kind not in ("explicit", "implicit"):
-        raise ValueError(f"a flow has the kind {kind!r}")
-    return Accepted(Fingerprint(kind=kind, **texts), count, tuple(files))
+        raise ValueError(f"an entry has the kind {kind!r}")
+    return _accepted(OfFlow(kind=kind, **_texts(entry, _FLOW)), entry)
+
+
+def _hazard(entry: Any) -> Accepted:
+    return _accepted(OfHazard(**_texts(entry, _HAZARD)), entry)
+
+
+def _texts(entry: Any, fields: Mapping[str, str]) -> dict[str, Any]:
+    texts = {field: entry[key] for key, field in fields.items()}
+    if not all(isinstance(text, str) for text in (*texts.values(), *entry["files"])):
+        raise ValueError("an entry has something else where a text should be")
+    return texts
+
+
+def _accepted(fingerprint: Fingerprint, entry: Any) -> Accepted:
+    count = entry["count"]
+    if type(count) is not int or count < 1:
+        raise ValueError(f"an entry has the count {count!r}")
+    return Accepted(fingerprint, count, tuple(entry["files"]))
 
 
 def _reason(error: Exception) -> str:
-    return f"a flow lacks {error.args[0]!r}" if isinstance(error, KeyError) else str(error)
+    if not isinstance(error, KeyError):
+        return str(error)
+    what = "it" if error.args[0] == "flows" else "an entry"
+    return f"{what} lacks {error.args[0]!r}"
 
 
 def dumps(baseline: Baseline) -> str:
-    """Return the file's text: one flow a line, in words, so that a review shows what came and what went."""
+    """Return the file's text: one finding a line, in words, so that a review shows what came and what went."""
+    flows = [_words(entry, _FLOW) for entry in baseline.entries if isinstance(entry.fingerprint, OfFlow)]
+    hazards = [
+        _words(entry, _HAZARD) for entry in baseline.entries if isinstance(entry.fingerprint, OfHazard)
+    ]
+    parts = f' "flows": {_array(flows)}' + (f',\n "hazards": {_array(hazards)}' if hazards else "")
+    return f'{{"format": {FORMAT_VERSION}, "tool": "tarl-lint",\n{parts}}}\n'
+
+
+def _array(entries: Sequence[Mapping[str, Any]]) -> str:
     import json
 
-    lines = ",\n".join(f"  {json.dumps(_words(entry), ensure_ascii=False)}" for entry in baseline.entries)
-    flows = f"[\n{lines}\n ]" if lines else "[]"
-    return f'{{"format": {FORMAT_VERSION}, "tool": "tarl-lint",\n "flows": {flows}}}\n'
+    lines = ",\n".join(f"  {json.dumps(entry, ensure_ascii=False)}" for entry in entries)
+    return f"[\n{lines}\n ]" if lines else "[]"
 
 
-def _words(entry: Accepted) -> dict[str, Any]:
+def _words(entry: Accepted, fields: Mapping[str, str]) -> dict[str, Any]:
     key = entry.fingerprint
-    texts = {name: getattr(key, field) for name, field in _TEXTS.items()}
-    return {"kind": key.kind, **texts, "count": entry.count, "files": list(entry.files)}
+    kind = {"kind": key.kind} if isinstance(key, OfFlow) else {}
+    texts = {name: getattr(key, field) for name, field in fields.items()}
+    return {**kind, **texts, "count": entry.count, "files": list(entry.files)}
 
 
 def save(path: Path, baseline: Baseline) -> None:

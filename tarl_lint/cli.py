@@ -129,11 +129,9 @@ def _accept(result: Result, config: Config) -> Iterator[Line]:
     path = config.baseline or Path(BASELINE_NAME)
     written = baseline.merged(result.found, result.kept)
     baseline.save(path, written)
-    total = sum(entry.count for entry in written.entries)
-    new = sum(f.flow is not None for f in result.new)
-    parts = [f"{new} new", f"{sum(e.count for e in result.vanished)} forgotten"]
+    parts = [f"{len(result.new)} new", f"{sum(e.count for e in result.vanished)} forgotten"]
     if kept := sum(e.count for e in result.kept):
         parts.append(f"{kept} kept of files that were not read")
-    yield ((f"{shown(path)}: {summary.many(total, 'flow')} accepted ({', '.join(parts)}).", "strong"),)
+    yield ((f"{shown(path)}: {summary.numbers(written)} accepted ({', '.join(parts)}).", "strong"),)
     if result.errors:
         yield from summary.not_analysed(result)

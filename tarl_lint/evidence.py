@@ -16,6 +16,8 @@ from tarl_lint.valueflow.ir import Pos
 from tarl_lint.valueflow.link import Linker
 
 PROGRAM: Final = re.compile(r"__main__|\bdef main\(|\binit_node\(|\brclpy\.init\(")
+Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
+DEFINITIONS: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 BY_TEXT: Final = frozenset(["getattr", "hasattr", "vars", "globals", "locals", "eval", "exec"])
 LOCKS: Final = frozenset(["Lock", "RLock", "Condition", "Semaphore", "BoundedSemaphore"])
 
@@ -36,6 +38,7 @@ class Outline:
     tree: ast.Module
     parents: dict[ast.AST, ast.AST] = field(default_factory=dict)
     calls: dict[tuple[int, int], list[ast.Call]] = field(default_factory=dict)
+    definitions: list[Definition] = field(default_factory=list)  # in the order of their lines
     locks: dict[str, str] = field(default_factory=dict)  # name of a lock → the lock, which a condition shares
     by_text: bool = False  # names may be looked up by texts made at run time
 
@@ -43,7 +46,9 @@ class Outline:
         for node in ast.walk(self.tree):
             for child in ast.iter_child_nodes(node):
                 self.parents[child] = node
-            if isinstance(node, ast.Call):
+            if isinstance(node, DEFINITIONS):
+                self.definitions.append(node)
+            elif isinstance(node, ast.Call):
                 self.calls.setdefault((node.lineno, node.col_offset), []).append(node)
                 self.by_text |= _by_text(node)
             elif isinstance(node, ast.Attribute):
@@ -69,6 +74,11 @@ class Outline:
         """Return the call at a position."""
         found = self.calls.get((pos[0], pos[1]), [])
         return next((c for c in found if (c.end_lineno, c.end_col_offset) == (pos[2], pos[3])), None)
+
+    def qualname(self, line: int) -> str:
+        """Return the dotted name of the innermost function or class that has a line, "" for the module."""
+        holding = [d for d in self.definitions if d.lineno <= line <= (d.end_lineno or 0)]
+        return ".".join(d.name for d in sorted(holding, key=lambda d: d.lineno))
 
     def scope(self, node: ast.AST, kinds: tuple[type[ast.AST], ...]) -> ast.AST | None:
         """Return the nearest enclosing function or class."""
@@ -111,9 +121,9 @@ class Evidence:
         """Return a subscription by its place."""
         return self.tracer.source(self.machine.sources[path, pos])
 
-    def finding(self, code: str, path: str, pos: Pos, message: str) -> Finding:
-        """Return a hazard at a position."""
-        return Finding(code, self.span(path, pos), message)
+    def finding(self, code: str, span: Span, message: str, about: str) -> Finding:
+        """Return a hazard. `about` is what it speaks of, without lines and names of local variables."""
+        return Finding(code, span, message, about=about, place=self.outline(span.path).qualname(span.line))
 
     def complete(self, path: str) -> bool:
         """Tell whether a module is part of a program that is here whole, rather than a library for others."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Final, Literal
 
 Dependence = Literal["data", "control", "context"]
 Kind = Literal["explicit", "implicit"]
+CODES: Final[Mapping[Kind, str]] = {"explicit": "TARL101", "implicit": "TARL102"}
 Role = Literal["register", "receive", "assign", "call", "return", "condition", "publish"]
 
 
@@ -94,7 +96,11 @@ class Flow:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One diagnostic: a flow (TARL101, TARL102), a hazard (TARL2xx) or a file that cannot be read (TARL001)."""
+    """One diagnostic: a flow (TARL101, TARL102) or a hazard (TARL2xx).
+
+    Of a hazard, `about` is what it speaks of and `place` the qualified name of the function it is in: neither
+    lines nor local names, so that it is known again in an edited file.
+    """
 
     code: str
     span: Span
@@ -102,6 +108,8 @@ class Finding:
     flow: Flow | None = None
     fingerprint: str = ""
     status: Literal["new", "accepted"] = "new"
+    about: str = ""
+    place: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,29 +10,28 @@ from pathlib import Path
 from typing import Final
 
 from tarl_lint import baseline, batch, cache, discover, source, suppress
-from tarl_lint.baseline import Accepted, Baseline, Fingerprint
+from tarl_lint.baseline import Accepted, Baseline
 from tarl_lint.cache import Cache, Report
 from tarl_lint.config import Config, Options, Stdin
 from tarl_lint.discover import Notes, SourceFile
 from tarl_lint.errors import AnalysisBug, UsageError
+from tarl_lint.fingerprints import Fingerprint, of_finding
 from tarl_lint.layout import Layout
-from tarl_lint.model import Finding, Kind
+from tarl_lint.model import CODES, Finding
 from tarl_lint.perfile import FileIgnores
 from tarl_lint.progress import Tell, silent
 from tarl_lint.source import Script, SourceError
 from tarl_lint.suppress import Suppression
 
 UNREADABLE: Final = "TARL001"
-CODES: Final[Mapping[Kind, str]] = {"explicit": "TARL101", "implicit": "TARL102"}
 
 
 @dataclass(frozen=True)
 class Statistics:
-    """Counts of one run: files and lines analysed, findings silenced by comments, what was left out."""
+    """Counts of one run: files and lines analysed, what was left out."""
 
     files: int = 0
     lines: int = 0
-    silenced: int = 0
     notes: Notes = field(default_factory=Notes)
 
 
@@ -40,13 +39,16 @@ class Statistics:
 class Result:
     """Everything that a run found: what all reports are made from.
 
-    `findings` are sorted by place and carry fingerprint and status. `found` are the same flows as a baseline
-    holds them, `vanished` and `kept` what the baseline holds beyond that. `texts` are the analysed files.
-    Without `names_errors` files that cannot be read are counted but not listed for people. New findings of
+    `findings` are sorted by place and carry fingerprint and status; `silenced` are those that comments speak
+    of. `found` are the findings as a baseline holds them, `vanished` and `kept` what the baseline holds beyond
+    that. `texts` are the analysed files.
+    Without `names_errors` files that cannot be read are counted but not listed for people; without
+    `reports_flows` only hazards were asked for. New findings of
     the codes in `failing` make the run fail.
     """
 
     findings: tuple[Finding, ...] = ()
+    silenced: tuple[Finding, ...] = ()
     errors: tuple[SourceError, ...] = ()
     found: tuple[Accepted, ...] = ()
     vanished: tuple[Accepted, ...] = ()
@@ -56,6 +58,7 @@ class Result:
     statistics: Statistics = field(default_factory=Statistics)
     baseline: Path | None = None
     names_errors: bool = True
+    reports_flows: bool = True
     failing: frozenset[str] = frozenset()
 
     @property
@@ -82,24 +85,25 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
     texts = {script.path: script.text for script in scripts if script.path not in broken}
     identities = _Identities(discovery.files, config)
     wanted = tuple(identities.mark(f) for f in report.findings if config.enabled(f.code))
-    heard, unused = suppress.apply(wanted, texts)
+    heard, silenced, unused = suppress.apply(wanted, texts)
     elsewhere = FileIgnores(config.root or Path.cwd(), config.per_file_ignores)
-    silenced = len(wanted) - len(heard)
     findings = baseline.subtract([f for f in heard if not elsewhere.silences(f)], known.counts())
     judged = _judge(discovery.files, errors, config)
     vanished, kept = baseline.missing(known, Counter(f.fingerprint for f in wanted), judged)
     lines = sum(text.count("\n") for text in texts.values())
     return Result(
         findings=tuple(sorted(findings, key=_place)),
+        silenced=tuple(sorted(silenced, key=_place)),
         errors=errors,
         found=identities.entries(findings),
         vanished=vanished,
         kept=kept,
         unused=tuple(s for s in unused if config.enabled(s.code or "TARL")),
         texts=texts,
-        statistics=Statistics(len(texts), lines, silenced, discovery.notes),
+        statistics=Statistics(len(texts), lines, discovery.notes),
         baseline=config.baseline if known.entries else None,
         names_errors=config.enabled(UNREADABLE),
+        reports_flows=any(map(config.enabled, CODES.values())),
         failing=failing(findings, config),
     )
 
@@ -171,35 +175,34 @@ def _accepted(options: Options, config: Config) -> Baseline:
 
 
 class _Identities:
-    """Knows each flow's fingerprint, by way of the ROS package and of where the baseline is."""
+    """Knows each finding's fingerprint, by way of the ROS package and of where the baseline is."""
 
     def __init__(self, files: Sequence[SourceFile], config: Config) -> None:
-        self._paths = {file.shown: file.path for file in files}
+        self._files = {file.shown: file for file in files}
         self._layout = Layout()
         self._directory = _home(config)
         self._by_digest: dict[str, Fingerprint] = {}
 
     def mark(self, finding: Finding) -> Finding:
-        """Return a flow's finding with its fingerprint."""
-        if finding.flow is None:
-            return finding
-        place = self._paths.get(finding.flow.source.span.path)
-        package = self._layout.ros_package(str(place)) if place else ""
-        fingerprint = baseline.fingerprint(finding.flow, package)
+        """Return a finding with its fingerprint."""
+        file = self._files.get((finding.flow.source if finding.flow else finding).span.path)
+        package = self._layout.ros_package(str(file.path)) if file else ""
+        fingerprint = of_finding(finding, package, file.name if file else "")
         digest = fingerprint.digest()
         self._by_digest[digest] = fingerprint
         return replace(finding, fingerprint=digest)
 
     def entries(self, findings: Sequence[Finding]) -> tuple[Accepted, ...]:
-        """Return the flows as a baseline holds them."""
-        each = (Accepted(self._by_digest[f.fingerprint], 1, self._files(f)) for f in findings if f.flow)
+        """Return the findings as a baseline holds them."""
+        each = (Accepted(self._by_digest[f.fingerprint], 1, self._places(f)) for f in findings)
         return baseline.merged(each, ()).entries
 
-    def _files(self, finding: Finding) -> tuple[str, ...]:
-        if finding.flow is None:
-            return ()
-        shown = {finding.flow.source.span.path, finding.flow.sink.span.path}
-        places = (self._paths.get(path, Path(path)) for path in shown)
+    def _places(self, finding: Finding) -> tuple[str, ...]:
+        """Name the files of a finding as seen from the baseline."""
+        flow = finding.flow
+        shown = {flow.source.span.path, flow.sink.span.path} if flow else {finding.span.path}
+        files = ((path, self._files.get(path)) for path in shown)
+        places = (file.path if file else Path(path) for path, file in files)
         return tuple(sorted(Path(os.path.relpath(place, self._directory)).as_posix() for place in places))
 
 
@@ -221,7 +224,7 @@ def _judge(
         return os.path.realpath(place) in analysed or not place.exists()
 
     def judged(entry: Accepted) -> bool:
-        return config.enabled(CODES[entry.fingerprint.kind]) and all(map(settled, entry.files))
+        return config.enabled(entry.fingerprint.code) and all(map(settled, entry.files))
 
     return judged
 

@@ -67,15 +67,15 @@ def _comments(text: str) -> Iterator[tuple[int, int, str]]:
 
 def apply(
     findings: Sequence[Finding], texts: Mapping[str, str]
-) -> tuple[tuple[Finding, ...], tuple[Suppression, ...]]:
-    """Return the findings that no comment silences and the comments that silence nothing."""
+) -> tuple[tuple[Finding, ...], tuple[Finding, ...], tuple[Suppression, ...]]:
+    """Return the findings that no comment silences, those that one does, and the comments that silence nothing."""
     every = {path: suppressions(path, text) for path, text in texts.items()}
     kept: list[Finding] = []
+    silenced: list[Finding] = []
     used: set[Suppression] = set()
     for finding in findings:
         matching = [s for s in every.get(finding.span.path, ()) if s.covers(finding)]
         used.update(matching)
-        if not matching:
-            kept.append(finding)
+        (silenced if matching else kept).append(finding)
     unused = tuple(s for found in every.values() for s in found if s not in used)
-    return tuple(kept), unused
+    return tuple(kept), tuple(silenced), unused

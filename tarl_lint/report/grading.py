@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Literal
 
+from tarl_lint.fingerprints import digest
 from tarl_lint.model import Finding
 from tarl_lint.runner import Result
 from tarl_lint.source import SourceError
@@ -28,16 +28,11 @@ def told_apart(findings: Sequence[Finding]) -> Iterator[tuple[Finding, str]]:
     """Yield findings with an identity of their own: the fingerprint, numbered where several share it."""
     seen: Counter[str] = Counter()
     for finding in findings:
-        base = finding.fingerprint or digest(finding.code, finding.span.path, finding.message)
+        base = finding.fingerprint or digest((finding.code, finding.span.path, finding.message))
         seen[base] += 1
         yield finding, f"{base}:{seen[base]}"
 
 
 def of_error(error: SourceError) -> str:
     """Return the identity of a file that cannot be read."""
-    return digest("TARL001", error.path)
-
-
-def digest(*texts: str) -> str:
-    """Return 16 hexadecimal digits for some texts."""
-    return hashlib.sha256("\0".join(texts).encode("utf-8", "surrogatepass")).hexdigest()[:16]
+    return digest(("TARL001", error.path))

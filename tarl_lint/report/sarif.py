@@ -18,6 +18,7 @@ from tarl_lint.runner import UNREADABLE, Result
 from tarl_lint.source import SourceError
 
 SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+ROOT: Final = "%SRCROOT%"  # known to GitHub as the top of the repository
 _IMPORTANCE: Final[Mapping[Dependence, str]] = {
     "data": "essential",
     "control": "important",
@@ -34,11 +35,16 @@ def document(result: Result) -> dict[str, Any]:
     """Return the log of one run; paths are relative to the working directory."""
     codes = list(explain.known_rules())
     errors = [_unreadable(error, codes) for error in result.errors if result.names_errors]
-    found = [_result(finding, identity, codes, result) for finding, identity in told_apart(result.findings)]
+    silenced = set(result.silenced)
+    found = [
+        _result(finding, identity, codes, result, silenced=finding in silenced)
+        for finding, identity in told_apart((*result.findings, *result.silenced))
+    ]
     driver = {"name": "tarl-lint", "version": __version__, "rules": [_rule(code) for code in codes]}
     run = {
         "tool": {"driver": driver},
         "columnKind": "unicodeCodePoints",
+        "originalUriBaseIds": {ROOT: {"description": {"text": "The directory that tarl-lint ran in."}}},
         "invocations": [{"executionSuccessful": True, "toolExecutionNotifications": _notifications(result)}],
         "results": errors + found,
     }
@@ -85,7 +91,9 @@ def _unreadable(error: SourceError, codes: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _result(finding: Finding, identity: str, codes: Sequence[str], result: Result) -> dict[str, Any]:
+def _result(
+    finding: Finding, identity: str, codes: Sequence[str], result: Result, *, silenced: bool
+) -> dict[str, Any]:
     flow = finding.flow
     made: dict[str, Any] = {
         "ruleId": finding.code,
@@ -97,9 +105,11 @@ def _result(finding: Finding, identity: str, codes: Sequence[str], result: Resul
     }
     if flow:
         made |= _of_flow(flow)
-    if result.baseline:
+    if result.baseline and not silenced:
         made["baselineState"] = "unchanged" if finding.status == "accepted" else "new"
-    if finding.status == "accepted":
+    if silenced:
+        made["suppressions"] = [{"kind": "inSource", "status": "accepted"}]
+    elif finding.status == "accepted":
         place = shown(result.baseline) if result.baseline else "the baseline"
         made["suppressions"] = [
             {"kind": "external", "status": "accepted", "justification": f"Accepted in {place}."}
@@ -109,7 +119,8 @@ def _result(finding: Finding, identity: str, codes: Sequence[str], result: Resul
 
 def _fingerprints(finding: Finding, identity: str) -> dict[str, str]:
     """Return how a result is known again. GitHub looks at the first, which must differ within a file."""
-    own = {"tarlFlow/v1": finding.fingerprint} if finding.fingerprint else {}
+    name = "tarlFlow/v1" if finding.flow else "tarlHazard/v1"
+    own = {name: finding.fingerprint} if finding.fingerprint else {}
     return {"primaryLocationLineHash": identity, **own}
 
 
@@ -163,7 +174,7 @@ def _artifact(path: str) -> dict[str, str]:
     """Name a file: relative to the root of the sources, or absolute where it lies elsewhere."""
     if Path(path).is_absolute():
         return {"uri": Path(path).as_uri()}
-    return {"uri": quote(path.encode("utf-8", "surrogateescape")), "uriBaseId": "%SRCROOT%"}
+    return {"uri": quote(path.encode("utf-8", "surrogateescape")), "uriBaseId": ROOT}
 
 
 def _escaped(text: str) -> str:

@@ -6,8 +6,9 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
-from tarl_lint.baseline import Accepted, topic_text
+from tarl_lint.baseline import Accepted, Baseline
 from tarl_lint.config import shown
+from tarl_lint.fingerprints import OfFlow, OfHazard, topic_text
 from tarl_lint.model import Finding, Flow
 from tarl_lint.report.line import Line, View
 from tarl_lint.runner import UNREADABLE, Result
@@ -17,23 +18,19 @@ _SHOWN: Final = 20  # vanished flows listed by name
 
 def closing(result: Result) -> Iterator[Line]:
     """Yield what was found, then what was not analysed."""
-    yield ((_count_flows(result), "strong"),)
-    hazards = Counter(f.code for f in result.new if not f.flow)
-    if hazards:
-        yield ((f"{many(sum(hazards.values()), 'hazard')}: {_listed(hazards)}.", "strong"),)
+    counts = [_count_flows(result)] if result.reports_flows else []
+    for text in filter(None, (*counts, _count_hazards(result))):
+        yield ((text, "strong"),)
     yield from not_analysed(result)
 
 
 def hints(result: Result, view: View) -> Iterator[Line]:
-    """Yield what to do next, where flows were found that nobody has accepted yet."""
-    flows = [f for f in result.new if f.flow]
-    if not flows or result.baseline:
+    """Yield what to do next, where something was found that nobody has accepted yet."""
+    if not result.new or result.baseline:
         return
-    if len(flows) > 1 and not view.show_paths:
+    if sum(f.flow is not None for f in result.new) > 1 and not view.show_paths:
         yield (("--show-paths lists the statements on the way of each flow.", "quiet"),)
-    yield (
-        ("--write-baseline accepts these flows, so that from then on only new ones are reported.", "quiet"),
-    )
+    yield (("--write-baseline accepts all this: from then on only what is new is reported.", "quiet"),)
 
 
 def not_analysed(result: Result) -> Iterator[Line]:
@@ -46,14 +43,28 @@ def not_analysed(result: Result) -> Iterator[Line]:
 def _count_flows(result: Result) -> str:
     flows = [f for f in result.new if f.flow]
     files = result.statistics.files
-    known = sum(f.status == "accepted" for f in result.findings)
-    accepted = f" ({known} accepted in {shown(result.baseline)})" if result.baseline and known else ""
+    accepted = _accepted(result, sum(f.status == "accepted" and f.flow is not None for f in result.findings))
     new = "new " if result.baseline else ""
     if not flows:
         what = "flow" if result.baseline else "flow from a subscription to a publish call"
         return f"No {new}{what} in {many(files, 'file')}{accepted}."
     kinds = Counter(f.flow.kind for f in flows if f.flow)
     return f"{many(len(flows), new + 'flow')} in {_share(flows, files)}: {_listed(kinds)}{accepted}."
+
+
+def _count_hazards(result: Result) -> str:
+    hazards = Counter(f.code for f in result.new if not f.flow)
+    known = sum(f.status == "accepted" and f.flow is None for f in result.findings)
+    if not hazards and not known and result.reports_flows:
+        return ""
+    new = "new " if result.baseline else ""
+    found = f"{many(hazards.total(), new + 'hazard')}: {_listed(hazards)}" if hazards else f"No {new}hazard"
+    files = "" if result.reports_flows else f" in {many(result.statistics.files, 'file')}"
+    return f"{found}{files}{_accepted(result, known)}."
+
+
+def _accepted(result: Result, known: int) -> str:
+    return f" ({known} accepted in {shown(result.baseline)})" if result.baseline and known else ""
 
 
 def _share(flows: list[Finding], files: int) -> str:
@@ -64,6 +75,13 @@ def _share(flows: list[Finding], files: int) -> str:
 
 def _listed(counts: Counter[Any]) -> str:
     return ", ".join(f"{count} {name}" for name, count in sorted(counts.items()))
+
+
+def numbers(accepted: Baseline) -> str:
+    """Count what a baseline holds: `14 flows`, `14 flows and 1 hazard`."""
+    flows = sum(e.count for e in accepted.entries if isinstance(e.fingerprint, OfFlow))
+    hazards = sum(e.count for e in accepted.entries if isinstance(e.fingerprint, OfHazard))
+    return many(flows, "flow") + (f" and {many(hazards, 'hazard')}" if hazards else "")
 
 
 def many(count: int, noun: str) -> str:
@@ -94,7 +112,7 @@ def unknown_topics(result: Result) -> int:
 
 
 def vanished(result: Result, view: View) -> Iterator[Line]:
-    """Yield the accepted flows that are no longer there."""
+    """Yield what was accepted and is no longer there."""
     if not result.vanished or not result.baseline:
         return
     yield ((f"No longer there, though accepted in {shown(result.baseline)}:", "strong"),)
@@ -107,11 +125,14 @@ def vanished(result: Result, view: View) -> Iterator[Line]:
 
 
 def in_words(entry: Accepted, arrow: str) -> str:
-    """Describe an accepted flow: `odom → cmd_vel, explicit, by callback, published in travel (shuttle)`."""
+    """Describe an entry: `odom → cmd_vel, explicit, heard by callback, published in travel (shuttle)`."""
     key = entry.fingerprint
+    times = f", {entry.count} times" if entry.count > 1 else ""
+    if isinstance(key, OfHazard):
+        where = f" in {key.place}" if key.place else ""
+        return f"{key.rule} {key.about.replace('→', arrow)}{where} ({key.package}){times}"
     by = f", heard by {key.callback}" if key.callback else ""
     place = f", published in {key.place}" if key.place else ""
-    times = f", {entry.count} times" if entry.count > 1 else ""
     return f"{key.source} {arrow} {key.sink}, {key.kind}{by}{place} ({key.package}){times}"
 
 
@@ -135,7 +156,7 @@ def statistics(result: Result) -> Iterator[Line]:
     rows = [
         *sorted(Counter(f.code for f in result.findings).items()),
         (UNREADABLE, len(result.errors)),
-        ("silenced by comments", result.statistics.silenced),
+        ("silenced by comments", len(result.silenced)),
         ("accepted in the baseline", sum(f.status == "accepted" for f in result.findings)),
         ("subscriptions that reach a publish call", len({flow.source.id for flow in flows})),
         ("publish calls reached", len({flow.sink.id for flow in flows})),

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
-from tarl_lint.baseline import UNKNOWN
+from tarl_lint.fingerprints import UNKNOWN
 from tarl_lint.model import Finding, Flow, Kind, Sink, Source
 from tarl_lint.runner import Result
 

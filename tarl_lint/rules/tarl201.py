@@ -116,7 +116,8 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
             if other is None or (use.path, use.function) in told:
                 continue
             told.add((use.path, use.function))
-            yield evidence.finding(CODE, use.path, use.pos, _message(use, other))
+            about = f"self.{use.name} {_done(use)}"
+            yield evidence.finding(CODE, evidence.span(use.path, use.pos), _message(use, other), about)
 
 
 def _conflict(use: Use, uses: Sequence[Use]) -> Use | None:
@@ -126,7 +127,10 @@ def _conflict(use: Use, uses: Sequence[Use]) -> Use | None:
 
 
 def _message(use: Use, other: Use) -> str:
-    done = "written" if use.writes else "read"
-    does = "writes" if other.writes else "reads"
-    lock = min(other.locks)
-    return f"self.{use.name} is {done} without {lock}, which {other.function} holds in another thread when it {does} it"
+    lock, does = min(other.locks), "writes" if other.writes else "reads"
+    there = f"{other.function} holds in another thread when it {does} it"
+    return f"self.{use.name} is {_done(use)} without {lock}, which {there}"
+
+
+def _done(use: Use) -> str:
+    return "written" if use.writes else "read"

@@ -10,11 +10,12 @@ enough (`while distance > tolerance`) do not bound it. What passes through code 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final
 
 from tarl_lint.catalog import on_topic
 from tarl_lint.evidence import Evidence
+from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding, Sink, Source, Span
 from tarl_lint.rules.wording import end
 from tarl_lint.unbounded import Magnitudes
@@ -127,29 +128,37 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
     }
     if not pairs:
         return
-    found: dict[Span, tuple[set[str], set[str]]] = {}
+    found: dict[Span, tuple[set[Source], set[Sink]]] = {}
     for origin in evidence.machine.sources.values():
         span = evidence.span(origin.path, origin.pos)
-        sinks = [s for s in evidence.machine.sinks.values() if (span, evidence.span(s.path, s.pos)) in pairs]
-        if sinks:
-            _add(found, evidence, origin, sinks)
-    for place, (sources, commands) in found.items():
-        message = f"{', '.join(sorted(commands))} follows {', '.join(sorted(sources))} without limit: clamp this value"
-        yield Finding(CODE, place, message)
+        records = [
+            s for s in evidence.machine.sinks.values() if (span, evidence.span(s.path, s.pos)) in pairs
+        ]
+        if records:
+            _add(found, evidence, origin, records)
+    for span, (sources, sinks) in found.items():
+        commands, sensors = _joined(map(end, sinks)), _joined(map(end, sources))
+        topics = (_joined(topic_text(e.topics) for e in ends) for ends in (sources, sinks))
+        message = f"{commands} follows {sensors} without limit: clamp this value"
+        yield evidence.finding(CODE, span, message, " → ".join(topics))
+
+
+def _joined(names: Iterable[str]) -> str:
+    return ", ".join(sorted(set(names)))
 
 
 def _add(
-    found: dict[Span, tuple[set[str], set[str]]],
+    found: dict[Span, tuple[set[Source], set[Sink]]],
     evidence: Evidence,
     origin: SourceRecord,
-    sinks: list[SinkRecord],
+    records: list[SinkRecord],
 ) -> None:
     magnitudes = Magnitudes(evidence, origin)
-    for record in sinks:
+    for record in records:
         for place in magnitudes.computed(record):
-            sources, named = found.setdefault(place, (set(), set()))
-            sources.add(end(evidence.tracer.source(origin)))
-            named.add(end(evidence.tracer.sink(record)))
+            sources, commands = found.setdefault(place, (set(), set()))
+            sources.add(evidence.tracer.source(origin))
+            commands.add(evidence.tracer.sink(record))
 
 
 def _hazardous(source: Source, sink: Sink) -> bool:

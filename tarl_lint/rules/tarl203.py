@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tarl_lint.evidence import Evidence
+from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
 from tarl_lint.rules.wording import end
 from tarl_lint.valueflow.ir import Function
@@ -104,7 +105,9 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
         reason = "does nothing with it"
         if names:
             reason = f"keeps it in {', '.join(sorted(names))}, which nothing reads"
-        yield evidence.finding(CODE, record.path, record.pos, f"{end(source)}: {source.callback} {reason}")
+        message = f"{end(source)}: {source.callback} {reason}"
+        about = f"{topic_text(source.topics)}, heard by {source.callback}"
+        yield evidence.finding(CODE, source.span, message, about)
 
 
 def _callbacks(evidence: Evidence, record: SourceRecord) -> list[tuple[Function, str]]:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tarl_lint.evidence import Evidence, Read
+from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
 from tarl_lint.valueflow.ir import Pos
 from tarl_lint.valueflow.machine import Publisher
@@ -75,10 +76,12 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
     for (path, pos), publishers in made.items():
         if any(p.used for p in publishers) or _may_publish(path, pos, evidence):
             continue
-        topics = ", ".join(sorted({t for p in publishers for t in p.topics})) or "a topic"
+        names = sorted({t for p in publishers for t in p.topics})
+        topics = ", ".join(names) or "a topic"
         types = " | ".join(sorted({t for p in publishers for t in p.types}))
         named = f"{topics} ({types})" if types else topics
-        yield evidence.finding(CODE, path, pos, f"{named} is advertised, but nothing is ever published on it")
+        message = f"{named} is advertised, but nothing is ever published on it"
+        yield evidence.finding(CODE, evidence.span(path, pos), message, topic_text(names))
 
 
 def _may_publish(path: str, pos: Pos, evidence: Evidence) -> bool:

@@ -4,8 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from tarl_lint.baseline import Accepted, Baseline, dumps, fingerprint, load, merged, missing, save, subtract
+from tarl_lint.baseline import Accepted, Baseline, dumps, load, merged, missing, save, subtract
 from tarl_lint.errors import BaselineError
+from tarl_lint.fingerprints import OfHazard
+from tarl_lint.fingerprints import of_flow as fingerprint
 
 
 @pytest.fixture
@@ -111,8 +113,8 @@ def test_the_file_has_one_flow_a_line_in_words_and_the_same_bytes_in_any_order(e
         ("[]", "is no baseline of tarl-lint"),
         ('{"runs": []}', "is no baseline of tarl-lint"),
         ('{"format": 9, "tool": "tarl-lint", "flows": []}', "has format 9, this tarl-lint reads 1"),
-        ('{"format": 1, "tool": "tarl-lint"}', "damaged .*lacks 'flows'"),
-        ('{"format": 1, "tool": "tarl-lint", "flows": [{}]}', "damaged .*lacks 'source'"),
+        ('{"format": 1, "tool": "tarl-lint"}', "damaged .*it lacks 'flows'"),
+        ('{"format": 1, "tool": "tarl-lint", "flows": [{}]}', "damaged .*an entry lacks 'kind'"),
         ('{"format": 1, "tool": "tarl-lint", "flows": 3}', "damaged"),
     ],
 )
@@ -142,3 +144,22 @@ def test_a_place_that_cannot_be_written_is_named_and_nothing_is_left_behind(entr
     with pytest.raises(BaselineError, match="cannot be written"):
         save(tmp_path / "no/such/flows.json", Baseline((entry,)))
     assert [p.name for p in tmp_path.iterdir()] == ["taken"]
+
+
+def test_hazards_stand_below_the_flows_and_are_read_back(entry, tmp_path):
+    hazard = Accepted(OfHazard("shuttle", "TARL202", "odom → cmd", "travel"), 2, ("node.py",))
+    save(tmp_path / "flows.json", merged([hazard, entry], ()))
+    assert load(tmp_path / "flows.json").entries == (entry, hazard)
+    assert (
+        ' "hazards": [\n'
+        '  {"rule": "TARL202", "about": "odom → cmd", "in": "travel", "package": "shuttle", "count": 2, '
+        '"files": ["node.py"]}\n ]}\n'
+    ) in (tmp_path / "flows.json").read_text("utf-8")
+
+
+def test_a_damaged_hazard_is_damage(tmp_path):
+    path = tmp_path / "flows.json"
+    for hazards in ("3", "[{}]", '[{"rule": "TARL202"}]', "[3]"):
+        path.write_text(f'{{"format": 1, "tool": "tarl-lint", "flows": [], "hazards": {hazards}}}')
+        with pytest.raises(BaselineError, match="damaged"):
+            load(path)

@@ -95,6 +95,20 @@ def test_accepted_flows_are_suppressed_and_unchanged(example):
     ]
 
 
+def test_what_a_comment_silences_is_suppressed_in_source(example, schema):
+    result = replace(everything(example), silenced=(replace(example.finding("explicit", "imu")),))
+    suppressed = [r for r in results(result) if "suppressions" in r]
+    assert [r["message"]["text"] for r in suppressed] == ["imu reaches progress ([subscription](1))"]
+    assert suppressed[0]["suppressions"] == [{"kind": "inSource", "status": "accepted"}]
+    assert "baselineState" not in suppressed[0]
+    assert list(jsonschema.Draft4Validator(schema).iter_errors(document(result))) == []
+
+
+def test_the_root_that_paths_start_from_is_named_without_naming_the_machine(example):
+    bases = run_of(everything(example))["originalUriBaseIds"]
+    assert bases == {"%SRCROOT%": {"description": {"text": "The directory that tarl-lint ran in."}}}
+
+
 def test_without_a_baseline_nothing_is_said_about_one(example):
     result = everything(example, baseline=None)
     assert all("baselineState" not in r for r in run_of(result)["results"])

@@ -3,8 +3,9 @@ from pathlib import Path
 
 import pytest
 
-from tarl_lint.baseline import Accepted, fingerprint
+from tarl_lint.baseline import Accepted
 from tarl_lint.discover import Notes
+from tarl_lint.fingerprints import of_flow as fingerprint
 from tarl_lint.model import Finding, Span
 from tarl_lint.report import render
 from tarl_lint.report.line import ASCII, View, plain
@@ -31,7 +32,7 @@ node.py:18:9 publishes progress (Float64) in travel
       ● carries the value   ◆ decides   · surroundings
 
 1 flow in 1 file: 1 explicit.
---write-baseline accepts these flows, so that from then on only new ones are reported.
+--write-baseline accepts all this: from then on only what is new is reported.
 """
 
 

@@ -63,7 +63,8 @@ def test_a_comment_in_a_string_is_text():
 
 def test_each_rule_that_a_comment_names_in_vain_is_reported():
     text = "p(x)  # tarl: ignore[TARL101, TARL102]\nq(y)  # tarl: ignore\nr(z)  # noqa: E501\n"
-    _, unused = apply([finding(1)], {"node.py": text})
+    _, silenced, unused = apply([finding(1)], {"node.py": text})
+    assert silenced == (finding(1),)
     assert [(s.line, s.column, s.code) for s in unused] == [(1, 7, "TARL102"), (2, 7, "")]
 
 

@@ -1,0 +1,100 @@
+"""What a finding is, apart from its place and its steps: the identity that a baseline accepts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from tarl_lint.model import CODES, Finding, Flow, Kind
+
+UNKNOWN: Final = "?"
+
+
+@dataclass(frozen=True)
+class OfFlow:
+    """A flow. Topics are texts, `?` when unknown; the package is the ROS package, else Python's, else the script."""
+
+    package: str
+    owner: str  # the class that subscribes, "" for none
+    source: str
+    callback: str
+    sink: str
+    place: str  # qualified name of what publishes
+    kind: Kind
+
+    @property
+    def code(self) -> str:
+        """Return the rule of the flow's kind."""
+        return CODES[self.kind]
+
+    def texts(self) -> tuple[str, ...]:
+        """Return package, class, source, callback, sink, place and kind."""
+        return (self.package, self.owner, self.source, self.callback, self.sink, self.place, self.kind)
+
+    def digest(self) -> str:
+        """Return the fingerprint as 16 hexadecimal digits."""
+        return digest(self.texts())
+
+
+@dataclass(frozen=True)
+class OfHazard:
+    """A hazard: which rule, what it speaks of (topics, an attribute), and the function it is in."""
+
+    package: str
+    rule: str
+    about: str
+    place: str
+
+    @property
+    def code(self) -> str:
+        """Return the rule."""
+        return self.rule
+
+    def texts(self) -> tuple[str, ...]:
+        """Return package, rule, subject and place."""
+        return (self.package, self.rule, self.about, self.place)
+
+    def digest(self) -> str:
+        """Return the fingerprint as 16 hexadecimal digits."""
+        return digest(self.texts())
+
+
+Fingerprint = OfFlow | OfHazard
+
+
+def digest(texts: Sequence[str]) -> str:
+    """Return 16 hexadecimal digits for some texts."""
+    import hashlib  # OpenSSL, only where there are findings
+
+    return hashlib.sha256("\0".join(texts).encode("utf-8", "surrogatepass")).hexdigest()[:16]
+
+
+def of_finding(finding: Finding, package: str, module: str) -> Fingerprint:
+    """Return a finding's identity. `package` and `module` are those of the file where it begins."""
+    if finding.flow is not None:
+        return of_flow(finding.flow, package)
+    return OfHazard(_package(package, module), finding.code, finding.about, finding.place)
+
+
+def of_flow(flow: Flow, package: str) -> OfFlow:
+    """Return a flow's identity. `package` is the ROS package of its source, "" where there is none."""
+    source, sink = flow.source, flow.sink
+    return OfFlow(
+        package=_package(package, source.module),
+        owner=source.qualname.rpartition(".")[0],
+        source=topic_text(source.topics),
+        callback=source.callback,
+        sink=topic_text(sink.topics),
+        place=sink.qualname,
+        kind=flow.kind,
+    )
+
+
+def _package(package: str, module: str) -> str:
+    return package or module.rpartition(".")[0] or module
+
+
+def topic_text(topics: Sequence[str]) -> str:
+    """Write the topics that one call may have: `odom`, `left or right`, `?` when unknown."""
+    return " or ".join(topics) or UNKNOWN

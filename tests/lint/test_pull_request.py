@@ -1,0 +1,162 @@
+"""A baseline and the edits of a pull request: exactly what is new and what has vanished is told."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tarl_lint.cli import main
+
+NODE = """\
+import rospy
+from nav_msgs.msg import Odometry
+from geometry_msgs.msg import Twist
+from std_msgs.msg import Float64
+
+
+class Follower:
+    def __init__(self):
+        self.x = 0.0
+        self.spare = rospy.Publisher("/spare", Float64, queue_size=1)
+        self.pub = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+        rospy.Subscriber("/odom", Odometry, self.on_odom)
+
+    def on_odom(self, msg):
+        self.x = msg.pose.pose.position.x
+
+    def follow(self, goal):
+        while not rospy.is_shutdown():
+            delta = goal - self.x
+            cmd = Twist()
+            cmd.linear.x = 0.8 * delta
+            self.pub.publish(cmd)
+
+
+if __name__ == "__main__":
+    Follower().follow(2.0)
+"""
+
+
+@pytest.fixture
+def node(in_directory, capsys) -> Path:
+    """A node whose flow (TARL101) and hazards (TARL202, TARL204) are accepted."""
+    path = in_directory({"follower.py": NODE}) / "follower.py"
+    assert main(["--write-baseline"]) == 0
+    assert capsys.readouterr().out == (
+        "tarl-flows.json: 1 flow and 2 hazards accepted (3 new, 0 forgotten).\n"
+    )
+    return path
+
+
+def linted(capsys) -> tuple[int, str]:
+    return main([]), capsys.readouterr().out
+
+
+def test_what_is_accepted_is_not_reported_and_does_not_fail(node, capsys):
+    code, out = linted(capsys)
+    assert code == 0
+    assert out.splitlines() == [
+        "No new flow in 1 file (1 accepted in tarl-flows.json).",
+        "No new hazard (2 accepted in tarl-flows.json).",
+    ]
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        lambda text: "# a comment\n\n" + text,
+        lambda text: text.replace("delta", "distance").replace("cmd =", "twist =").replace("cmd.", "twist.")
+        .replace("(cmd)", "(twist)"),
+        lambda text: text.replace(
+            text[text.index("    def on_odom") : text.index("    def follow")], ""
+        ).replace("\n\nif __name__", "\n" + text[text.index("    def on_odom") : text.index("    def follow")]
+                  + "\nif __name__"),
+        lambda text: text.replace("0.8 * delta", "float(0.9 * delta)"),
+        lambda text: text.replace("\n", "\r\n"),
+    ],
+    ids=["moved lines", "renamed locals", "moved method", "another path", "Windows line ends"],
+)  # fmt: skip
+def test_edits_that_change_no_flow_tell_nothing(node, capsys, edit):
+    changed = edit(NODE)
+    assert changed != NODE
+    node.write_bytes(changed.encode())
+    code, out = linted(capsys)
+    assert (code, out.count("\n")) == (0, 2)
+
+
+def test_a_new_flow_and_a_new_hazard_are_told_alone(node, capsys):
+    advertised = "        self.pub = rospy.Publisher('/progress', Float64, queue_size=1)\n"
+    more = advertised.replace("pub", "progress") + advertised.replace("pub", "idle").replace(
+        "progress", "idle"
+    )
+    text = NODE.replace("        self.x = 0.0\n", f"        self.x = 0.0\n{more}")
+    node.write_text(text.replace("(cmd)\n", "(cmd)\n            self.progress.publish(self.x)\n"))
+    code, out = linted(capsys)
+    assert code == 1
+    assert "publishes /progress (Float64) in Follower.follow\n" in out
+    assert "/cmd_vel" not in out
+    assert "1 new flow in 1 file: 1 explicit (1 accepted in tarl-flows.json).\n" in out
+    assert "1 new hazard: 1 TARL204 (2 accepted in tarl-flows.json).\n" in out
+
+
+def test_what_has_vanished_is_listed_and_forgotten_when_written_again(node, capsys):
+    node.write_text(NODE.replace("0.8 * delta", "min(0.5, 0.8 * delta)").replace("rospy.Subscriber", "print"))
+    code, out = linted(capsys)
+    assert code == 0
+    assert "No longer there, though accepted in tarl-flows.json:\n" in out
+    assert (
+        "  /odom → /cmd_vel, explicit, heard by Follower.on_odom, published in Follower.follow (follower)\n"
+        in out
+    )
+    assert "  TARL202 /odom → /cmd_vel in Follower.follow (follower)\n" in out
+    main(["--write-baseline"])
+    assert capsys.readouterr().out == (
+        "tarl-flows.json: 0 flows and 1 hazard accepted (0 new, 2 forgotten).\n"
+    )
+
+
+def test_hazards_can_be_kept_out_of_the_baseline(node, capsys):
+    Path("tarl-flows.json").unlink()
+    main(["--write-baseline", "--select", "TARL1"])
+    assert capsys.readouterr().out == "tarl-flows.json: 1 flow accepted (1 new, 0 forgotten).\n"
+    code, out = linted(capsys)
+    assert code == 1
+    assert "2 new hazards: 1 TARL202, 1 TARL204.\n" in out
+
+
+def test_rules_that_are_not_asked_for_keep_their_entries(node, capsys):
+    before = Path("tarl-flows.json").read_text()
+    main(["--write-baseline", "--select", "TARL1"])
+    assert Path("tarl-flows.json").read_text() == before
+
+
+def test_json_holds_fingerprint_and_status_of_hazards_too(node, capsys):
+    main(["--format", "json"])
+    diagnostics = json.loads(capsys.readouterr().out)["diagnostics"]
+    assert {d["code"] for d in diagnostics} == {"TARL101", "TARL202", "TARL204"}
+    assert {d["status"] for d in diagnostics} == {"accepted"}
+    assert len({d["fingerprint"] for d in diagnostics}) == 3
+
+
+def test_files_that_cannot_be_read_keep_their_hazards(node, capsys):
+    before = Path("tarl-flows.json").read_text()
+    node.write_text("def f(:\n")
+    main(["--write-baseline"])
+    assert Path("tarl-flows.json").read_text() == before
+
+
+def test_two_processes_that_write_the_baseline_at_once_leave_a_whole_one(node):
+    before = Path("tarl-flows.json").read_text()
+    Path("tarl-flows.json").unlink()
+    command = [sys.executable, "-m", "tarl_lint", "--write-baseline", "--no-cache"]
+    runs = [subprocess.Popen(command, stdout=subprocess.DEVNULL) for _ in range(3)]
+    assert [run.wait() for run in runs] == [0, 0, 0]
+    assert Path("tarl-flows.json").read_text() == before
+    assert sorted(p.name for p in Path().iterdir() if not p.name.startswith(".tarl")) == [
+        "follower.py",
+        "tarl-flows.json",
+    ]
