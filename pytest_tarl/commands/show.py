@@ -46,7 +46,7 @@ def _list(taint_list: TaintList, recorded: ListSample) -> Iterator[str]:
     events = visits.state != START
     site = (visits.state[events] - 1) % max(recorded.width, 1)
     counts = np.bincount(site, weights=visits.count[events], minlength=recorded.width)
-    flows = np.bincount(site, weights=visits.flow[events], minlength=recorded.width)
+    flows = recorded.flow.sum(axis=0)
     yield f"  {taint_list.name}: {int(counts.sum())} events, mean |f| {recorded.mean_flow:.4g}"
     for place, count, flow in zip(taint_list.sites, counts.tolist(), flows.tolist(), strict=True):
         mean = flow / count if count else 0.0

@@ -1,9 +1,11 @@
 """The utility fixture: what `--tarl-record` leaves on disk for `--tarl-online` to compare with.
 
-One `.npz` file: a JSON header with a format version and a digest, and the columns of the statistics. Loaded
+One `.npz` file: a JSON header with a format version and a digest, and the columns of the statistics, packed. Loaded
 without pickle, written to a temporary file and renamed; the same episodes give the same bytes.
 
-FORMAT_VERSION history: 1, the first.
+FORMAT_VERSION history:
+1  Columns of float64.
+2  Sums as logarithms (packing.py), a sixth of the size; Σ|f| per episode and site.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ import io
 import json
 import zlib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
@@ -22,11 +24,20 @@ import numpy as np
 
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.files import write_atomically
-from pytest_tarl.learning.tables import Chain, Edges, Floats, ListSample, Sample, Visits
+from pytest_tarl.learning.packing import (
+    narrowed,
+    packed_chain,
+    packed_list,
+    packed_table,
+    unpacked_chain,
+    unpacked_list,
+    unpacked_table,
+)
+from pytest_tarl.learning.tables import Floats, Sample
 from pytest_tarl.model import SitePlace, TaintList
 from pytest_tarl.sensors import Sensor
 
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 HEADER = "header"
 
 
@@ -111,29 +122,15 @@ def _columns(fixture: Fixture) -> dict[str, np.ndarray[Any, Any]]:
     sample = fixture.sample
     width = len(fixture.sensors)
     columns: dict[str, np.ndarray[Any, Any]] = {
-        "cells": np.array(sample.cells, dtype=np.int64).reshape(len(sample.cells), width),
+        "cells": narrowed(np.array(sample.cells, dtype=np.int64).reshape(len(sample.cells), width)),
         "passed": sample.passed,
         "total": sample.total,
-        "steps": sample.steps,
+        "steps": narrowed(sample.steps),
     }
-    columns |= _named("chain", sample.chain)
+    columns |= packed_chain(sample.chain)
     for i, one in enumerate(sample.lists):
-        columns |= _named(f"edges{i}", one.edges) | _named(f"visits{i}", one.visits)
-        columns[f"sarsa{i}"] = fixture.sarsa[i]
-    return {name: _compact(column) for name, column in columns.items()}
-
-
-def _named(prefix: str, table: Chain | Edges | Visits) -> dict[str, np.ndarray[Any, Any]]:
-    return {f"{prefix}.{f.name}": getattr(table, f.name) for f in fields(table)}
-
-
-def _compact(column: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Store integers in the smallest type that holds them."""
-    if column.dtype.kind != "i" or not column.size:
-        return column
-    kinds = (np.int8, np.int16, np.int32, np.int64)
-    low, high = column.min(), column.max()
-    return column.astype(next(k for k in kinds if np.iinfo(k).min <= low and high <= np.iinfo(k).max))
+        columns |= packed_list(f"list{i}", one) | packed_table(f"sarsa{i}", fixture.sarsa[i])
+    return columns
 
 
 def _digest(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, Any]]) -> str:
@@ -150,16 +147,6 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
         for one in header["lists"]
     )
     sensors = tuple(Sensor(**one | {"categories": tuple(one["categories"])}) for one in header["sensors"])
-    wide: dict[str, Any] = {n: c.astype(np.int64) if c.dtype.kind == "i" else c for n, c in columns.items()}
-
-    def chain() -> Chain:
-        return Chain(**{f.name: wide[f"chain.{f.name}"] for f in fields(Chain)})
-
-    def listed(i: int, width: int) -> ListSample:
-        edges = Edges(**{f.name: wide[f"edges{i}.{f.name}"] for f in fields(Edges)})
-        visits = Visits(**{f.name: wide[f"visits{i}.{f.name}"] for f in fields(Visits)})
-        return ListSample(width, edges, visits)
-
     return Fixture(
         test=header["test"],
         seed=header["seed"],
@@ -167,14 +154,14 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
         lists=lists,
         topics=header["topics"],
         sample=Sample(
-            cells=tuple(tuple(row) for row in wide["cells"].tolist()),
+            cells=tuple(tuple(row) for row in columns["cells"].tolist()),
             seeds=tuple(int(seed) for seed in header["seeds"]),
             passed=columns["passed"],
             total=columns["total"],
-            steps=wide["steps"],
+            steps=columns["steps"].astype(np.int64),
             part_names=tuple(header["parts"]),
-            chain=chain(),
-            lists=tuple(listed(i, len(one.sites)) for i, one in enumerate(lists)),
+            chain=unpacked_chain(columns),
+            lists=tuple(unpacked_list(f"list{i}", columns, len(one.sites)) for i, one in enumerate(lists)),
         ),
-        sarsa=tuple(columns[f"sarsa{i}"] for i in range(len(lists))),
+        sarsa=tuple(unpacked_table(f"sarsa{i}", columns) for i in range(len(lists))),
     )

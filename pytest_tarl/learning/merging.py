@@ -8,7 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from pytest_tarl.learning.tables import END, START, Chain, Edges, Ints, ListSample, Sample, Visits
+from pytest_tarl.learning.tables import END, START, Chain, Edges, Floats, Ints, ListSample, Sample, Visits
 from pytest_tarl.sensors import Cell
 
 Columns = TypeVar("Columns", Chain, Edges, Visits)
@@ -40,7 +40,7 @@ def merge(samples: Sequence[Sample], cells: Iterable[Cell] = ()) -> Sample:
         steps=np.array([samples[w].steps[i] for w, i in picked], dtype=np.int64),
         part_names=names,
         chain=_stack([place.chain() for place in places], "cell", "next_cell"),
-        lists=tuple(_merge_list(places, i) for i in range(len(samples[0].lists))),
+        lists=tuple(_merge_list(places, i, len(seeds)) for i in range(len(samples[0].lists))),
     )
 
 
@@ -87,6 +87,11 @@ class _Place:
         )
         return _kept(moved)
 
+    def flow(self, i: int, merged: Floats) -> None:
+        """Write the flows of a taint list to where its episodes are in the merged sample."""
+        kept = self.episode >= 0
+        merged[self.episode[kept]] = self.sample.lists[i].flow[kept]
+
     def visits(self, i: int) -> Visits:
         visits = self.sample.lists[i].visits
         state = self.state(visits.state, self.sample.lists[i].width)
@@ -98,10 +103,14 @@ def _place(one: Sample, episode: Ints, number: Mapping[Cell, int], names: Sequen
     return _Place(one, episode, cell, [names.index(name) for name in one.part_names], len(names))
 
 
-def _merge_list(places: Sequence[_Place], i: int) -> ListSample:
+def _merge_list(places: Sequence[_Place], i: int, episodes: int) -> ListSample:
     edges = _stack([place.edges(i) for place in places], "state", "next_state")
     visits = _stack([place.visits(i) for place in places], "state")
-    return ListSample(places[0].sample.lists[i].width, edges, visits)
+    width = places[0].sample.lists[i].width
+    flow = np.zeros((episodes, width))
+    for place in places:
+        place.flow(i, flow)
+    return ListSample(width, edges, visits, flow)
 
 
 def _kept(columns: Columns) -> Columns:

@@ -9,7 +9,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pytest_tarl.learning.sequences import EventSequence, event_sequences
-from pytest_tarl.learning.tables import END, Chain, Edges, Floats, Ints, ListSample, Sample, Visits, sum_by
+from pytest_tarl.learning.tables import (
+    END,
+    START,
+    Chain,
+    Edges,
+    Floats,
+    Ints,
+    ListSample,
+    Sample,
+    Visits,
+    sum_by,
+)
 from pytest_tarl.sensors import Cell
 
 if TYPE_CHECKING:
@@ -81,11 +92,17 @@ def _list_sample(sequences: Sequence[EventSequence], width: int) -> ListSample:
             count=visits.astype(np.int64),
             reward=sums(reward),
             scaled=sums(scaled),
-            flow=sums(flow),
             reward_squared=sums(reward**2),
             scaled_squared=sums(scaled**2),
         ),
+        flow=_flows(state, flow, width),
     )
+
+
+def _flows(state: Ints, flow: Floats, width: int) -> Floats:
+    """Return Σ|f| of each site over all cells, shape (1, sites)."""
+    events = state != START
+    return sum_by((state[events] - 1) % max(width, 1), flow[events], width)[None, :]
 
 
 def _unique_pairs(first: Ints, second: Ints) -> tuple[tuple[Ints, Ints], Ints, Ints]:

@@ -44,31 +44,31 @@ class Edges:
 
 @dataclass(frozen=True)
 class Visits:
-    """Sums per state of one taint list: of r, of r·|f|, of |f|, and of the first two's squares; shape (rows,)."""
+    """Sums per state of one taint list: of r, of r·|f|, and of the squares of both; shape (rows,)."""
 
     episode: Ints
     state: Ints
     count: Ints
     reward: Floats
     scaled: Floats
-    flow: Floats
     reward_squared: Floats
     scaled_squared: Floats
 
 
 @dataclass(frozen=True)
 class ListSample:
-    """What was recorded of one taint list with `width` sites."""
+    """What was recorded of one taint list with `width` sites; `flow` is Σ|f|, shape (episodes, sites)."""
 
     width: int
     edges: Edges
     visits: Visits
+    flow: Floats
 
     @property
     def mean_flow(self) -> float:
         """Return F, the mean |f| per event; 1 where nothing flowed."""
         events = self.visits.count[self.visits.state != START].sum()
-        mean = float(self.visits.flow.sum()) / events if events else 0.0
+        mean = float(self.flow.sum()) / events if events else 0.0
         return mean or 1.0
 
 
