@@ -4,7 +4,8 @@ A number of a received message is computed into a command for actuators (a veloc
 on the way bounds it: no `min`, `max`, `clip` or function of such a name, no angle or sine, no comparison that replaces
 the value when it is too large. Sensors send infinity, jumps and nonsense sometimes, and the command then follows.
 Clamp it where it is computed; that is the line that is named. Conditions that only ask whether the value is large
-enough (`while distance > tolerance`) do not bound it. What passes through code that is not here is not reported.
+enough (`while distance > tolerance`) do not bound it. What passes through code that is not here is not reported, nor
+are speeds that may be measurements: a Float64 on `/speed` made from ticks, from `twist`, or from a way and a time.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from typing import Final
 from tarl_lint.catalog import on_topic
 from tarl_lint.evidence import Evidence
 from tarl_lint.fingerprints import topic_text
-from tarl_lint.model import Finding, Sink, Source, Span
+from tarl_lint.model import Finding, Flow, Sink, Source, Span
 from tarl_lint.rules.wording import end
 from tarl_lint.unbounded import Magnitudes
 from tarl_lint.valueflow.machine import SinkRecord, SourceRecord
@@ -99,15 +100,38 @@ VALID: Final = (
 
     rospy.Subscriber("/range", Range, on_range)
     """,
+    """
+    import rospy
+    from std_msgs.msg import Float64, Int64
+
+    pub = rospy.Publisher("/wheel_speed", Float64, queue_size=1)
+    last = 0
+
+    def on_ticks(msg):
+        global last
+        pub.publish(0.01 * (msg.data - last))
+        last = msg.data
+
+    rospy.Subscriber("/ticks", Int64, on_ticks)
+    """,
 )
 
-COMMAND_TYPES: Final = re.compile(
-    r"^(Twist|TwistStamped|Ackermann\w*|Wrench|\w*(Cmd|Command|Control|Thrust)\w*)$"
+COMMAND_TYPES: Final = re.compile(r"^(Ackermann\w*|\w*(Cmd|Command|Control|Thrust)\w*)$")
+# Of these types measurements are published, too: the topic has to tell.
+PLAIN_TYPES: Final = frozenset(
+    ["Float32", "Float64", "Int16", "Int32", "Int64", "Twist", "TwistStamped", "Wrench", "WrenchStamped"]
 )
-PLAIN_TYPES: Final = frozenset(["Float32", "Float64", "Int16", "Int32", "Int64"])
 COMMAND_TOPICS: Final = re.compile(
-    r"cmd|command|ctrl|control|vel|speed|steer|throttle|brake|effort|torque|thrust|motor|servo|pwm|setpoint",
+    r"cmd|command|ctrl|control|steer|throttle|brake|effort|torque|thrust|motor|servo|pwm|setpoint|teleop|drive|mux",
     re.I,
+)
+SPEED_TOPICS: Final = re.compile(r"vel|speed", re.I)
+PLACE_TYPES: Final = frozenset(
+    ["Odometry", "Pose", "PoseStamped", "PoseWithCovarianceStamped", "Pose2D", "Point", "PointStamped", "LaserScan",
+     "Range", "PointCloud2"]
+)  # fmt: skip
+SPEEDS: Final = re.compile(
+    r"\.twist\b|/\s*\(?\s*[\w.]*(dt|time|elapsed|duration|period|now|stamp|to_sec)", re.I
 )
 NO_COMMAND: Final = re.compile(
     r"estimat|measur|actual|current|state|feedback|error|odom|debug|filter|status", re.I
@@ -121,11 +145,7 @@ ASKED_FOR: Final = re.compile(r"cmd|command|setpoint|target|goal|desired|joy|tel
 
 def findings(evidence: Evidence) -> Iterator[Finding]:
     """Yield a hazard for each statement that computes an unlimited part of a command."""
-    pairs = {
-        (f.source.span, f.sink.span)
-        for f in evidence.flows
-        if f.kind == "explicit" and _hazardous(f.source, f.sink)
-    }
+    pairs = {(f.source.span, f.sink.span) for f in evidence.flows if f.kind == "explicit" and _hazardous(f)}
     if not pairs:
         return
     found: dict[Span, tuple[set[Source], set[Sink]]] = {}
@@ -161,18 +181,33 @@ def _add(
             commands.add(evidence.tracer.sink(record))
 
 
-def _hazardous(source: Source, sink: Sink) -> bool:
+def _hazardous(flow: Flow) -> bool:
     """Tell whether a sensor's numbers would act on a robot here."""
-    if not (on_topic(source.api) and on_topic(sink.api)):
+    return _sensor(flow.source) and _command(flow)
+
+
+def _sensor(source: Source) -> bool:
+    """Tell whether messages are measured, rather than sent by a person or program that decides."""
+    if not on_topic(source.api) or not ("ubscri" in source.api or "wait_for_message" in source.api):
         return False
-    topic = ", ".join(sink.topics)
-    if "ubscri" not in source.api and "wait_for_message" not in source.api:
-        return False
-    if any(NO_SENSOR.match(t) for t in (source.type or "").split(" | ")) or NO_COMMAND.search(topic):
-        return False
-    if any(ASKED_FOR.search(t) for t in source.topics):
+    types = (source.type or "").split(" | ")
+    return not any(map(NO_SENSOR.match, types)) and not any(map(ASKED_FOR.search, source.topics))
+
+
+def _command(flow: Flow) -> bool:
+    """Tell whether what is published makes actuators move."""
+    sink, topic = flow.sink, ", ".join(flow.sink.topics)
+    if not on_topic(sink.api) or NO_COMMAND.search(topic):
         return False
     types = sink.type.split(" | ")
-    if any(COMMAND_TYPES.match(t) for t in types):
+    if any(map(COMMAND_TYPES.match, types)):
         return True
-    return bool(PLAIN_TYPES & set(types)) and bool(COMMAND_TOPICS.search(topic))
+    if not PLAIN_TYPES & set(types):
+        return False
+    return bool(COMMAND_TOPICS.search(topic)) or (bool(SPEED_TOPICS.search(topic)) and not _measured(flow))
+
+
+def _measured(flow: Flow) -> bool:
+    """Tell whether a speed may be what was measured: speeds and ticks come in, or a way is divided by a time."""
+    code = " ".join(step.code for step in flow.steps if step.dependence == "data")
+    return not PLACE_TYPES & set((flow.source.type or "").split(" | ")) or bool(SPEEDS.search(code))

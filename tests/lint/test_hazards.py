@@ -137,6 +137,42 @@ def test_the_line_that_computes_the_value_is_named_not_the_publish_call():
     assert lines("TARL202", inside(RANGE, body, 8)) == [13]
 
 
+SPEED = """
+    import rospy
+    from nav_msgs.msg import Odometry
+    from {package}.msg import {message}
+    pub = rospy.Publisher("{topic}", {message}, queue_size=1)
+    last = [0.0, 0.0]
+    def on_odom(msg):
+        x = msg.pose.pose.position.x
+        now = msg.header.stamp.to_sec()
+        made = {message}()
+        made.{field} = {value}
+        pub.publish(made)
+        last[:] = [x, now]
+    rospy.Subscriber("/odom", Odometry, on_odom)
+"""
+
+
+@pytest.mark.parametrize(
+    ("topic", "value", "found"),
+    [
+        ("/cmd_vel", "2.0 * (1.0 - x)", 1),
+        ("/wheel_velocity", "2.0 * (1.0 - x)", 1),
+        ("/speed", "3.6 * msg.twist.twist.linear.x", 0),
+        ("/speed", "(x - last[0]) / (now - last[1])", 0),
+        ("/actual_speed", "2.0 * (1.0 - x)", 0),
+        ("/distance", "2.0 * (1.0 - x)", 0),
+    ],
+)
+@pytest.mark.parametrize(
+    ("package", "message", "field"), [("std_msgs", "Float64", "data"), ("geometry_msgs", "Twist", "linear.x")]
+)
+def test_speeds_that_may_be_measurements_are_no_commands(topic, value, found, package, message, field):
+    text = SPEED.format(topic=topic, value=value, package=package, message=message, field=field)
+    assert len(lines("TARL202", text)) == found
+
+
 @pytest.mark.parametrize(
     ("body", "found"),
     [
