@@ -43,6 +43,14 @@ class Origins:
         found = self._trace(value.deps, set())
         return frozenset(found) if found is not None else frozenset()
 
+    def entries(self, value: Value | None, index: Value | None) -> frozenset[Origin]:
+        """Return where the numbers of a table were written from which a computed index takes one; else none."""
+        if value is None or index is None or value.pts:
+            return frozenset()
+        found = self._trace(value.deps - self.machine.use(index), set())
+        numbers = found is not None and all(origin.value is not None for origin in found)
+        return frozenset(found) if found and numbers else frozenset()
+
     def _trace(self, deps: Iterable[int], seen: set[int]) -> set[Origin] | None:
         """Return the constants behind nodes, None when something else is behind one."""
         found: set[Origin] = set()

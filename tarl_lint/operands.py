@@ -41,6 +41,10 @@ class Constants(Protocol):
         """Return where the constants were written, nothing when it is not one."""
         ...
 
+    def entries(self, value: Value | None, index: Value | None) -> object:
+        """Return where the entries of a table of constants were written, nothing when it is none."""
+        ...
+
 
 def uses(statement: ir.Stmt, values: Mapping[ir.Pos, Value], constants: Constants) -> Iterator[ir.Expr]:
     """Yield the expressions of a statement that may be constants, outermost first."""
@@ -70,7 +74,7 @@ def _inside(expr: ir.Expr, values: Mapping[ir.Pos, Value], constants: Constants)
         yield expr
         return
     if isinstance(expr, (ir.Attribute, ir.Item)):
-        if constants.of(expr, values.get(expr.pos)):
+        if constants.of(expr, values.get(expr.pos)) or _entry(expr, values, constants):
             yield expr
         else:
             yield from _inside(expr.base, values, constants)
@@ -80,6 +84,13 @@ def _inside(expr: ir.Expr, values: Mapping[ir.Pos, Value], constants: Constants)
         return
     for part in _parts(expr):
         yield from _inside(part, values, constants)
+
+
+def _entry(expr: ir.Attribute | ir.Item, values: Mapping[ir.Pos, Value], constants: Constants) -> bool:
+    """Tell whether an expression looks a number up in a table by an index that is computed."""
+    if not isinstance(expr, ir.Item):
+        return False
+    return bool(constants.entries(values.get(expr.pos), values.get(expr.index.pos)))
 
 
 def _call(expr: ir.Call, values: Mapping[ir.Pos, Value], constants: Constants) -> Iterator[ir.Expr]:

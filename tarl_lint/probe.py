@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from tarl_lint.holding import Holding, Origins
+from tarl_lint.holding import Holding, Origin, Origins
 from tarl_lint.model import Flow, Operand, SiteId
 from tarl_lint.operands import uses
 from tarl_lint.valueflow import ir
@@ -49,7 +49,7 @@ class Prober:
         text = self.texts[seen.path]
         found: dict[ir.Pos, Operand] = {}
         for expr in uses(seen.statement, seen.values, self.origins):
-            origins = self.origins.of(expr, seen.values.get(expr.pos))
+            origins = self._origins(expr, seen.values)
             if not origins or expr.pos in found:
                 continue
             values = {(type(o.value), o.value) for o in origins}
@@ -61,6 +61,12 @@ class Prober:
                 definition = self.texts[single.path].stretch(single.pos) if single.path else span
             found[expr.pos] = Operand(site, span, text.code(span), value, definition)
         return tuple(sorted(found.values(), key=lambda o: o.span))
+
+    def _origins(self, expr: ir.Expr, values: Mapping[ir.Pos, Value]) -> frozenset[Origin]:
+        found = self.origins.of(expr, values.get(expr.pos))
+        if not found and isinstance(expr, ir.Item):
+            return self.origins.entries(values.get(expr.pos), values.get(expr.index.pos))
+        return found
 
     def holders(self, topic: str, field: str, site: SiteId) -> tuple[str, ...]:
         """Return expressions that hold a topic's field unchanged at a site, shortest first."""

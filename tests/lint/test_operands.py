@@ -9,6 +9,8 @@ NODE = """
     from rclpy.node import Node
     GAIN = 2.5
     TABLE = {"p": 0.4, "i": 0.02}
+    STEPS = (0.1, 0.2, 0.4)
+    NAMES = ["low", "high"]
     class Arm:
         reach = 1.5
         def __init__(self, k, offset=0.25):
@@ -52,6 +54,9 @@ NODE = """
         ("msg.ranges[1:4]", []),
         ("msg.data + np.zeros(3)", []),
         ("f'{msg.data:.2f} of {10}'", []),
+        ("msg.data * TABLE[msg.axis]", [("TABLE[msg.axis]", None)]),
+        ("STEPS[int(msg.data)]", [("STEPS[int(msg.data)]", None)]),
+        ("NAMES[msg.axis]", []),
         ("msg.data * self.last", []),
         ("msg.data * time.time()", []),
     ],

@@ -1,0 +1,257 @@
+"""Find all right sites of the tasks by simulation, and write them into each task's answer.json.
+
+    python benchmarks/drift/exhaustive.py [TASK ...] [--workers 2]
+
+Every operand of every site takes every value of a fine grid, under no guard and under the one that the task's author
+knows to be true ("where"); constants written several times on one site also move together, and so do the operands of
+one site, two at a time. A site is right when its operands alone bring the drifted world to 95 % of what the node earns
+off-line, over EPISODES seeds that nothing else uses. Where no site is, all pairs of operands are tried; where a task
+has more culprits than two, each of them is replaced in turn by every other operand, the rest kept as the author knows.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations, product
+from statistics import fmean
+from typing import Any
+
+from stage import HERE, TASKS, Stage, visit
+
+from pytest_tarl.errors import RepairError, TarlError
+from pytest_tarl.model import Conjunct, Guard
+from pytest_tarl.patching.mutate import Mutation, is_integral, mutations, rewrite
+from pytest_tarl.recording import sound
+from pytest_tarl.rollout import EpisodePlan
+from pytest_tarl.seeds import episode_seeds
+from tarl_lint.model import Operand
+
+FINE = (
+    0.0,
+    0.03,
+    0.06,
+    0.1,
+    0.15,
+    0.2,
+    0.25,
+    0.3,
+    0.35,
+    0.4,
+    0.45,
+    0.5,
+    0.55,
+    0.6,
+    0.65,
+    0.7,
+    0.75,
+    0.8,
+    0.85,
+    0.9,
+    0.95,
+)
+FACTORS = (*FINE, *(round(1 / f, 3) for f in FINE[:0:-1]), -0.5, -1.0, -2.0)
+COARSE = (0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.2, 1.5, 2.0, 2.75, 4.0, 8.0)
+EPISODES = 40
+RESTORED = 0.95
+MOST_LOST = 3  # episodes that may be lost before a candidate is dropped
+
+Change = tuple[Mutation, ...]
+
+
+@dataclass(frozen=True)
+class Found:
+    """One candidate that restores the drifted world; `nominal` is what it earns off-line."""
+
+    change: Change
+    guard: Guard
+    drifted: float
+    nominal: float
+
+
+class World:
+    """A task's two worlds, and what the node as designed earns in them."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
+        self.seeds = episode_seeds(11, "exhaustive", EPISODES)
+        runs = [stage.rollout(EpisodePlan(seed, None)) for seed in self.seeds]
+        self.topics = runs[0].topics
+        totals = [float(run.trace.reward.sum()) for run in runs]
+        self.offline, self.least = fmean(totals), min(totals)
+        self.floor = min(0.0, *(self._total(seed, self.stage.drift, {}) for seed in self.seeds[:8]))
+
+    @cached_property
+    def operands(self) -> list[Operand]:
+        """Return all operands of the analysed flows."""
+        analysis = self.stage.analysis
+        return list(dict.fromkeys(o for step in analysis.sites for o in analysis.operands(step.site)))
+
+    @cached_property
+    def guards(self) -> list[Guard]:
+        """Return no guard, and the one that holds where the drift is."""
+        sensors = {sensor.name: sensor for sensor in self.stage.marked.sensors}
+        where = [
+            Conjunct(sensors[w["sensor"]], w.get("low", -float("inf")), w.get("high", float("inf")))
+            for w in self.stage.answer["where"]
+        ]
+        return [Guard(), *([Guard(tuple(where))] if where else [])]
+
+    def mutations(self, operand: Operand, factors: Sequence[float]) -> list[Mutation]:
+        """Return an operand's mutations by the factors."""
+        integral = is_integral(self.stage.analysis, operand)
+        tried = [mutations(operand, factor, integral) for factor in factors]
+        return list(dict.fromkeys(mutation for mutation in tried if mutation is not None))
+
+    def tried(self, changes: Iterator[Change], guards: Sequence[Guard] | None = None) -> list[Found]:
+        """Return those changes that restore the drifted world under one of the guards."""
+        found = []
+        for change in changes:
+            for guard in self.guards if guards is None else guards:
+                drifted = self.earned(change, guard, self.stage.drift)
+                if drifted is not None:
+                    nominal = self.earned(change, guard, None)
+                    found.append(Found(change, guard, drifted, -1.0 if nominal is None else nominal))
+        return found
+
+    def earned(self, change: Change, guard: Guard, drift: str | None) -> float | None:
+        """Return the mean reward of a change where it reaches 95 % of off-line; None where it does not."""
+        try:
+            texts = rewrite(self.stage.analysis, change, guard, self.topics)
+        except RepairError:
+            return None
+        overlay = {self.stage.folder / path: text for path, text in texts.items()}
+        totals: list[float] = []
+        goal = RESTORED * self.offline
+        for seed in self.seeds:
+            totals.append(self._total(seed, drift, overlay))
+            lost = sum(total < min(goal, self.least) - 0.1 * abs(self.offline) for total in totals)
+            if lost > min(MOST_LOST, (len(totals) + 1) // 2):
+                return None
+            if len(totals) in (4, 10) and fmean(totals) < goal - 0.4 * abs(self.offline):
+                return None
+        mean = fmean(totals)
+        return mean if mean >= goal else None
+
+    def _total(self, seed: int, drift: str | None, overlay: Any) -> float:
+        try:
+            run = sound(self.stage.rollout(EpisodePlan(seed, drift, overlay)))
+        except TarlError:
+            return -1e3
+        return -1e3 if run.crashed else float(run.trace.reward.sum())
+
+
+def singles(world: World) -> Iterator[Change]:
+    """Yield what one operand alone can change, and equal ones of a site together."""
+    of_site: dict[Any, list[Operand]] = {}
+    for operand in world.operands:
+        of_site.setdefault(operand.site, []).append(operand)
+        yield from ((mutation,) for mutation in world.mutations(operand, FACTORS))
+    for operands in of_site.values():
+        for code in dict.fromkeys(operand.code for operand in operands):
+            alike = [operand for operand in operands if operand.code == code]
+            if len(alike) > 1:
+                for factor in FACTORS:
+                    together = [world.mutations(operand, (factor,)) for operand in alike]
+                    yield tuple(mutation for one in together for mutation in one)
+
+
+def of_one_site(world: World) -> Iterator[Change]:
+    """Yield what two operands of one site can change."""
+    for site in dict.fromkeys(operand.site for operand in world.operands):
+        yield from pairs(world, [operand for operand in world.operands if operand.site == site])
+
+
+def pairs(world: World, operands: Sequence[Operand]) -> Iterator[Change]:
+    """Yield all changes of two operands on the coarse grid."""
+    for one, other in combinations(operands, 2):
+        yield from product(world.mutations(one, COARSE), world.mutations(other, COARSE))
+
+
+def replaced(world: World, known: Change) -> Iterator[Change]:
+    """Yield a known repair with each of its parts replaced by every mutation of every other operand."""
+    for part in known:
+        rest = tuple(mutation for mutation in known if mutation != part)
+        taken = {mutation.operand for mutation in rest}
+        for operand in world.operands:
+            if operand not in taken:
+                yield from ((*rest, mutation) for mutation in world.mutations(operand, FACTORS))
+
+
+def known(world: World) -> Change:
+    """Return the repair that the task's author knows."""
+    chosen = []
+    for text, code, factor in world.stage.answer["known"]:
+        (operand,) = [o for o in world.operands if o.code == code and text in str(o.site)][:1]
+        chosen += world.mutations(operand, (factor,))
+    return tuple(chosen)
+
+
+def answered(stage: Stage) -> dict[str, Any]:
+    """Return a task's answer: what its author wrote, and what simulation found."""
+    world = World(stage)
+    found = world.tried(singles(world)) + world.tried(of_one_site(world), world.guards[-1:])
+    how = "one site"
+    culprits = len(stage.answer["known"])
+    if not found and culprits == 2:
+        how, found = "two sites", world.tried(pairs(world, world.operands), world.guards[-1:])
+    elif not found and culprits > 2:
+        how, found = "substitution", world.tried(replaced(world, known(world)))
+    sets = _minimal({tuple(sorted({str(m.operand.site) for m in one.change})) for one in found})
+    return {
+        **{name: stage.answer[name] for name in ("about", "known", "where")},
+        "offline": round(world.offline, 3),
+        "sites": len(stage.analysis.sites),
+        "operands": len(world.operands),
+        "how": how,
+        "repairable": any(one.nominal > 0 for one in found),
+        "right": [list(sites) for sites in sets],
+        "evidence": [_evidence(sites, found) for sites in sets],
+    }
+
+
+def _minimal(sets: set[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    return sorted(one for one in sets if not any(set(other) < set(one) for other in sets))
+
+
+def _evidence(sites: tuple[str, ...], found: Sequence[Found]) -> dict[str, Any]:
+    """Return the best repair of a set of sites, those that hold in both worlds first."""
+    of_sites = [one for one in found if tuple(sorted({str(m.operand.site) for m in one.change})) == sites]
+    best = max(of_sites, key=lambda one: (one.nominal > 0, one.drifted))
+    return {
+        "edits": [[mutation.operand.code, mutation.value] for mutation in best.change],
+        "guarded": bool(best.guard.conjuncts),
+        "drifted": round(best.drifted, 3),
+        "nominal": round(best.nominal, 3) if best.nominal > 0 else None,
+        "repairs": len(of_sites),
+    }
+
+
+def main() -> None:
+    """Answer the tasks named, or all, each in a process of its own."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("tasks", nargs="*")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--here", action="store_true", help="one task, in this process")
+    arguments = parser.parse_args()
+    tasks = arguments.tasks or TASKS
+    if arguments.here:
+        answer = visit(tasks[0], answered)
+        (HERE / tasks[0] / "answer.json").write_text(json.dumps(answer, indent=1, ensure_ascii=False) + "\n")
+        print(json.dumps(answer, indent=1, ensure_ascii=False))
+        return
+    with ThreadPoolExecutor(arguments.workers) as pool:
+        commands = [[sys.executable, __file__, task, "--here"] for task in tasks]
+        for done in pool.map(lambda command: subprocess.run(command, check=False), commands):
+            if done.returncode:
+                sys.exit(done.returncode)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,101 @@
+"""Open a task of the benchmark: its test, its analysis, and episodes of it, as the plugin itself would run them."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable
+from contextlib import redirect_stdout
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pytest_tarl.instrumentation.sites import Plan, plan
+from pytest_tarl.repeating import Instruments, ItemRollout, designated, finish
+from pytest_tarl.settings import Designation
+from tarl_lint.api import Analysis, analyse
+
+HERE = Path(__file__).resolve().parent
+REWRITTEN = "ignore:Module already imported"
+TASKS = tuple(sorted(path.name for path in HERE.iterdir() if list(path.glob("test_*.py"))))
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One task, ready to be run: `rollout` runs episodes of its test, here and now."""
+
+    task: str
+    folder: Path
+    rollout: ItemRollout
+    marked: Designation
+    analysis: Analysis
+    sites: Plan
+    test: str
+
+    @property
+    def drift(self) -> str:
+        """Return the name of the task's only drift."""
+        (drift,) = self.marked.drifts
+        return drift
+
+    @cached_property
+    def answer(self) -> dict[str, Any]:
+        """Return what is known of the task."""
+        found: dict[str, Any] = json.loads((HERE / self.task / "answer.json").read_text())
+        return found
+
+
+@dataclass
+class _Visit:
+    """A pytest plugin that shows a test to a visitor instead of running it once."""
+
+    task: str
+    visitor: Callable[[Stage], Any]
+    found: list[Any] = field(default_factory=list)
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_protocol(self, item: pytest.Function, nextitem: pytest.Item | None) -> bool:
+        marked = designated(item)
+        assert marked is not None
+        root = item.config.rootpath
+        analysis = analyse([item.path.parent / node for node in marked.nodes], root=root)
+        sites = plan(analysis)
+        instruments = Instruments({root / p: at for p, at in sites.positions.items()}, sites.publishes)
+        rollout = ItemRollout(item, marked, instruments)
+        self.found.append(self.visitor(Stage(self.task, root, rollout, marked, analysis, sites, item.nodeid)))
+        finish(item, nextitem)
+        return True
+
+
+def visit(task: str, visitor: Callable[[Stage], Any], folder: Path | None = None) -> Any:
+    """Return what the visitor makes of a task; `folder` is a copy of the task's directory to work in."""
+    where = folder or HERE / task
+    guest = _Visit(task, visitor)
+    arguments = [
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "-c",
+        os.devnull,
+        "-p",
+        "no:asyncio",
+        "-W",
+        REWRITTEN,
+        "--rootdir",
+        str(where),
+        str(where),
+    ]
+    before = Path.cwd()
+    os.chdir(where)  # what the analysis' paths are relative to
+    try:
+        with redirect_stdout(sys.stderr):
+            status = pytest.main(arguments, [guest])
+    finally:
+        os.chdir(before)
+    if len(guest.found) != 1:
+        raise RuntimeError(f"{task}: pytest ended with {status!r} and {len(guest.found)} results.")
+    return guest.found[0]
