@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import sys
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TypedDict
 
@@ -140,8 +141,7 @@ def note(name: str, number: int, names: Names, at: Where) -> ast.stmt:
     by_hook = _called(value, number, names, at)
     if not names.inline:
         return by_hook
-    kind = ast.Call(ast.Name(names.type, ast.Load(), **at), [ast.Name(name, ast.Load(), **at)], [], **at)
-    plain = ast.Compare(kind, [ast.Is()], [ast.Name(names.float, ast.Load(), **at)], **at)
+    plain = _is_float(name, names, at)
     appended = _appended(ast.Name(name, ast.Load(), **at), number, names, at)
     return ast.If(plain, appended, [by_hook], **at)
 
@@ -152,6 +152,21 @@ def note_constant(value: float, number: int, names: Names, at: Where) -> list[as
     if names.inline:
         return _appended(constant, number, names, at)
     return [_called(constant, number, names, at)]
+
+
+def note_all(events: Iterable[tuple[str, int]], names: Names, at: Where) -> ast.stmt:
+    """Build the statement that records names which hold floats, with their numbers, in one go."""
+    entries: list[ast.expr] = []
+    for name, number in events:
+        entries += [ast.Constant(number, **at), ast.Name(name, ast.Load(), **at)]
+    method = ast.Attribute(ast.Name(names.buffer, ast.Load(), **at), "extend", ast.Load(), **at)
+    return ast.Expr(ast.Call(method, [ast.Tuple(entries, ast.Load(), **at)], [], **at), **at)
+
+
+def all_floats(inputs: Iterable[str], names: Names, at: Where) -> ast.expr:
+    """Build the condition that all these names hold floats, of no subclass."""
+    tests: list[ast.expr] = [_is_float(name, names, at) for name in inputs]
+    return tests[0] if len(tests) == 1 else ast.BoolOp(ast.And(), tests, **at)
 
 
 def truth(test: ast.expr) -> ast.expr:
@@ -190,6 +205,11 @@ def _then(value: ast.expr, number: int, names: Names) -> ast.expr:
 
 def _arguments(number: int, at: Where) -> list[ast.expr]:
     return [ast.Constant(number, **at), ast.Constant(0.0, **at)]
+
+
+def _is_float(name: str, names: Names, at: Where) -> ast.Compare:
+    kind = ast.Call(ast.Name(names.type, ast.Load(), **at), [ast.Name(name, ast.Load(), **at)], [], **at)
+    return ast.Compare(kind, [ast.Is()], [ast.Name(names.float, ast.Load(), **at)], **at)
 
 
 def _called(value: ast.expr, number: int, names: Names, at: Where) -> ast.Expr:

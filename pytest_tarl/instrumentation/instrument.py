@@ -16,7 +16,9 @@ from pytest_tarl.instrumentation.blocks import (
 from pytest_tarl.instrumentation.forms import (
     Names,
     Where,
+    all_floats,
     note,
+    note_all,
     note_constant,
     reached,
     recorded,
@@ -24,6 +26,7 @@ from pytest_tarl.instrumentation.forms import (
     truth,
     where,
 )
+from pytest_tarl.instrumentation.fusing import Run, gather, target_of
 from pytest_tarl.instrumentation.magnitude import magnitude
 
 Offset = tuple[int, int]  # line from 1 and column in UTF-8 bytes from 0, as `ast` counts
@@ -117,11 +120,22 @@ class _Recording(ast.NodeTransformer):
     def _function(self, node: Function) -> Function:
         numbers = [(self._number(parameter), parameter) for parameter in parameters(node.args)]
         at = entry_of(node)
+        if self._names.inline:
+            gather(node, self._sites)
         self._inside(node, "function")
         for number, parameter in reversed(numbers):
             if number is not None:
                 enter(node, note(parameter.arg, number, self._names, at))
         return node
+
+    def visit_Run(self, node: Run) -> ast.If:
+        """Record a run of arithmetic in one go where it begins with floats, else statement by statement."""
+        begins = start_of(first_evaluated_in(node.body))
+        numbers = [(target_of(statement).id, self._number(statement)) for statement in node.body]
+        events = [(name, number) for name, number in numbers if number is not None]
+        fused = [*node.body, note_all(events, self._names, where(target_of(node.body[-1])))]
+        self.generic_visit(node)
+        return ast.If(all_floats(node.inputs, self._names, begins), fused, node.body, **begins)
 
     def visit_Lambda(self, node: ast.Lambda) -> ast.Lambda:
         """Record the body, and the message where the site is the lambda itself."""

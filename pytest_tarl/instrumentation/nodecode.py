@@ -11,7 +11,7 @@ from importlib.util import decode_source
 from pathlib import Path
 from types import CodeType
 
-from pytest_tarl.instrumentation import forms
+from pytest_tarl.instrumentation import blocks, forms, fusing
 from pytest_tarl.instrumentation import instrument as transform
 from pytest_tarl.instrumentation.codecache import CodeCache, entry_name
 from pytest_tarl.instrumentation.instrument import Offset, instrument
@@ -103,5 +103,5 @@ def _offsets(text: str, positions: Positions) -> dict[Position, Offset]:
 @lru_cache(maxsize=1)
 def _transform_digest() -> str:
     """Identify the transform itself, so that code of another version of it is not taken."""
-    texts = [Path(module.__file__ or "").read_bytes() for module in (forms, transform)]
+    texts = [Path(module.__file__ or "").read_bytes() for module in (forms, blocks, fusing, transform)]
     return hashlib.sha256(b"".join(texts)).hexdigest()

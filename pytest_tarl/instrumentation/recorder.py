@@ -24,6 +24,9 @@ from pytest_tarl.instrumentation.trace import Floats, Ints, Trace
 from pytest_tarl.sensors import Cell
 
 EXACT = 2**53  # integers below are floats without loss, which is all that the short way does
+_TOOLS = frozenset(
+    {"pytest_tarl", "_pytest", "execnet", "pytest_rerunfailures", "pytest_timeout", "slipcover", "xdist"}
+)
 T = TypeVar("T")
 Hook = Callable[[int, Any], Any]
 
@@ -41,8 +44,8 @@ class Recorder:
 
     `hook` may be called from any thread. `bind` gives instrumented code the names that it uses, by default
     faster ones: they write to the buffer of the thread that made the recorder and are exchanged for the
-    general ones before a second thread runs its first line. `threads=True` binds the general ones at once:
-    for real ROS, whose threads are already there.
+    general ones before a second thread runs its first line. The general ones are bound at once where another
+    thread is there already that may run code of the program, and with `threads=True`: for real ROS.
     """
 
     def __init__(self, *, threads: bool = False) -> None:
@@ -57,7 +60,7 @@ class Recorder:
         self._parts: list[Mapping[str, float]] = []
         self.hook: Callable[[int, T], T] = _threaded_hook(self._entries)
         own = self._entries()
-        self._single = not threads and threading.active_count() == 1
+        self._single = not threads and _alone()
         self._fast = _plain_hook(own), own
         self._profile = threading.getprofile()
 
@@ -166,6 +169,22 @@ class _ThreadedList:
     def append(self, entry: object) -> None:
         """Append half an event."""
         self._entries().append(entry)
+
+    def extend(self, entries: tuple[object, ...]) -> None:
+        """Append several events."""
+        self._entries().extend(entries)
+
+
+def _alone() -> bool:
+    """Tell whether every other thread belongs to a tool that runs tests, and so never runs the program's code."""
+    return all(
+        _of_tool(thread) for thread in threading.enumerate() if thread is not threading.current_thread()
+    )
+
+
+def _of_tool(thread: threading.Thread) -> bool:
+    runs = getattr(thread, "_target", None) or getattr(thread, "function", None)  # a Timer has a function
+    return str(getattr(runs, "__module__", None)).partition(".")[0] in _TOOLS
 
 
 def _plain_hook(entries: list[Any]) -> Hook:

@@ -249,3 +249,51 @@ def test_columns_say_what_happened(story):
     assert list(columns) == [(value, cell, min(step, last)) for value, cell, step in expected]
     assert list(zip(trace.reward.tolist(), trace.step_cell.tolist(), strict=True)) == rewards
     assert trace.site.tolist() == list(range(len(expected)))
+
+
+def running(job: threading.Thread) -> threading.Thread:
+    job.daemon = True
+    job.start()
+    return job
+
+
+@pytest.mark.parametrize(
+    ("module", "direct"), [("pytest_tarl.ros.watchdog", True), ("pytest_timeout", True), ("node", False)]
+)
+def test_threads_of_test_tools_cost_nothing_and_those_of_others_are_kept_apart(module, direct):
+    go_on = threading.Event()
+
+    def job() -> None:
+        go_on.wait(5)
+
+    job.__module__ = module
+    threads = [running(threading.Thread(target=job)), running(threading.Timer(0.0, job))]
+    space = program(Recorder())
+    assert (type(space["__tarl_list__"]) is list) is direct
+    go_on.set()
+    for thread in threads:
+        thread.join()
+
+
+def test_a_thread_that_was_there_before_has_a_sequence_of_its_own():
+    begin = threading.Event()
+    spaces: list[dict[str, Any]] = []
+
+    def serve() -> None:
+        begin.wait(5)
+        spaces[0]["work"]([5.0])
+
+    def note(value: float) -> float:
+        if threading.current_thread() is not thread:
+            begin.set()
+            thread.join()
+        return value
+
+    thread = running(threading.Thread(target=serve))
+    recorder = Recorder()
+    spaces.append(program(recorder, note=note))
+    spaces[0]["work"]([3.0])
+    trace = recorder.finish()
+    assert trace.thread is not None
+    assert trace.flow[trace.thread == 0].tolist() == [3.0, 6.0, 1.0, 6.0]
+    assert trace.flow[trace.thread == 1].tolist() == [5.0, 10.0, 1.0, 10.0]

@@ -1,0 +1,179 @@
+"""Runs of plain arithmetic on local floats, which are recorded in one go.
+
+Where every name that such a run reads holds a float when it begins, its statements cannot fail, run no code of the
+program and make floats only. So their events may be kept back to the end of the run, unseen, and cost a fraction.
+Which names hold floats is known when the run begins; so it stands twice in the program, the second time as ever.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, field
+
+from pytest_tarl.instrumentation.blocks import Function, parameters
+
+Offset = tuple[int, int]
+
+FEWEST = 3  # events for which asking the types beforehand pays
+_EXACT = 2**53  # whole numbers below become floats without an error
+_SAFE = (ast.Add, ast.Sub, ast.Mult)
+_DIVIDING = (ast.Div, ast.FloorDiv, ast.Mod)
+_SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
+_NOTHING: frozenset[str] = frozenset()
+
+
+class Run(ast.Interactive):
+    """Stands for the statements of a run where its function is about to be transformed."""
+
+    inputs: tuple[str, ...] = ()  # the names that must hold floats
+
+
+@dataclass
+class _Open:
+    """A run that may grow."""
+
+    body: list[ast.stmt] = field(default_factory=list)
+    inputs: dict[str, None] = field(default_factory=dict)
+    made: set[str] = field(default_factory=set)
+
+
+def gather(function: Function, sites: Collection[Offset]) -> None:
+    """Put a `Run` in the place of every run of a function that is worth it; functions inside are left alone."""
+    _Gathering(function, sites).block(function.body, {one.arg for one in parameters(function.args)})
+
+
+def target_of(statement: ast.stmt) -> ast.Name:
+    """Return what a statement of a run gives a value to."""
+    target = statement.targets[0] if isinstance(statement, ast.Assign) else getattr(statement, "target", None)
+    assert isinstance(target, ast.Name)  # noqa: S101 - for the type checker
+    return target
+
+
+class _Gathering:
+    """One walk over a function, with the names that certainly have a value."""
+
+    def __init__(self, function: Function, sites: Collection[Offset]) -> None:
+        self._sites = sites
+        self._unsure = frozenset(_unsure(function))
+
+    def block(self, statements: list[ast.stmt], bound: set[str]) -> None:
+        """Replace the runs of a list of statements, and of those inside; names that get values join `bound`."""
+        result: list[ast.AST] = []
+        run = _Open()
+        for statement in statements:
+            if not self._grows(run, statement, bound):
+                result += self._closed(run)
+                run = _Open()
+                if not self._grows(run, statement, bound):
+                    self._inside(statement, bound)
+                    result.append(statement)
+            bound |= _given(statement) - self._unsure
+        statements[:] = [*result, *self._closed(run)]  # type: ignore[list-item]  # a Run is replaced at once
+
+    def _grows(self, run: _Open, statement: ast.stmt, bound: set[str]) -> bool:
+        """Take the statement into the run, where it belongs to it."""
+        reads = _arithmetic(statement)
+        if reads is None or not reads <= (bound | run.made) - self._unsure:
+            return False
+        target = target_of(statement).id
+        if target in run.made or target in self._unsure:
+            return False
+        run.body.append(statement)
+        run.inputs |= dict.fromkeys(sorted(reads - run.made))
+        run.made.add(target)
+        return True
+
+    def _closed(self, run: _Open) -> list[ast.AST]:
+        events = sum((statement.lineno, statement.col_offset) in self._sites for statement in run.body)
+        if events < FEWEST or not 0 < len(run.inputs) <= events:
+            return [*run.body]
+        fused = Run(body=run.body)
+        fused.inputs = tuple(run.inputs)
+        return [fused]
+
+    def _inside(self, statement: ast.stmt, bound: set[str]) -> None:
+        if isinstance(statement, _SCOPES):
+            return
+        entered = bound | _entered(statement) - self._unsure
+        for part in ("body", "orelse", "finalbody"):
+            self.block(getattr(statement, part, []), set(entered if part == "body" else bound))
+        for part in (*getattr(statement, "handlers", ()), *getattr(statement, "cases", ())):
+            self.block(part.body, set(bound))
+
+
+def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
+    """Return the names that a statement reads if it gives a float to a name whenever they hold floats."""
+    if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
+        return _float(statement.value) if isinstance(statement.targets[0], ast.Name) else None
+    if isinstance(statement, ast.AugAssign) and isinstance(statement.target, ast.Name):
+        at = ast.Name(statement.target.id, ast.Load())
+        return _float(ast.BinOp(at, statement.op, statement.value))
+    return None
+
+
+def _float(node: ast.expr) -> frozenset[str] | None:
+    """Return the names in an expression that is a float, without fail, whenever they are; else None."""
+    if isinstance(node, ast.Name):
+        return frozenset((node.id,))
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
+        return _float(node.operand)
+    if isinstance(node, ast.BinOp) and isinstance(node.op, _SAFE):
+        whole = next((one for one in (node.left, node.right) if _whole(one)), None)
+        if whole is not None:
+            return _float(node.left if whole is node.right else node.right)
+        left, right = _float(node.left), _float(node.right)
+        return None if left is None or right is None else left | right
+    if isinstance(node, ast.BinOp) and isinstance(node.op, _DIVIDING):
+        return _float(node.left) if _divides(node.right) else None
+    return _NOTHING if isinstance(node, ast.Constant) and type(node.value) is float else None
+
+
+def _whole(node: ast.expr) -> bool:
+    return isinstance(node, ast.Constant) and type(node.value) is int and node.value < _EXACT
+
+
+def _divides(node: ast.expr) -> bool:
+    """Tell whether an expression is a number other than 0."""
+    return isinstance(node, ast.Constant) and bool(node.value) and (_whole(node) or _float(node) is not None)
+
+
+def _given(statement: ast.stmt) -> set[str]:
+    """Return the names that a simple statement gives a value to, whatever else happens."""
+    if isinstance(statement, ast.Assign):
+        return _stored(statement.targets)
+    given = isinstance(statement, ast.AugAssign) or getattr(statement, "value", None) is not None
+    return (
+        _stored([statement.target])
+        if given and isinstance(statement, (ast.AugAssign, ast.AnnAssign))
+        else set()
+    )
+
+
+def _entered(statement: ast.stmt) -> set[str]:
+    """Return the names that have a value in the body of a loop or `with`."""
+    if isinstance(statement, (ast.For, ast.AsyncFor)):
+        return _stored([statement.target])
+    if isinstance(statement, (ast.With, ast.AsyncWith)):
+        return _stored([item.optional_vars for item in statement.items if item.optional_vars is not None])
+    return set()
+
+
+def _stored(targets: Iterable[ast.expr]) -> set[str]:
+    return {
+        node.id
+        for target in targets
+        for node in ast.walk(target)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+    }
+
+
+def _unsure(function: Function) -> Iterable[str]:
+    """Yield the names that may lose their value, or that others may write to."""
+    for node in ast.walk(function):
+        if isinstance(node, (ast.Global, ast.Nonlocal)):
+            yield from node.names
+        elif isinstance(node, ast.ExceptHandler) and node.name is not None:
+            yield node.name
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Del):
+            yield node.id
