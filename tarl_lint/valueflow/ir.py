@@ -168,7 +168,8 @@ class Function:
     body: Sequence[Stmt] | None = None
     control: object = None
     raising: dict[int, dict[str, None]] = field(default_factory=dict)  # statement → what its calls raise
-    generator: bool = False
+    generator: bool = False  # known when the body is lowered
+    starts: bool | None = None  # whether it registers something or starts a node, once somebody asked
 
 
 @dataclass(slots=True, eq=False)

@@ -304,15 +304,18 @@ def _definitions(body: Sequence[ir.Stmt]) -> Iterator[ir.Define | ir.Class]:
 
 def _starts_node(function: ir.Function) -> bool:
     """Tell whether a function is there to be started: it is called main, or it starts a node."""
-    return function.name == "main" or _mentions(function.node)
+    return function.name == "main" or _starts(function)
 
 
 def _registers(statement: ir.Class) -> bool:
-    return any(isinstance(s, ir.Define) and _mentions(s.function.node) for s in statement.body)
+    return any(isinstance(s, ir.Define) and _starts(s.function) for s in statement.body)
 
 
-def _mentions(node: ast.AST) -> bool:
-    return any(
-        isinstance(n, ast.Call) and isinstance(n.func, ast.Attribute) and n.func.attr in STARTS
-        for n in ast.walk(node)
-    )
+def _starts(function: ir.Function) -> bool:
+    """Tell whether a function calls a method that registers something or starts a node."""
+    if function.starts is None:
+        function.starts = any(
+            isinstance(n, ast.Call) and isinstance(n.func, ast.Attribute) and n.func.attr in STARTS
+            for n in ast.walk(function.node)
+        )
+    return function.starts

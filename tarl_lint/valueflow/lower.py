@@ -9,12 +9,12 @@ from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.lower_expr import OPERATORS, Expressions, position
 from tarl_lint.valueflow.patterns import captures, conditions
-from tarl_lint.valueflow.scopes import Scope, collect
+from tarl_lint.valueflow.scopes import Scope, collect, plain
 
 
 def lower_module(module: Module) -> ir.Program:
     """Lower the top level of a module."""
-    scope = Scope("module", "")
+    scope = Scope("module", "", plain=plain(module.text))
     lowering = Lowering(module.name)
     package = module.name if module.is_package else module.name.rpartition(".")[0]
     lowering.package = package
@@ -32,6 +32,7 @@ def lower_body(function: ir.Function, package: str) -> Sequence[ir.Stmt]:
         lowering = Lowering(function.module)
         lowering.package = package
         node = function.node
+        function.generator = collect(scope, [node.body] if isinstance(node, ast.Lambda) else node.body)
         if isinstance(node, ast.Lambda):
             function.body = [ir.Return(scope.next(), position(node.body), lowering.expr(node.body, scope))]
         else:
@@ -137,7 +138,7 @@ class Lowering(Expressions):
         return [ir.Define(scope.next(), position(node), target, self.function(node, scope))]
 
     def _class(self, node: ast.ClassDef, scope: Scope) -> list[ir.Stmt]:
-        inner = Scope("class", scope.child(node.name), scope)
+        inner = Scope("class", scope.child(node.name), scope, plain=scope.plain)
         collect(inner, node.body)
         target = ir.Name(*scope.resolve(node.name), position(node))
         bases, decorators = self.all(node.bases, scope), self.all(node.decorator_list, scope)

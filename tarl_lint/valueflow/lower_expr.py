@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable, Sequence
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.scopes import Scope, collect
+from tarl_lint.valueflow.scopes import Scope
 
 OPERATORS: dict[type[ast.AST], str] = {
     ast.Add: "+",
@@ -165,13 +165,12 @@ class Expressions:
     def function(self, node: ir.FunctionNode, scope: Scope) -> ir.Function:
         """Describe a function; its body waits for the first call."""
         name = node.name if not isinstance(node, ast.Lambda) else "<lambda>"
-        inner = Scope("function", scope.child(name), scope, around=dict(scope.renamed))
+        inner = Scope("function", scope.child(name), scope, around=dict(scope.renamed), plain=scope.plain)
         inner.bound.update(p.arg for p in _arguments(node.args))
-        generator = collect(inner, node.body if not isinstance(node, ast.Lambda) else [node.body])
         decorators = [] if isinstance(node, ast.Lambda) else self.all(node.decorator_list, scope)
         return ir.Function(
             name, inner.qualname, self.parameters(node.args, scope), decorators, node, self.module, inner,
-            position(node), generator=generator,
+            position(node),
         )  # fmt: skip
 
     def parameters(self, arguments: ast.arguments, scope: Scope) -> list[ir.Parameter]:

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 
 from tarl_lint.valueflow.ir import Scope as ScopeKind
 
+SIMPLE = frozenset([ast.Expr, ast.Return, ast.Raise, ast.Pass, ast.Break, ast.Continue, ast.Assert])
+DEFINING = frozenset([ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef])
 COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
@@ -24,6 +26,7 @@ class Scope:
     counter: int = 0  # slots and statement numbers handed out
     renamed: dict[str, str] = field(default_factory=dict)  # targets of comprehensions being lowered
     around: dict[str, str] = field(default_factory=dict)  # the same of the parent, where this one is written
+    plain: bool = False  # nothing in the file binds a name, or yields, inside an expression
 
     def resolve(self, name: str) -> tuple[str, ScopeKind, int]:
         """Return the name as stored, its kind, and how many functions up it lives."""
@@ -55,7 +58,7 @@ class Scope:
 def collect(scope: Scope, body: Iterable[ast.AST]) -> bool:
     """Enter into `scope` the names that statements bind. Tell whether one of them yields."""
     yields = False
-    for node in _own_nodes(body):
+    for node in _own_statements(body) if scope.plain else _own_nodes(body):
         if isinstance(node, ast.Name):
             if not isinstance(node.ctx, ast.Load):
                 scope.bound.add(node.id)
@@ -87,4 +90,32 @@ def _own_nodes(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
         elif isinstance(node, COMPREHENSIONS):
             pending.extend(n for n in ast.walk(node) if isinstance(n, ast.NamedExpr))
         elif not isinstance(node, ast.Lambda):
+            pending.extend(ast.iter_child_nodes(node))
+
+
+def plain(text: str) -> bool:
+    """Tell from a file's text that its expressions bind no names and do not yield, so need not be searched."""
+    return ":=" not in text and "yield" not in text
+
+
+def _own_statements(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
+    """Yield the same nodes without those inside expressions, except for targets."""
+    pending = list(body)
+    while pending:
+        node = pending.pop()
+        kind = type(node)
+        if kind in SIMPLE:
+            continue
+        if kind is ast.Assign:
+            for target in node.targets:  # type: ignore[attr-defined]
+                yield from (target,) if type(target) is ast.Name else _own_nodes((target,))
+        elif kind is ast.If or kind is ast.While:
+            pending += node.body  # type: ignore[attr-defined]
+            pending += node.orelse  # type: ignore[attr-defined]
+        elif kind in DEFINING:
+            yield node
+        elif isinstance(node, ast.expr):
+            yield from _own_nodes((node,))
+        else:
+            yield node
             pending.extend(ast.iter_child_nodes(node))

@@ -49,9 +49,11 @@ class Text:
     by_name: dict[str, list[Written]] = field(default_factory=dict)
     texts: dict[int, str] = field(default_factory=dict)
     lines: list[str] = field(default_factory=list)
+    has_lambdas: bool = True
 
     def __post_init__(self) -> None:
         self.lines = self.module.text.split("\n")
+        self.has_lambdas = "lambda" in self.module.text
         self._body(self.module.tree.body, "", None)
 
     def _body(self, body: list[ast.stmt], qualname: str, around: Written | None) -> None:
@@ -85,6 +87,8 @@ class Text:
                 self._lambdas([child.context_expr], qualname, written)
 
     def _lambdas(self, nodes: list[ast.expr], qualname: str, around: Written) -> None:
+        if not self.has_lambdas:
+            return
         for node in nodes:
             for child in _outer_lambdas(node):
                 inner = f"{qualname}.<lambda>" if qualname else "<lambda>"
