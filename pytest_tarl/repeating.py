@@ -166,13 +166,12 @@ def _heeding_interrupts() -> Iterator[None]:
 
 def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestReport:
     """Tear down what the next item does not need, once the last episode has run."""
-    # Not through pytest's hook: the item itself was torn down after its last episode, and plugins count on that.
+    # Not through pytest's hooks: the item itself was torn down after its last episode, and plugins count on that.
     state = item.session._setupstate
     call = pytest.CallInfo.from_call(
         lambda: state.teardown_exact(nextitem), when="teardown", reraise=INTERRUPTS
     )
-    report: pytest.TestReport = item.ihook.pytest_runtest_makereport(item=item, call=call)
-    return report
+    return pytest.TestReport.from_item_and_call(item, call)
 
 
 def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
