@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pytest_tarl import seeds
+from pytest_tarl.errors import FixtureError
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.learning import localize
 from pytest_tarl.learning.drift import compare, paper_region, permuted_loss
@@ -47,7 +48,9 @@ def run_online(
     """Run the on-line episodes of one scenario and compare them with the fixture."""
     count = options.episodes or options.ONLINE_EPISODES
     members = current_members(fixture, plan)
-    recorded = run_episodes(rollout, episode_seeds(options.seed, "online", count), drift, members, progress)
+    learner = _learner(fixture, options)
+    seed = episode_seeds(options.seed, "online", count)
+    recorded = run_episodes(rollout, seed, drift, members, progress, learner)
     difference = compare(
         fixture.sample,
         recorded.sample,
@@ -57,7 +60,7 @@ def run_online(
     )
     offline, online = aligned(fixture.sample, recorded.sample)
     learned = sarsa_tables(recorded, mean_flows(fixture.sample))
-    if options.utility == "sarsa":
+    if options.learner:
         tables = _learned_tables(fixture, recorded, learned, offline.cells)
     else:
         tables = _solved_tables(offline, online)
@@ -86,6 +89,16 @@ def run_online(
         changes=difference.changes,
     )
     return Online(comparison, recorded, learned)
+
+
+def _learner(fixture: Fixture, options: Options) -> str:
+    """Return the rule by which tables are learned, that of the fixture. Raises FixtureError when asked for another."""
+    if options.learner not in ("", fixture.learner):
+        raise FixtureError(
+            f"The utility fixture of {fixture.test} holds a table learned by {fixture.learner}, not by "
+            f"{options.learner}: record it again with `--tarl-record --tarl-utility={options.learner}`."
+        )
+    return fixture.learner
 
 
 def current_members(fixture: Fixture, plan: Plan) -> tuple[tuple[int, ...], ...]:
@@ -149,7 +162,7 @@ def _solved_tables(offline: Sample, online: Sample) -> list[tuple[Floats, Floats
 def _learned_tables(
     fixture: Fixture, recorded: Recorded, learned: Sequence[Floats], cells: Sequence[Cell]
 ) -> list[tuple[Floats, Floats]]:
-    """Return the paper's tables off-line and on-line per list over the same cells, shape (cells, sites)."""
+    """Return the learned tables off-line and on-line per list over the same cells, shape (cells, sites)."""
     return [
         (_spread(before, fixture.sample.cells, cells), _spread(after, recorded.sample.cells, cells))
         for before, after in zip(fixture.sarsa, learned, strict=True)

@@ -198,4 +198,5 @@ def as_fixture(comparison: Comparison, online: Online) -> Fixture:
         topics=online.recorded.topics,
         sample=online.recorded.sample,
         sarsa=online.sarsa,
+        learner=online.recorded.learner,
     )

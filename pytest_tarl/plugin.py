@@ -54,7 +54,19 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=300,
         help="episodes that a search may spend (default 300)",
     )
-    flag("--tarl-utility", metavar="KIND", default="batch", help="batch (default) or sarsa, as in the paper")
+    flag(
+        "--tarl-utility",
+        metavar="KIND",
+        default="batch",
+        help="batch (default); sarsa, as in the paper; expected-sarsa or td-lambda",
+    )
+    flag(
+        "--tarl-workers",
+        metavar="N",
+        default="1",
+        help="episodes to run at a time, each in its own process; auto: as many as cores (default 1)",
+    )
+    flag("--tarl-cluster", metavar="ADDRESS", help="run the episodes on the Dask cluster of this scheduler")
     flag("--tarl-strict", action="store_true", help="with --tarl-online: a test without fixture fails")
 
 
@@ -134,6 +146,8 @@ def _options(config: pytest.Config) -> Options:
                     "search",
                     "budget",
                     "utility",
+                    "workers",
+                    "cluster",
                     "strict",
                 )
             }

@@ -14,11 +14,11 @@ from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.merging import merge
-from pytest_tarl.learning.sarsa import Sarsa
+from pytest_tarl.learning.sarsa import LEARNERS, Learner
 from pytest_tarl.learning.sequences import event_sequences
 from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Floats, Sample
-from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout
+from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.settings import Designation, Options
 
@@ -35,14 +35,15 @@ NOT_REPRODUCIBLE = (
 class Recorded:
     """Episodes of one world: the first one's trace, the statistics of all, message types by sensor topic.
 
-    `sarsa` has learned the paper's table of each taint list, in the order in which the episodes ran.
+    `sarsa` has learned a table of each taint list, in the order of the seeds, by the rule that `learner` names.
     """
 
     first: Trace
     sample: Sample
-    sarsa: tuple[Sarsa, ...]
+    sarsa: tuple[Learner, ...]
     topics: dict[str, str]
     failures: tuple[str, ...]
+    learner: str = "sarsa"
 
     @property
     def success(self) -> float:
@@ -70,7 +71,7 @@ def record(
 ) -> RecordResult:
     """Run the off-line episodes and write the fixture, unless too many of them fail."""
     seeds = episode_seeds(options.seed, "offline", options.episodes or designation.episodes)
-    recorded = run_episodes(rollout, seeds, None, plan.members, progress)
+    recorded = run_episodes(rollout, seeds, None, plan.members, progress, options.learner or "sarsa")
     again = rollout(EpisodePlan(seeds[0], record=True))
     notes = [] if identical(recorded.first, again.trace) else [NOT_REPRODUCIBLE]
     if recorded.success < designation.min_success:
@@ -85,33 +86,40 @@ def record(
         topics=recorded.topics,
         sample=recorded.sample,
         sarsa=sarsa_tables(recorded, mean_flows(recorded.sample)),
+        learner=recorded.learner,
     )
     fixtures.save(new, path)
     return RecordResult(_summary(new.sample, old), "", tuple(notes))
 
 
 def run_episodes(
-    rollout: Rollout, seeds: Sequence[int], drift: str | None, members: Members, progress: Progress
+    rollout: Rollout,
+    seeds: Sequence[int],
+    drift: str | None,
+    members: Members,
+    progress: Progress,
+    learner: str = "sarsa",
 ) -> Recorded:
     """Run one instrumented episode per seed. Raises RecordingError when the test itself is broken."""
-    learners = tuple(Sarsa(len(chosen)) for chosen in members)
+    learners = tuple(LEARNERS[learner](len(chosen)) for chosen in members)
     first: Trace | None = None
     samples: list[Sample] = []
     failures: list[str] = []
     topics: dict[str, str] = {}
-    for done, seed in enumerate(seeds):
+    plans = (EpisodePlan(seed, drift, record=True) for seed in seeds)
+    for done, (seed, episode) in enumerate(zip(seeds, in_order(rollout, plans), strict=True)):
         progress(done, len(seeds), drift or "off-line")
-        run = sound(rollout(EpisodePlan(seed, drift, record=True)))
+        run = sound(episode.result())
         first = first or run.trace
         samples.append(sample(run.trace, seed, run.passed, members))
-        for learner, chosen in zip(learners, members, strict=True):
+        for one, chosen in zip(learners, members, strict=True):
             for sequence in event_sequences(run.trace, chosen):
-                learner.learn(sequence, run.trace.cells)
+                one.learn(sequence, run.trace.cells)
         failures += [] if run.passed else [run.failure]
         topics.update(run.topics)
     if first is None:
         raise RecordingError("There is nothing to learn from: no episode was asked for.")
-    return Recorded(first, merge(samples), learners, topics, tuple(failures))
+    return Recorded(first, merge(samples), learners, topics, tuple(failures), learner)
 
 
 def sound(run: EpisodeRun) -> EpisodeRun:
@@ -122,9 +130,9 @@ def sound(run: EpisodeRun) -> EpisodeRun:
 
 
 def sarsa_tables(recorded: Recorded, scales: Sequence[float]) -> tuple[Floats, ...]:
-    """Return the paper's table of every taint list, shape (cells, sites); `scales` holds each list's F."""
+    """Return the learned table of every taint list, shape (cells, sites); `scales` holds each list's F."""
     cells = recorded.sample.cells
-    return tuple(learner.table(cells, scale) for learner, scale in zip(recorded.sarsa, scales, strict=True))
+    return tuple(one.table(cells, scale) for one, scale in zip(recorded.sarsa, scales, strict=True))
 
 
 def mean_flows(offline: Sample) -> tuple[float, ...]:

@@ -19,7 +19,7 @@ import pytest
 from _pytest.runner import runtestprotocol
 
 from pytest_tarl.errors import NodeError, SettingsError, TarlError
-from pytest_tarl.rollout import EpisodePlan, EpisodeRun
+from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 from pytest_tarl.seeds import episode_seed
 from pytest_tarl.settings import Designation, designation
 
@@ -126,6 +126,11 @@ class ItemRollout:
     item: pytest.Function
     designation: Designation
     instruments: Instruments
+    workers = 1
+
+    def begin(self, plan: EpisodePlan) -> Pending:
+        """Ask for an episode, to be run when its result is."""
+        return Deferred(self, plan)
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
         """Run one episode. Raises TarlError where the test cannot be run as asked, pytest's Exit on Ctrl-C."""
@@ -166,7 +171,8 @@ def _heeding_interrupts() -> Iterator[None]:
 
 def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestReport:
     """Tear down what the next item does not need, once the last episode has run."""
-    # Not through pytest's hooks: the item itself was torn down after its last episode, and plugins count on that.
+    # Not through pytest's hooks: the item itself was torn down after its last episode, perhaps in another process, and
+    # plugins count on that.
     state = item.session._setupstate
     call = pytest.CallInfo.from_call(
         lambda: state.teardown_exact(nextitem), when="teardown", reraise=INTERRUPTS

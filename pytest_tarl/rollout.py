@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
 from pytest_tarl.instrumentation.trace import Trace
+
+AHEAD = 2  # episodes per worker that are begun before anybody asks for them
 
 
 @dataclass(frozen=True)
@@ -38,8 +41,60 @@ class EpisodeRun:
     crashed: bool = False
 
 
+class Pending(Protocol):
+    """An episode that was asked for."""
+
+    def result(self) -> EpisodeRun:
+        """Return what came of it, when it has been run. Raises TarlError where it could not be."""
+
+    def cancel(self) -> bool:
+        """Do without it; tell whether it will not be run."""
+
+
 class Rollout(Protocol):
-    """Runs episodes of one test."""
+    """Runs episodes of one test, `workers` at a time."""
+
+    @property
+    def workers(self) -> int:
+        """Return how many episodes run at a time."""
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
         """Run one episode. Raises TarlError where the test cannot be run as asked."""
+
+    def begin(self, plan: EpisodePlan) -> Pending:
+        """Ask for an episode without waiting for it."""
+
+
+@dataclass(frozen=True)
+class Deferred:
+    """An episode that is run when its result is asked for."""
+
+    rollout: Rollout
+    plan: EpisodePlan
+
+    def result(self) -> EpisodeRun:
+        """Run it."""
+        return self.rollout(self.plan)
+
+    def cancel(self) -> bool:
+        """Do without it."""
+        return True
+
+
+def in_order(rollout: Rollout, plans: Iterable[EpisodePlan]) -> Iterator[Pending]:
+    """Yield the episodes in the order of their plans, with as many begun ahead as keep the workers busy.
+
+    What is yielded does not depend on how many workers there are; whoever stops early wastes at most what was ahead.
+    """
+    ahead = AHEAD * rollout.workers if rollout.workers > 1 else 0
+    begun: deque[Pending] = deque()
+    try:
+        for plan in plans:
+            begun.append(rollout.begin(plan))
+            if len(begun) > ahead:
+                yield begun.popleft()
+        while begun:
+            yield begun.popleft()
+    finally:
+        for one in begun:
+            one.cancel()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import pytest
 
 from pytest_tarl.errors import FixtureError, SettingsError, TarlError
-from pytest_tarl.repeating import INTERRUPTS, ItemRollout, designated, finish
+from pytest_tarl.repeating import INTERRUPTS, Instruments, ItemRollout, designated, finish
 from pytest_tarl.settings import Options
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from pytest_tarl.missions import Account
     from pytest_tarl.recording import Progress
+    from pytest_tarl.rollout import Rollout
 
 PATCH = "tarl_patch"  # attribute of a report: path of the patch that mends the test
 ACCOUNT = "tarl_account"  # attribute of a report: lines for the summary
@@ -142,7 +144,16 @@ class TarlSession:
             progress=self._progress(item),
         )
         try:
-            return mission.run(lambda instruments: ItemRollout(item, marked, instruments))
+            with ExitStack() as crews:
+
+                def rollout_with(instruments: Instruments) -> Rollout:
+                    if self.options.workers == 1 and self.options.cluster is None:
+                        return ItemRollout(item, marked, instruments)
+                    from pytest_tarl.working.crew import opened
+
+                    return crews.enter_context(opened(item, instruments, self.options))
+
+                return mission.run(rollout_with)
         except NoFixtureError as missing:
             if self.options.strict:
                 raise

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,7 +14,7 @@ from pytest_tarl.sensors import Sensor
 
 Mode = Literal["plain", "record", "online", "repair"]
 SEARCHES = ("sweep", "epsilon-greedy")
-UTILITIES = ("batch", "sarsa")
+UTILITIES = ("batch", "sarsa", "expected-sarsa", "td-lambda")
 MARKER_ARGUMENTS = ("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance")
 
 
@@ -30,8 +31,15 @@ class Options:
     budget: int = 300  # episodes that a search may spend
     strict: bool = False
     utility: str = "batch"
+    workers: int = 1  # episodes at a time, each in a process of its own when more than one
+    cluster: str | None = None  # address of a Dask scheduler
 
     ONLINE_EPISODES = 40
+
+    @property
+    def learner(self) -> str:
+        """Return the rule that learns event by event, when one is asked for; empty for the batch solution."""
+        return "" if self.utility == "batch" else self.utility
 
     @property
     def flags(self) -> tuple[str, ...]:
@@ -87,7 +95,18 @@ def options(given: Mapping[str, Any]) -> Options:
         budget=_number("--tarl-budget", "it", given["budget"], int, 1, 10**6),
         strict=given["strict"],
         utility=given["utility"],
+        workers=_workers(given["workers"]),
+        cluster=given["cluster"],
     )
+
+
+def _workers(text: str) -> int:
+    """Return how many episodes are run at a time; `auto` shares the cores with the workers of pytest-xdist."""
+    if text != "auto":
+        return int(_number("--tarl-workers", "it", int(text) if text.isdecimal() else text, int, 1, 1024))
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    beside = os.environ.get("PYTEST_XDIST_WORKER_COUNT", "")
+    return max(1, cores // (int(beside) if beside.isdecimal() and int(beside) else 1))
 
 
 def _known(flag: str, name: str, among: Sequence[str]) -> None:

@@ -43,7 +43,7 @@ HEADER = "header"
 
 @dataclass(frozen=True)
 class Fixture:
-    """What one test recorded. `sarsa` holds the paper's table per taint list, shape (cells, sites)."""
+    """What one test recorded. `sarsa` holds the learned table per taint list, shape (cells, sites)."""
 
     test: str
     seed: int
@@ -52,6 +52,7 @@ class Fixture:
     topics: Mapping[str, str]  # sensor topic → message type
     sample: Sample
     sarsa: tuple[Floats, ...]
+    learner: str = "sarsa"  # what learned it, a key of sarsa.LEARNERS
 
 
 def save(fixture: Fixture, path: Path) -> None:
@@ -61,6 +62,7 @@ def save(fixture: Fixture, path: Path) -> None:
         "format": FORMAT_VERSION,
         "test": fixture.test,
         "seed": fixture.seed,
+        "learner": fixture.learner,
         "sensors": [asdict(sensor) for sensor in fixture.sensors],
         "lists": [asdict(taint_list) for taint_list in fixture.lists],
         "topics": dict(sorted(fixture.topics.items())),
@@ -150,6 +152,7 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
     return Fixture(
         test=header["test"],
         seed=header["seed"],
+        learner=header["learner"],
         sensors=sensors,
         lists=lists,
         topics=header["topics"],

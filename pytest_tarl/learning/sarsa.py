@@ -1,8 +1,8 @@
-"""The paper's way to the utility: SARSA, event by event."""
+"""The paper's way to the utility, event by event: SARSA, and its relatives expected SARSA and TD(λ)."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -12,13 +12,14 @@ from pytest_tarl.learning.utility import GAMMA_EVENT
 from pytest_tarl.sensors import Cell
 
 ALPHA = 0.1
+LAMBDA = 0.8
 
 
-class Sarsa:
-    """Learn q(c) ← q(c) + α[ρ + γq(c') - q(c)] for one taint list, from one episode after the other.
+class Learner:
+    """Learn q(c) of one taint list from one episode after the other; what a step teaches is up to the subclass.
 
-    The rule is linear in ρ = r·[last event of its step] + r·|f|/F: a table for either term is learned, and F, which is
-    known after the last episode only, is asked for when they are added up. So no episode has to be kept.
+    All rules are linear in ρ = r·[last event of its step] + r·|f|/F: a table for either term is learned, and F, which
+    is known after the last episode only, is asked for when they are added up. So no episode has to be kept.
     """
 
     def __init__(self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA) -> None:
@@ -34,12 +35,9 @@ class Sarsa:
         """Follow one sequence whose states count the given cells."""
         states = self._numbered(sequence.state, cells).tolist()
         self._seen.update(states)
-        full, scaled, alpha, gamma = self._full, self._scaled, self.alpha, self.gamma
-        signals = zip(sequence.reward.tolist(), sequence.scaled.tolist(), strict=True)
-        for now, then, (rho, rho_scaled) in zip(states, [*states[1:], END], signals, strict=True):
-            ahead, ahead_scaled = (full[then], scaled[then]) if then != END else (0.0, 0.0)
-            full[now] += alpha * (rho + gamma * ahead - full[now])
-            scaled[now] += alpha * (rho_scaled + gamma * ahead_scaled - scaled[now])
+        self._follow(states, sequence.reward.tolist(), self._full)
+        self._follow(states, sequence.scaled.tolist(), self._scaled)
+        self._passed(states)
 
     def table(self, cells: Sequence[Cell], scale: float) -> Floats:
         """Return q(x, n), shape (cells, sites); NaN where never visited. `scale` is F; infinite: no flow term."""
@@ -51,6 +49,13 @@ class Sarsa:
         table[known] = by_row[[self._row[cells[i]] for i in known]]
         return table
 
+    def _follow(self, states: Sequence[int], rewards: Sequence[float], q: list[float]) -> None:
+        """Learn from one sequence of states and the reward at each."""
+        raise NotImplementedError
+
+    def _passed(self, states: Sequence[int]) -> None:
+        """Note that a sequence has been learned from."""
+
     def _numbered(self, state: Ints, cells: Sequence[Cell]) -> Ints:
         """Number states by the order in which their cells were first met."""
         row = np.array([self._row.setdefault(cell, len(self._row)) for cell in cells], dtype=np.int64)
@@ -61,3 +66,85 @@ class Sarsa:
             return state
         cell, site = np.divmod(np.maximum(state - 1, 0), max(self.sites, 1))
         return np.where(state > START, 1 + row[cell] * self.sites + site, state)
+
+
+class Sarsa(Learner):
+    """Learn q(c) ← q(c) + α[ρ + γq(c') - q(c)], as in the paper."""
+
+    def _follow(self, states: Sequence[int], rewards: Sequence[float], q: list[float]) -> None:
+        alpha, gamma = self.alpha, self.gamma
+        for now, then, reward in zip(states, [*states[1:], END], rewards, strict=True):
+            ahead = q[then] if then != END else 0.0
+            q[now] += alpha * (reward + gamma * ahead - q[now])
+
+
+class ExpectedSarsa(Learner):
+    """Learn q(c) ← q(c) + α[ρ + γΣP(c'|c)q(c') - q(c)], P being what followed in the episodes before and in this one.
+
+    Sutton & Barto 2018, §6.6, for the choice among sites and cells that the program and its world make.
+    """
+
+    def __init__(self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA) -> None:
+        super().__init__(sites, gamma, alpha)
+        self._followers: dict[int, dict[int, int]] = {}  # state → next state → how often
+
+    def _follow(self, states: Sequence[int], rewards: Sequence[float], q: list[float]) -> None:
+        chances = {
+            now: _shares(_added(self._followers.get(now, {}), counts))
+            for now, counts in _transitions(states).items()
+        }
+        for now, reward in zip(states, rewards, strict=True):
+            expected = sum(share * q[then] for then, share in chances[now])
+            q[now] += self.alpha * (reward + self.gamma * expected - q[now])
+
+    def _passed(self, states: Sequence[int]) -> None:
+        for now, counts in _transitions(states).items():
+            self._followers[now] = _added(self._followers.get(now, {}), counts)
+
+
+class TDLambda(Learner):
+    """Learn from λ-returns at the end of each episode: q(c) ← q(c) + α[G - q(c)], G = ρ + γ[(1 - λ)q(c') + λG'].
+
+    The off-line λ-return algorithm, Sutton & Barto 2018, §12.1; λ = 0 is SARSA with the table held fixed in an episode.
+    """
+
+    def __init__(
+        self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA, trace: float = LAMBDA
+    ) -> None:
+        super().__init__(sites, gamma, alpha)
+        self.trace = trace
+
+    def _follow(self, states: Sequence[int], rewards: Sequence[float], q: list[float]) -> None:
+        gamma, trace = self.gamma, self.trace
+        returns, ahead, value = [], 0.0, 0.0
+        for now, reward in zip(reversed(states), reversed(rewards), strict=True):
+            value = reward + gamma * ((1 - trace) * ahead + trace * value)
+            ahead = q[now]
+            returns.append(value)
+        for now, value in zip(states, reversed(returns), strict=True):
+            q[now] += self.alpha * (value - q[now])
+
+
+LEARNERS: Mapping[str, type[Learner]] = {
+    "sarsa": Sarsa,
+    "expected-sarsa": ExpectedSarsa,
+    "td-lambda": TDLambda,
+}
+
+
+def _transitions(states: Sequence[int]) -> dict[int, dict[int, int]]:
+    found: dict[int, dict[int, int]] = {}
+    for now, then in zip(states, [*states[1:], END], strict=True):
+        counts = found.setdefault(now, {})
+        counts[then] = counts.get(then, 0) + 1
+    return found
+
+
+def _added(first: Mapping[int, int], second: Mapping[int, int]) -> dict[int, int]:
+    return {then: first.get(then, 0) + second.get(then, 0) for then in {**first, **second}}
+
+
+def _shares(counts: Mapping[int, int]) -> list[tuple[int, float]]:
+    """Return the next states and how likely they are; the end, which is worth nothing, is left out."""
+    whole = sum(counts.values())
+    return [(then, count / whole) for then, count in counts.items() if then != END]

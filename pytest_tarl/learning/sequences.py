@@ -7,11 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pytest_tarl.learning.tables import START, Floats, Ints, sum_by
 
 if TYPE_CHECKING:
     from pytest_tarl.instrumentation.trace import Trace
+
+Steps = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -36,39 +39,51 @@ def event_sequences(trace: Trace, members: Sequence[int]) -> tuple[EventSequence
     left out.
     """
     index = _places(trace, members)
-    chosen = (index >= 0) & (trace.event_cell >= 0)
-    step = trace.event_step[chosen].astype(np.int64)
-    thread = np.zeros_like(step) if trace.thread is None else trace.thread[chosen].astype(np.int64)
+    known = (index >= 0) & (trace.event_cell >= 0)
+    chosen = slice(None) if known.all() else known
+    step, site = trace.event_step[chosen], index[chosen]
     flow = np.abs(trace.flow[chosen])
-    state = 1 + trace.event_cell[chosen].astype(np.int64) * len(members) + index[chosen]
-    unclaimed, given = _given(step, thread, trace.reward)
+    state = trace.event_cell[chosen] * np.int64(len(members))
+    state += site + 1
     scaled = (trace.reward[step] if trace.reward.size else np.zeros(step.shape)) * flow
-    threads = np.unique(thread) if thread.size else np.zeros(1, np.int64)
+    if trace.thread is None:
+        unclaimed, given = _given(step, None, trace.reward)
+        return (_begun(unclaimed, state, given, scaled, flow),)
+    thread = trace.thread[chosen]
+    unclaimed, given = _given(step, thread, trace.reward)
+    threads = np.unique(thread) if thread.size else np.zeros(1, np.int32)
     return tuple(
-        EventSequence(
-            state=np.append(START, state[own]),
-            reward=np.append(0.0 if place else unclaimed, given[own]),
-            scaled=np.append(0.0, scaled[own]),
-            flow=np.append(0.0, flow[own]),
-        )
+        _begun(0.0 if place else unclaimed, state[own], given[own], scaled[own], flow[own])
         for place, own in enumerate(thread == one for one in threads)
     )
 
 
-def _places(trace: Trace, members: Sequence[int]) -> Ints:
+def _begun(unclaimed: float, state: Ints, given: Floats, scaled: Floats, flow: Floats) -> EventSequence:
+    """Put the start, which has the reward of the steps before any event, in front of the events."""
+    whole = np.empty(state.size + 1, np.int64)
+    whole[0], whole[1:] = START, state
+    columns = [np.empty(state.size + 1) for _ in range(3)]
+    for column, first, rest in zip(columns, (unclaimed, 0.0, 0.0), (given, scaled, flow), strict=True):
+        column[0], column[1:] = first, rest
+    return EventSequence(whole, *columns)
+
+
+def _places(trace: Trace, members: Sequence[int]) -> Steps:
     """Return the place in the taint list of every event's site, -1 where it has none; shape (events,)."""
-    place = np.full(max([*members, int(trace.site.max(initial=-1)), 0]) + 1, -1, dtype=np.int64)
+    place = np.full(max([*members, int(trace.site.max(initial=-1)), 0]) + 1, -1, dtype=np.int32)
     for n, site in enumerate(members):
         if site >= 0:
             place[site] = n
     return place[trace.site]
 
 
-def _given(step: Ints, thread: Ints, reward: Floats) -> tuple[float, Floats]:
+def _given(step: Steps, thread: Steps | None, reward: Floats) -> tuple[float, Floats]:
     """Return the reward of the steps before any event, and what each event is given, shape (events,)."""
     given = np.zeros(step.size)
-    changes = (step[1:] != step[:-1]) | (thread[1:] != thread[:-1])
-    last = np.flatnonzero(np.append(changes, True)) if step.size else np.empty(0, np.int64)
+    last = np.ones(step.size, dtype=bool)
+    np.not_equal(step[1:], step[:-1], out=last[:-1])
+    if thread is not None:
+        last[:-1] |= thread[1:] != thread[:-1]
     eventful, sharing = np.unique(step[last], return_counts=True)
     owner = np.searchsorted(eventful, np.arange(reward.size), side="right")
     earned = sum_by(owner, reward, eventful.size + 1)

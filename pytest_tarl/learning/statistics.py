@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pytest_tarl.learning.sequences import EventSequence, event_sequences
 from pytest_tarl.learning.tables import (
@@ -25,6 +26,8 @@ from pytest_tarl.sensors import Cell
 
 if TYPE_CHECKING:
     from pytest_tarl.instrumentation.trace import Trace
+
+DENSE = 4  # possible pairs per pair seen up to which they are counted in a table
 
 
 def sample(trace: Trace, seed: int, passed: bool, lists: Sequence[Sequence[int]]) -> Sample:
@@ -72,16 +75,17 @@ def _chain(trace: Trace, names: Sequence[str]) -> Chain:
 
 def _list_sample(sequences: Sequence[EventSequence], width: int) -> ListSample:
     state, reward, scaled, flow = (
-        np.concatenate([getattr(one, column) for one in sequences])
+        _joined([getattr(one, column) for one in sequences])
         for column in ("state", "reward", "scaled", "flow")
     )
-    following = np.concatenate([np.append(one.state[1:], END) for one in sequences])
-    pairs, _, count = _unique_pairs(state, following)
+    following = _joined([_followers(one.state) for one in sequences])
+    pairs, _, count = _unique_pairs(state, following, False)
     edges = Edges(np.zeros(count.size, np.int64), pairs[0], pairs[1], count)
-    states, inverse, visits = np.unique(state, return_inverse=True, return_counts=True)
+    visits = np.bincount(state)
+    states = np.flatnonzero(visits)
 
     def sums(column: Floats) -> Floats:
-        return sum_by(inverse, column, states.size)
+        return sum_by(state, column, visits.size)[states]
 
     return ListSample(
         width,
@@ -89,14 +93,25 @@ def _list_sample(sequences: Sequence[EventSequence], width: int) -> ListSample:
         Visits(
             episode=np.zeros(states.size, np.int64),
             state=states,
-            count=visits.astype(np.int64),
+            count=visits[states],
             reward=sums(reward),
             scaled=sums(scaled),
-            reward_squared=sums(reward**2),
-            scaled_squared=sums(scaled**2),
+            reward_squared=sums(reward * reward),
+            scaled_squared=sums(scaled * scaled),
         ),
-        flow=_flows(state, flow, width),
+        flow=_flows(states, sums(flow), width),
     )
+
+
+def _joined(columns: Sequence[NDArray[Any]]) -> NDArray[Any]:
+    return columns[0] if len(columns) == 1 else np.concatenate(columns)
+
+
+def _followers(state: Ints) -> Ints:
+    """Return the state after each one, at last the end."""
+    following = np.empty_like(state)
+    following[:-1], following[-1:] = state[1:], END
+    return following
 
 
 def _flows(state: Ints, flow: Floats, width: int) -> Floats:
@@ -105,8 +120,23 @@ def _flows(state: Ints, flow: Floats, width: int) -> Floats:
     return sum_by((state[events] - 1) % max(width, 1), flow[events], width)[None, :]
 
 
-def _unique_pairs(first: Ints, second: Ints) -> tuple[tuple[Ints, Ints], Ints, Ints]:
-    """Return the distinct (first, second) pairs in order, each row's pair and each pair's count."""
+def _unique_pairs(first: Ints, second: Ints, inverse: bool = True) -> tuple[tuple[Ints, Ints], Ints, Ints]:
+    """Return the distinct (first, second) pairs in order, each row's pair where asked for, and each pair's count.
+
+    By counting where few pairs are possible, which is much faster than by sorting.
+    """
     span = int(max(first.max(initial=0), second.max(initial=0))) + 2
-    codes, inverse, count = np.unique(first * span + (second + 1), return_inverse=True, return_counts=True)
-    return (codes // span, codes % span - 1), inverse, count.astype(np.int64)
+    codes = first * span
+    codes += second
+    codes += 1
+    if span * span > DENSE * first.size:
+        distinct, place, count = np.unique(codes, return_inverse=True, return_counts=True)
+        return (distinct // span, distinct % span - 1), place, count.astype(np.int64)
+    counts = np.bincount(codes, minlength=span * span)
+    distinct = np.flatnonzero(counts)
+    place = np.empty(0, np.int64)
+    if inverse:
+        number = np.zeros(span * span, np.int64)
+        number[distinct] = np.arange(distinct.size)
+        place = number[codes]
+    return (distinct // span, distinct % span - 1), place, counts[distinct]

@@ -22,6 +22,8 @@ FLAGS: dict[str, Any] = {
     "search": None,
     "budget": 300,
     "utility": "batch",
+    "workers": "1",
+    "cluster": None,
     "strict": False,
 }
 
@@ -93,3 +95,17 @@ def test_values_that_would_break_later_are_refused_in_a_sentence(name: str, valu
     arguments = {"nodes": ["a.py"], "sensors": [Sensor("x")], name: value}
     with pytest.raises(SettingsError, match=r"^here: "):
         designation("here", (), arguments)
+
+
+def test_workers_are_a_number_or_the_share_of_the_cores_that_xdist_leaves(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert options(FLAGS | {"workers": "3"}).workers == 3
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: range(8), raising=False)
+    monkeypatch.delenv("PYTEST_XDIST_WORKER_COUNT", raising=False)
+    assert options(FLAGS | {"workers": "auto"}).workers == 8
+    monkeypatch.setenv("PYTEST_XDIST_WORKER_COUNT", "4")
+    assert options(FLAGS | {"workers": "auto"}).workers == 2
+    for wrong in ("0", "many", "-1"):
+        with pytest.raises(SettingsError, match="--tarl-workers: it must be a whole number"):
+            options(FLAGS | {"workers": wrong})

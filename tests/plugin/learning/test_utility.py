@@ -8,7 +8,7 @@ import pytest
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning import utility
 from pytest_tarl.learning.merging import merge
-from pytest_tarl.learning.sarsa import Sarsa
+from pytest_tarl.learning.sarsa import LEARNERS, ExpectedSarsa, Sarsa, TDLambda
 from pytest_tarl.learning.sequences import EventSequence, event_sequences
 from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import END, START
@@ -58,12 +58,13 @@ def test_a_state_never_left_has_no_utility() -> None:
     assert np.isnan(values[1])
 
 
-def test_batch_and_sarsa_agree_with_the_random_walk() -> None:
+@pytest.mark.parametrize("kind", LEARNERS)
+def test_batch_and_what_learns_event_by_event_agree_with_the_random_walk(kind: str) -> None:
     traces = [walk_trace(seed) for seed in range(1500)]
     whole = merge([sample(trace, seed, True, ((0,),)) for seed, trace in enumerate(traces)])
     learned = batch(whole.lists[0], WALK, scale=np.inf, gamma=1.0)[:, 0]
     assert learned == pytest.approx(np.arange(1, 6) / 6, abs=0.06)
-    learner = Sarsa(1, gamma=1.0, alpha=0.02)
+    learner = LEARNERS[kind](1, gamma=1.0, alpha=0.02)
     for trace in traces:
         learner.learn(event_sequences(trace, (0,))[0], trace.cells)
     walked = learner.table(whole.cells, np.inf)[:, 0]
@@ -86,6 +87,31 @@ def test_sarsa_follows_the_update_rule_by_hand() -> None:
     first = 0.1 * 3.0  # ρ = 1 + 4/2
     assert table[0, 0] == pytest.approx(first + 0.1 * (3.0 + 0.5 * 0.2 - first))
     assert table[0, 1] == pytest.approx(0.2 + 0.1 * (2.0 - 0.2))
+
+
+def sequence_of(states: list[int], rewards: list[float]) -> EventSequence:
+    nothing = np.zeros(len(states))
+    return EventSequence(np.array(states), np.array(rewards), nothing, nothing)
+
+
+def test_expected_sarsa_looks_at_what_followed_so_far() -> None:
+    learner = ExpectedSarsa(2, gamma=0.5, alpha=0.5)
+    learner.learn(sequence_of([START, 2], [0.0, 4.0]), [(0,)])  # q(2) = 2
+    learner.learn(sequence_of([START, 1], [0.0, 0.0]), [(0,)])  # the start is followed by either, q(1) = 0
+    learner.learn(sequence_of([START, 1, 2], [0.0, 8.0, 4.0]), [(0,)])
+    first, second = learner.table([(0,)], np.inf)[0]
+    assert first == pytest.approx(0.5 * (8.0 + 0.5 * (0.5 * 0.0 + 0.5 * 2.0)))  # after 1 came the end, then 2
+    assert second == pytest.approx(2.0 + 0.5 * (4.0 - 2.0))
+
+
+def test_td_lambda_learns_from_the_whole_return_when_lambda_is_one_and_from_the_next_state_when_it_is_zero() -> (
+    None
+):
+    whole, next_only = (TDLambda(2, gamma=0.5, alpha=0.5, trace=trace) for trace in (1.0, 0.0))
+    for learner in (whole, next_only):
+        learner.learn(sequence_of([START, 1, 2], [0.0, 1.0, 4.0]), [(0,)])
+    assert whole.table([(0,)], np.inf).tolist() == [[0.5 * (1.0 + 0.5 * 4.0), 2.0]]
+    assert next_only.table([(0,)], np.inf).tolist() == [[0.5 * 1.0, 2.0]]
 
 
 def test_the_flow_term_can_be_switched_off() -> None:

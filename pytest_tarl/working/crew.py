@@ -1,0 +1,147 @@
+"""Run the episodes of a test on workers: processes here, by concurrent.futures, or on a Dask cluster."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pytest_tarl.errors import RecordingError
+from pytest_tarl.repeating import Instruments
+from pytest_tarl.rollout import EpisodePlan, EpisodeRun
+from pytest_tarl.settings import Options
+from pytest_tarl.working import wire
+from pytest_tarl.working.pool import TRIES, Pool, Post, WorkerDiedError
+
+Serve = Callable[[Post, bytes], bytes]
+
+# What a worker must not do, or not share with others: reports, caches of results, debuggers, workers of its own.
+OFF: Mapping[str, Any] = {
+    "cacheclear": False,
+    "collectonly": False,
+    "dist": "no",
+    "failedfirst": False,
+    "htmlpath": None,
+    "json_report": False,
+    "lf": False,
+    "newfirst": False,
+    "no_cov": True,
+    "numprocesses": None,
+    "report_log": None,
+    "stepwise": False,
+    "tarl_cluster": None,
+    "tarl_workers": "1",
+    "trace": False,
+    "tx": [],
+    "usepdb": False,
+    "xmlpath": None,
+}
+
+
+@dataclass(frozen=True)
+class Crew:
+    """A rollout whose episodes run elsewhere."""
+
+    executor: Executor
+    serve: Serve
+    post: Post
+    workers: int
+
+    def __call__(self, plan: EpisodePlan) -> EpisodeRun:
+        """Run one episode. Raises TarlError where the test cannot be run as asked, pytest's Exit and Skipped."""
+        return self.begin(plan).result()
+
+    def begin(self, plan: EpisodePlan) -> Answer:
+        """Ask for an episode."""
+        return Answer(plan, self.executor.submit(self.serve, self.post, wire.plan_message(plan)))
+
+
+@dataclass(frozen=True)
+class Answer:
+    """An episode that was asked for."""
+
+    plan: EpisodePlan
+    future: Future[bytes]
+
+    def result(self) -> EpisodeRun:
+        """Wait for it. Raises TarlError where it could not be run, pytest's Exit and Skipped."""
+        try:
+            return wire.answered(self.plan, self.future.result())
+        except WorkerDiedError as died:
+            raise RecordingError(
+                f"The worker process of the episode with seed {self.plan.seed} {died}, {TRIES} times in {TRIES}: run "
+                "it without --tarl-workers to see what its node does, or use fewer workers if memory is short."
+            ) from None
+        except wire.SkippedError as skipped:
+            pytest.skip(str(skipped))
+        except wire.EndedError as ended:
+            pytest.exit(str(ended))
+        except CancelledError:
+            raise RecordingError("The cluster took back an episode: look at its scheduler's log.") from None
+
+    def cancel(self) -> bool:
+        """Do without it, if no worker has begun it."""
+        return self.future.cancel()
+
+
+@contextmanager
+def opened(item: pytest.Function, instruments: Instruments, options: Options) -> Iterator[Crew]:
+    """Open a crew for a test and end all its workers afterwards, whatever happens meanwhile."""
+    post = posted(item, instruments)
+    if options.cluster is not None:
+        from pytest_tarl.working.cluster import joined, serve_here
+
+        with joined(options.cluster) as (executor, workers):
+            yield Crew(executor, serve_here, post, workers)
+        return
+    pool = Pool()
+    executor = ThreadPoolExecutor(options.workers, "tarl")
+    try:
+        yield Crew(executor, pool.serve, post, options.workers)
+    finally:
+        executor.shutdown(wait=False, cancel_futures=True)
+        pool.close()
+        executor.shutdown()
+
+
+def posted(item: pytest.Function, instruments: Instruments) -> Post:
+    """Say what a worker needs in order to hold the item ready."""
+    config = item.config
+    plain = {name: value for name, value in vars(config.option).items() if _plain(value)}
+    rooted = {"rootdir": str(config.rootpath)}
+    if config.inipath is not None:
+        rooted["inifilename"] = str(config.inipath)
+    plugins = [*config.option.plugins, "no:terminal"]
+    folder = str(config.invocation_params.dir)
+    start = {
+        "path": [str(Path(folder, entry)) for entry in sys.path],  # an absolute entry stays what it is
+        "options": plain | dict(OFF) | rooted | {"plugins": plugins, "basetemp": None},
+        "target": f"{item.path}::{item.nodeid.partition('::')[2]}",
+    }
+    first = {
+        "nodeid": item.nodeid,
+        "instruments": {
+            "positions": {
+                str(path): [[line, column, number] for (line, column), number in places.items()]
+                for path, places in instruments.positions.items()
+            },
+            "publishes": sorted(instruments.publishes),
+        },
+    }
+    loud = config.option.capture == "no"
+    return Post(folder, json.dumps(start), json.dumps(first).encode(), loud)
+
+
+def _plain(value: object) -> bool:
+    try:
+        json.dumps(value)
+    except (TypeError, ValueError):
+        return False
+    return True

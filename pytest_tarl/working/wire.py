@@ -1,0 +1,133 @@
+"""What goes between a run and its workers, as bytes: JSON, and after it the columns of a trace."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from pytest_tarl import errors
+from pytest_tarl.errors import TarlError
+from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.rollout import EpisodePlan, EpisodeRun
+
+COLUMNS = ("site", "flow", "event_cell", "event_step", "step_cell", "reward")
+LENGTH = struct.Struct("<Q")
+READY = b"ready"
+
+
+def write(pipe: BinaryIO, message: bytes) -> None:
+    """Send one message. Raises OSError where nobody reads any more."""
+    pipe.write(LENGTH.pack(len(message)))
+    pipe.write(message)
+    pipe.flush()
+
+
+def read(pipe: BinaryIO) -> bytes | None:
+    """Receive one message; None where the other side is gone, or broke off in the middle of one."""
+    head = pipe.read(LENGTH.size)
+    if len(head) < LENGTH.size:
+        return None
+    (size,) = LENGTH.unpack(head)
+    message = pipe.read(size)
+    return message if len(message) == size else None
+
+
+def plan_message(plan: EpisodePlan) -> bytes:
+    """Write a plan."""
+    overlay = {str(path): text for path, text in plan.overlay.items()}
+    return _joined(
+        {"seed": str(plan.seed), "drift": plan.drift, "overlay": overlay, "record": plan.record}, {}
+    )
+
+
+def planned(message: bytes) -> EpisodePlan:
+    """Read a plan."""
+    head, _ = _parted(message)
+    overlay = {Path(path): text for path, text in head["overlay"].items()}
+    return EpisodePlan(int(head["seed"]), head["drift"], overlay, head["record"])
+
+
+def run_message(run: EpisodeRun) -> bytes:
+    """Write what came of an episode; its plan stays with whoever made it."""
+    trace = run.trace
+    arrays = {name: getattr(trace, name) for name in COLUMNS}
+    arrays |= {f"part {name}": column for name, column in trace.parts.items()}
+    if trace.thread is not None:
+        arrays["thread"] = trace.thread
+    head = {
+        "cells": trace.cells,
+        "passed": run.passed,
+        "failure": run.failure,
+        "broken": run.broken,
+        "topics": dict(run.topics),
+        "crashed": run.crashed,
+    }
+    return _joined(head, arrays)
+
+
+def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
+    """Read what came of an episode. Raises the TarlError that ended it, SkippedError and EndedError among them."""
+    head, arrays = _parted(message)
+    if "error" in head:
+        raise _error(head["error"])(head["text"])
+    parts = {name.removeprefix("part "): array for name, array in arrays.items() if name.startswith("part ")}
+    trace = Trace(
+        cells=tuple(tuple(cell) for cell in head["cells"]),
+        **{name: arrays[name] for name in COLUMNS},
+        parts=parts,
+        thread=arrays.get("thread"),
+    )
+    told = {name: head[name] for name in ("passed", "failure", "broken", "topics", "crashed")}
+    return EpisodeRun(plan=plan, trace=trace, **told)
+
+
+def refused(message: bytes) -> None:
+    """Raise the TarlError that a message holds."""
+    head, _ = _parted(message)
+    raise _error(head["error"])(head["text"])
+
+
+def error_message(problem: TarlError) -> bytes:
+    """Write what kept an episode from being run."""
+    return _joined({"error": type(problem).__name__, "text": str(problem)}, {})
+
+
+class SkippedError(TarlError):
+    """The test skipped itself in a worker; the text is its reason."""
+
+
+class EndedError(TarlError):
+    """The test ended the whole run in a worker, by `pytest.exit`; the text is its reason."""
+
+
+def _error(name: str) -> Callable[[str], TarlError]:
+    here = {"SkippedError": SkippedError, "EndedError": EndedError}
+    found = here.get(name) or getattr(errors, name, TarlError)
+    return found if isinstance(found, type) and issubclass(found, TarlError) else TarlError
+
+
+def _joined(head: Mapping[str, Any], arrays: Mapping[str, np.ndarray[Any, Any]]) -> bytes:
+    shapes = [(name, array.dtype.str, array.shape) for name, array in arrays.items()]
+    text = json.dumps({**head, "arrays": shapes}, ensure_ascii=False).encode(errors="surrogatepass")
+    return b"".join([LENGTH.pack(len(text)), text, *(array.tobytes() for array in arrays.values())])
+
+
+def _parted(message: bytes) -> tuple[dict[str, Any], dict[str, np.ndarray[Any, Any]]]:
+    (size,) = LENGTH.unpack_from(message)
+    start = LENGTH.size + size
+    head = json.loads(message[LENGTH.size : start].decode(errors="surrogatepass"))
+    arrays = {}
+    for name, kind, shape in head.pop("arrays"):
+        count = _product(shape)
+        arrays[name] = np.frombuffer(message, np.dtype(kind), count, start).reshape(shape).copy()
+        start += arrays[name].nbytes
+    return head, arrays
+
+
+def _product(shape: Sequence[int]) -> int:
+    return int(np.prod(shape, dtype=np.int64))
