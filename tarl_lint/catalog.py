@@ -162,7 +162,7 @@ WAITING_METHODS: Final = frozenset(
 MUTATORS: Final = frozenset(
     [
         "append", "appendleft", "extend", "extendleft", "insert", "add", "update", "put", "put_nowait", "push",
-        "fill", "set", "setdefault", "itemset", "write", "push_back", "send", "clear",
+        "fill", "set", "setdefault", "itemset", "write", "push_back", "send", "clear", "sort",
     ]
 )  # fmt: skip
 
@@ -198,8 +198,11 @@ DRAWING: Final = frozenset(
 ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
     **{f"cv2.{name}": 0 for name in sorted(DRAWING)},
     "numpy.copyto": 0, "numpy.put": 0, "numpy.place": 0, "numpy.putmask": 0, "random.shuffle": 0,
-    "heapq.heappush": 0, "setattr": 0,
+    "numpy.fill_diagonal": 0, "setattr": 0,
+    **dict.fromkeys(("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"), 0),
+    **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), 0),
 }  # fmt: skip
+WRITTEN_KEYWORDS: Final = frozenset(["out", "dst"])  # arguments that numpy and cv2 put their result into
 
 NODE_BASES: Final = frozenset(
     [
@@ -221,6 +224,13 @@ def on_topic(api: str) -> bool:
 def fact(qualified: str) -> Fact | None:
     """Return what a function or class of a library does, None when it is nothing special."""
     return FUNCTIONS.get(qualified)
+
+
+def written(qualified: str) -> int | None:
+    """Return the position of the argument that a function changes, None when it changes none."""
+    if qualified.startswith("numpy.") and qualified.endswith(".at"):  # numpy.add.at(array, places, values)
+        return 0
+    return ARGUMENT_WRITERS.get(qualified)
 
 
 def scalar(qualified: str) -> bool:

@@ -23,7 +23,7 @@ from tarl_lint.valueflow.values import (
     pointer,
 )
 
-CALLABLE = frozenset(["closure", "bound", "class", "ext", "partial", "method"])
+CALLABLE = frozenset(["closure", "bound", "class", "ext", "partial", "method", "weak"])
 ROOT_CALL = ir.Call(ir.Const(None, (0, 0, 0, 0)), (), (), (0, 0, 0, 0), 0)
 
 
@@ -178,12 +178,30 @@ class Activations(Evaluation):
         return result if result is not BOTTOM else UNKNOWN
 
     def instantiate(self, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-        """Make an instance and run its `__init__`."""
+        """Make an instance, by its own `__new__` if it has one, and run its `__init__`."""
+        self.made.add(cls.key)
+        for owner in lineage(cls):
+            new = self.store.get((owner, "__new__"))
+            if new is not None:
+                plain, named = arguments
+                made = self.call_value(new, ([pointer(cls), *plain], named), frame, call)
+                for obj in sorted(made.pts, key=lambda o: o.number):
+                    if obj.kind == "instance" and obj.info is cls:
+                        self._initialise(obj, cls, arguments, frame, call)
+                return made
+        obj = self.blank_instance(cls, frame, call)
+        self._initialise(obj, cls, arguments, frame, call)
+        return pointer(obj)
+
+    def blank_instance(self, cls: Obj, frame: Frame, call: ir.Call) -> Obj:
+        """Return an instance as `object.__new__` makes it."""
         statement = frame.statement.id if frame.statement is not None else -1
         obj = self.intern("instance", (frame.id, statement, call.slot, cls.key), cls.name)
         obj.info = cls
         self.store.put((obj, BORN), BOTTOM)
-        self.made.add(cls.key)
+        return obj
+
+    def _initialise(self, obj: Obj, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
         for owner in lineage(cls):
             init = self.store.get((owner, "__init__"))
             if init is not None:
@@ -192,7 +210,6 @@ class Activations(Evaluation):
         else:
             self._fill(obj, cls, arguments, frame, call)
         self.instance_made(obj, cls, frame)
-        return pointer(obj)
 
     def _fill(self, obj: Obj, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
         """Store the arguments as a dataclass or named tuple does."""

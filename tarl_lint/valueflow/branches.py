@@ -147,9 +147,17 @@ class Branches(Raising):
         return ends
 
     def _with(self, s: ir.With, frame: Frame) -> bool:
+        managers: list[Value] = []
         for number, (context, target) in enumerate(s.items):
             value = self.evaluate(context, frame)
+            managers.append(value)
             frame.statement = s
+            entered = self.special(value, "__enter__", (), frame, s.pos)
+            value = value if entered is None else entered
             if target is not None:
                 self.bind_target(target, value, frame, f"with{number}", context)
-        return self.block(s.body, frame)
+        goes_on = self.block(s.body, frame)
+        frame.statement = s
+        for manager in reversed(managers if goes_on else ()):
+            self.special(manager, "__exit__", [UNKNOWN] * 3, frame, s.pos)
+        return goes_on

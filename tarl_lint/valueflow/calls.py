@@ -86,10 +86,16 @@ class Calls(Activations):
     ) -> Value:
         if obj.kind == "ext":
             return self.call_library(f"{obj.name}.{name}", arguments, frame, expr)
-        callables = frozenset(o for o in member.pts if o.kind in CALLABLE and o.info != (obj, name))
+        callables = frozenset(o for o in member.pts if self.callable_held(o) and o.info != (obj, name))
         if callables:
             return self.call_value(Value(member.deps, callables), arguments, frame, expr)
         return self.call_method(Value(base.deps, frozenset([obj])), obj, name, arguments, frame, expr)
+
+    def callable_held(self, obj: Obj) -> bool:
+        """Tell whether what an attribute holds can be called: a function, or an object whose class says how."""
+        if obj.kind == "instance":
+            return any(o.kind in CALLABLE for o in self.read_field(obj, "__call__").pts)
+        return obj.kind in CALLABLE
 
     def call_value(self, function: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
         """Call whatever a value may be; what is not known passes its arguments on."""
@@ -134,6 +140,8 @@ class Calls(Activations):
         if kind == "method" and isinstance(target.info, tuple):
             owner, name = target.info
             return self.call_method(pointer(owner), owner, name, arguments, frame, call)
+        if kind == "weak" and isinstance(target.info, Value):
+            return target.info
         if kind == "instance":
             member = self.read_field(target, "__call__")
             if any(o.kind in CALLABLE for o in member.pts):

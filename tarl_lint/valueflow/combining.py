@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.heap import ANY, KEYS, LENGTH, item_field
-from tarl_lint.valueflow.joining import Joining
+from tarl_lint.valueflow.special import Special
 from tarl_lint.valueflow.values import (
     ABSENT,
     BOTTOM,
@@ -22,7 +22,7 @@ MAX_KNOWN = 16  # elements of a made sequence that are told apart
 COMBINING = frozenset(["+", "*", "|", "-", "&"])
 
 
-class Combining(Joining):
+class Combining(Special):
     """Makes containers of containers."""
 
     def combined(self, expr: ir.Operation, values: list[Value], frame: Frame) -> Value | None:
@@ -114,7 +114,7 @@ class Combining(Joining):
             for name in list(source.fields):
                 stored = self.store.get((source, name))
                 if stored is not None and (name.startswith("[") or name in (ANY, KEYS, LENGTH)):
-                    field = name[2:-2] if obj.kind == "instance" and name.startswith("['") else name
+                    field = self.attribute_of_item(obj, name[2:-2]) if name.startswith("['") else name
                     self.weaken(obj, field, self.arrive(stored, value.deps))
             content = self.content(source)
             if content.deps and self.store.get((source, ANY)) is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from tarl_lint.valueflow import ir
@@ -15,12 +16,18 @@ from tarl_lint.valueflow.values import (
     UNKNOWN,
     Frame,
     Nodes,
+    Obj,
     Value,
     join,
     join_all,
     pointer,
 )
 
+QUEUES = frozenset(
+    f"{module}.{name}"
+    for module in ("queue", "Queue", "asyncio", "multiprocessing")
+    for name in ("Queue", "LifoQueue", "PriorityQueue", "SimpleQueue", "JoinableQueue")
+)
 CONTAINERS = frozenset(["list", "tuple", "set", "frozenset", "sorted", "reversed", "iter", "deque"])
 
 
@@ -45,6 +52,9 @@ class Containers(Calls):
             for obj in base.pts:
                 for key in plain[0].consts or (None,):
                     self.weaken(obj, ANY if key is None else item_field(key), news)
+        elif name == "sort":
+            order = self.ordered_by(self.elements(base), Invocation(name, base, arguments, frame, call))
+            self._insert(base, [order] if "key" in named else [], frame, call)
         elif name == "update" and base.pts:
             self._update(base, plain, named, frame, call)
         elif name in ("extend", "extendleft"):
@@ -62,10 +72,18 @@ class Containers(Calls):
             for obj in base.pts:
                 if obj.kind == "sequence":
                     self.add_element(pointer(obj), self.elements(news))
-                elif obj.kind in ("mapping", "lib", "instance"):
+                elif obj.kind == "mapping":
+                    self.entries(obj, news)
+                elif obj.kind in ("lib", "instance"):
                     self.absorb(obj, news)
         for name, value in named.items():
-            self.write_field(base, item_field(name), self.through_statement(value, frame, call, name))
+            news = self.through_statement(value, frame, call, name)
+            for obj in base.pts:
+                self.weaken(obj, self.attribute_of_item(obj, name), news)
+
+    def entries(self, obj: Obj, value: Value) -> None:
+        """Take over the entries of a mapping, or of a sequence of pairs."""
+        raise NotImplementedError
 
     def _insert(self, base: Value, values: list[Value], frame: Frame, call: ir.Call) -> None:
         news = join_all(values)
@@ -122,7 +140,7 @@ class Containers(Calls):
     def _new_container(self, it: Invocation) -> Value:
         given = [v for v in it.arguments[0][:1] if v is not BOTTOM]
         known = self.unpacked(given[0]) if given and it.name in ("list", "tuple", "deque") else None
-        element = join_all(self.elements(v) for v in given)
+        element = self.ordered_by(join_all(self.elements(v) for v in given), it)
         length = self.length(given[0]) if given else NONE
         obj = self.allocate("sequence", it.frame, ("display", it.call.slot))
         if known is not None:
@@ -143,11 +161,31 @@ class Containers(Calls):
     def _mapped(self, it: Invocation) -> Value:
         function, *rest = it.arguments[0] or [UNKNOWN]
         parts = [self.elements(v) for v in rest]
-        result = self.call_value(function, (parts, {}), it.frame, it.call)
-        length = result.deps if it.name == "filter" else NONE
+        length = NONE
         for value in rest:
             length |= self.length(value)
-        return self.listed(result if it.name == "map" else join_all(parts), length, it)
+        if it.name == "map":
+            return self.listed(self.call_value(function, (parts, {}), it.frame, it.call), length, it)
+        kept = join_all(parts)
+        asks = kept if function.consts else self.call_value(function, (parts, {}), it.frame, it.call)
+        gate = self.gate(self.truth(asks, it.frame, ("filter", it.call.slot)), it.frame, it.call.slot)
+        return self.listed(Value(kept.deps | gate, kept.pts, kept.consts), length | gate, it)
+
+    def gate(self, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:
+        """Return the node of a decision which elements a new container gets, none where no data decides."""
+        if not decides:
+            return NONE
+        node = self.node(frame, ("filter", slot), "condition")
+        self.graph.control[node].update(decides)
+        return frozenset([node])
+
+    def ordered_by(self, elements: Value, it: Invocation) -> Value:
+        """Return elements as chosen or ordered by `key=`: what the function says of them decides which is where."""
+        key = it.arguments[1].get("key")
+        if key is None or key.consts or not elements.deps | elements.pts | key.pts:
+            return elements
+        said = self.call_value(key, ([elements], {}), it.frame, it.call)
+        return Value(elements.deps | self.use(said), elements.pts, elements.consts)
 
     def _counted(self, it: Invocation) -> Value:
         """Return `len(x)`: data of what the length is made of, choice of what decided to add elements."""
@@ -159,10 +197,17 @@ class Containers(Calls):
         self.graph.choice(self.deep(frozenset(ours)), node)
         return Value(deps | {node})
 
+    def _read_length(self, it: Invocation) -> Value:
+        """Return what a queue says about how much is in it."""
+        return self._counted(replace(it, arguments=([it.base], {})))
+
+    def _new_queue(self, it: Invocation) -> Value:
+        return pointer(self.allocate("sequence", it.frame, ("display", it.call.slot)))
+
     def _chosen(self, it: Invocation) -> Value:
         plain = it.arguments[0]
         values = [self.elements(plain[0])] if len(plain) == 1 else plain
-        result = join_all(values)
+        result = self.ordered_by(join_all(values), it)
         return Value(result.deps | self.all_used(it.arguments), result.pts)
 
 
@@ -173,6 +218,7 @@ READERS: Mapping[str, Callable[..., Value]] = {
     "get_nowait": Containers._read_get,
     "popitem": Containers._read_get,
     "next": Containers._read_get,
+    **dict.fromkeys(("qsize", "empty", "full"), Containers._read_length),
     "values": Containers._read_values,
     "itervalues": Containers._read_values,
     "keys": Containers._read_keys,

@@ -63,11 +63,9 @@ class Displays(Operators):
             for condition in conditions:
                 deps |= self.use(self.evaluate(condition, frame))
         element = self.evaluate(expr.element, frame)
-        if deps:
-            node = self.node(frame, ("filter", expr.slot), "condition")
-            self.graph.control[node].update(deps)
-            element = Value(element.deps | {node}, element.pts, element.consts)
-        self.store.put((obj, LENGTH), Value(lengths | (element.deps if deps else NONE)))
+        gate = self.gate(deps, frame, expr.slot)
+        element = Value(element.deps | gate, element.pts, element.consts)
+        self.store.put((obj, LENGTH), Value(lengths | gate))
         if expr.key is not None:
             self.write_item(pointer(obj), self.evaluate(expr.key, frame), element)
         else:

@@ -9,7 +9,7 @@ from typing import Any
 from tarl_lint.catalog import fact
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.displays import Displays
-from tarl_lint.valueflow.heap import ANY, item_field
+from tarl_lint.valueflow.heap import ANY
 from tarl_lint.valueflow.values import (
     BOTTOM,
     NONE,
@@ -100,7 +100,8 @@ class Evaluation(Displays):
         if isinstance(expr.index, ir.Slice):
             return self.sliced(base, expr.index, expr.pos, frame)
         index = self.evaluate(expr.index, frame)
-        return self.read_item(base, index)
+        said = self.special(base, "__getitem__", [index], frame, expr.pos)
+        return said if said is not None else self.read_item(base, index)
 
     def read_item(self, base: Value, index: Value) -> Value:
         """Return an element; a tainted index taints it."""
@@ -121,7 +122,7 @@ class Evaluation(Displays):
 
     def element(self, obj: Obj, key: object) -> Value:
         """Return one element by a constant index or key."""
-        name = item_field(key)
+        name = self.attribute_of_item(obj, key)
         if obj.kind == "sequence" and isinstance(key, int) and key < 0:
             known = self.unpacked(pointer(obj))
             return known[key] if known and -key <= len(known) else self.read_any(obj)

@@ -95,21 +95,26 @@ class Execution(Branches):
             elif not self.set_property(base, target, value, frame):
                 self.write_field(base, target.name, value)
         elif isinstance(target, ir.Item):
-            base, index = self.evaluate(target.base, frame), self.evaluate(target.index, frame)
-            if (index.deps or index.pts) and any(o.kind == "mapping" for o in base.pts):
-                index = self.carry(index, self.node(frame, ("key", target.pos), "assign"))
-            if isinstance(target.index, ir.Slice):
-                value = self.elements(value)
-            value = Value(value.deps | self.use(index), value.pts, value.consts)
-            if base.pts:
-                self.write_item(base, index, value)
-            else:
-                self.assign_fallback(target.base, value, frame)
+            self._assign_item(target, value, frame)
         elif isinstance(target, ir.SequenceDisplay):
             for number, item in enumerate(target.items):
                 self.assign(item, self.read_item(value, const(number)), frame)
         elif isinstance(target, ir.Starred):
             self.assign(target.value, value, frame)
+
+    def _assign_item(self, target: ir.Item, value: Value, frame: Frame) -> None:
+        base, index = self.evaluate(target.base, frame), self.evaluate(target.index, frame)
+        if self.special(base, "__setitem__", [index, value], frame, target.pos) is not None:
+            return
+        if (index.deps or index.pts) and any(o.kind == "mapping" for o in base.pts):
+            index = self.carry(index, self.node(frame, ("key", target.pos), "assign"))
+        if isinstance(target.index, ir.Slice):
+            value = self.elements(value)
+        value = Value(value.deps | self.use(index), value.pts, value.consts)
+        if base.pts:
+            self.write_item(base, index, value)
+        else:
+            self.assign_fallback(target.base, value, frame)
 
     def set_property(self, base: Value, target: ir.Attribute, value: Value, frame: Frame) -> bool:
         """Call the setter where the attribute is a property."""
@@ -199,7 +204,7 @@ class Execution(Branches):
 
     def _define(self, s: ir.Define, frame: Frame) -> bool:
         value = self.closure(s.function, frame, "def")
-        for decorator in reversed(s.function.decorators):
+        for decorator in s.function.decorators:
             if (
                 isinstance(decorator, ir.Attribute)
                 and decorator.name == "setter"
@@ -207,13 +212,26 @@ class Execution(Branches):
             ):
                 self.store.put((self.holder(s.target, frame), f"{s.target.name}.setter"), value)
                 return True
+        self.assign(s.target, self.decorated(value, s.function.decorators, s, frame), frame)
+        return True
+
+    def decorated(self, value: Value, decorators: Sequence[ir.Expr], s: ir.Stmt, frame: Frame) -> Value:
+        """Return what decorators of ours make of a function or class; those of libraries leave it as it is."""
+        for decorator in reversed(decorators):
             wrapper = self.evaluate(decorator, frame)
-            if any(o.kind in ("closure", "bound") for o in wrapper.pts):
+            if any(self.wraps(o) for o in wrapper.pts):
                 call = ir.Call(decorator, (), (), s.pos, -1)
                 value = self.call_value(wrapper, ([value], {}), frame, call)
         frame.statement = s
-        self.assign(s.target, value, frame)
-        return True
+        return value
+
+    def wraps(self, obj: Obj) -> bool:
+        """Tell whether a decorator is one of ours; of classes those whose instances can be called."""
+        if obj.kind == "class":
+            return any(self.store.get((owner, "__call__")) is not None for owner in lineage(obj))
+        return obj.kind in ("closure", "bound", "partial") or (
+            obj.kind == "instance" and self.callable_held(obj)
+        )
 
     def _class(self, s: ir.Class, frame: Frame) -> bool:
         self.run_class(s, frame)
@@ -248,7 +266,8 @@ class Execution(Branches):
         body.depth_of_layers = frame.depth_of_layers
         self.block(statement.body, body)
         frame.statement = statement
-        self.assign(statement.target, pointer(cls), frame)
+        made = self.decorated(pointer(cls), statement.decorators, statement, frame)
+        self.assign(statement.target, made if made.pts else pointer(cls), frame)
 
     def frame_number(self, key: object) -> int:
         """Return a frame's number, the same at every run."""

@@ -23,12 +23,14 @@ LENGTH = "<length>"  # of a container: what its length is made of
 METHODS_OF = {
     "publisher": frozenset(["publish"]),
     "sequence": frozenset(
-        ["append", "appendleft", "extend", "insert", "add", "put", "pop", "popleft", "get"]
+        ["append", "appendleft", "extend", "insert", "add", "put", "put_nowait", "pop", "popleft", "get"]
     ),
     "mapping": frozenset(["update", "get", "pop", "setdefault", "__getitem__"]),
+    "lib": frozenset(["put", "put_nowait", "set_result"]),
     "goal": frozenset(["publish_feedback"]),
     "server": frozenset(["publish_feedback", "set_succeeded", "set_aborted"]),
 }
+DICTIONARIES = frozenset(["dict", "OrderedDict", "defaultdict", "UserDict", "Counter", "TypedDict", "?"])
 HOLLOW = frozenset(
     ["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super"]
 )
@@ -74,6 +76,8 @@ class Heap(Allocation):
     def default(self, obj: Obj, name: str) -> Value:
         """Return what a field is to which nothing was stored."""
         kind = obj.kind
+        if name in METHODS_OF.get(kind, ()):
+            return self.held_method(obj, name)
         if kind in ("message", "lib", "goal"):
             content = self.content(obj)
             if content.pts and name.startswith("["):
@@ -89,8 +93,6 @@ class Heap(Allocation):
             return self._inherited(obj, obj.info, name)
         if kind == "class":
             return self._class_field(obj, name)
-        if name in METHODS_OF.get(kind, ()):
-            return self.held_method(obj, name)
         if kind == "ext":
             return pointer(self.intern("ext", f"{obj.name}.{name}", f"{obj.name}.{name}"))
         if kind == "module":
@@ -208,6 +210,15 @@ class Heap(Allocation):
         deps = self.graph.through(value.deps, carriers) | carriers
         return Value(deps, value.pts, value.consts)
 
+    def attribute_of_item(self, obj: Obj, key: object) -> str:
+        """Return the field of `vars(obj)[key]`: of what is no dictionary itself an attribute."""
+        if obj.kind == "instance" and isinstance(key, str) and isinstance(obj.info, Obj):
+            infos = [c.info for c in lineage(obj.info)]
+            external = {e for i in infos if isinstance(i, ClassInfo) for e in i.external}
+            if not any(e.rpartition(".")[2] in DICTIONARIES for e in external):
+                return key
+        return item_field(key)
+
     # --- writing ------------------------------------------------------------------------------------------
 
     def write_field(self, base: Value, name: str, value: Value) -> None:
@@ -256,7 +267,10 @@ class Heap(Allocation):
             if key < 0:
                 self.add_element(base, value)
                 return
-        self.write_field(base, item_field(key), value)
+        fields = {self.attribute_of_item(obj, key) for obj in base.pts}
+        for field in sorted(fields):
+            kin = frozenset(o for o in base.pts if self.attribute_of_item(o, key) == field)
+            self.write_field(base if kin == base.pts else Value(base.deps, kin), field, value)
 
     def from_end(self, base: Value, key: int) -> int:
         """Return a negative index counted from the start, where the length is known."""

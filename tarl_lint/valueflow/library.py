@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from tarl_lint import catalog
 from tarl_lint.catalog import Fact
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.containers import CONTAINERS
+from tarl_lint.valueflow.containers import CONTAINERS, QUEUES
+from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.futures import READERS
 from tarl_lint.valueflow.heap import ANY
 from tarl_lint.valueflow.machine import Arguments, Invocation, Publisher
+from tarl_lint.valueflow.special import FUNCTIONS
 from tarl_lint.valueflow.texts import TEXT_METHODS, Texts
 from tarl_lint.valueflow.values import (
     BOTTOM,
+    BY_CLASS,
     NONE,
     UNKNOWN,
     Frame,
@@ -24,6 +27,8 @@ from tarl_lint.valueflow.values import (
     pointer,
 )
 from tarl_lint.wrapping import facts
+
+LATER = frozenset(["closure", "bound", "partial"])  # what a library can call of what it is given
 
 
 class Library(Texts):
@@ -41,6 +46,10 @@ class Library(Texts):
         if fact is not None:
             return self.ros_call(Invocation(qualified, BOTTOM, arguments, frame, call, fact))
         name = qualified.removeprefix("builtins.").removeprefix("collections.")
+        if name in FUNCTIONS and arguments[0]:
+            said = self.special(arguments[0][0], f"__{name}__", arguments[0][1:], frame, call.pos)
+            if said is not None:
+                return said
         special = BUILTIN.get(name)
         if special is not None:
             return special(self, Invocation(name, BOTTOM, arguments, frame, call))
@@ -69,11 +78,15 @@ class Library(Texts):
         """Pass the arguments on to the result; write the argument that the catalog says is written."""
         name = qualified.rpartition(".")[2]
         deps = self.all_used(arguments)
-        self.call_back(arguments, frame)
-        written = catalog.ARGUMENT_WRITERS.get(qualified)
+        self.call_back(arguments, frame, call)
+        written = catalog.written(qualified)
         if written is not None and written < len(arguments[0]):
             news = self.through_statement(Value(deps), frame, call)
             self.change(arguments[0][written], news, call.arguments[written:], frame)
+        for keyword, expr in call.keywords:
+            if keyword in catalog.WRITTEN_KEYWORDS and keyword in arguments[1]:
+                news = self.through_statement(Value(deps), frame, call, keyword)
+                self.change(arguments[1][keyword], news, [expr], frame)
         if catalog.scalar(qualified):
             same = qualified == "builtins.float" and len(arguments[0]) == 1
             return Value(deps, arguments[0][0].pts if same else frozenset())
@@ -87,6 +100,7 @@ class Library(Texts):
         where = pointer(obj)
         plain, named = arguments
         if fields:
+            obj.info = BY_CLASS
             rest = NONE
             for value in plain:
                 rest |= self.use(value)
@@ -100,15 +114,23 @@ class Library(Texts):
             self.store.put((obj, ANY), Value(deps))
         return where
 
-    def call_back(self, arguments: Arguments, frame: Frame) -> None:
-        """Functions handed to a library may be called by it at any time."""
-        for value in (*arguments[0], *arguments[1].values()):
-            for target in value.pts:
-                if target.kind in ("closure", "bound", "partial"):
-                    self.call_later(target, frame)
+    def call_back(self, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
+        """Functions handed to a library may be called by it at any time, with the arguments that follow them."""
+        plain, named = arguments
+        for number, value in enumerate(plain):
+            for target in in_order(value.pts):
+                if target.kind == "method":
+                    self.call_object(target, (plain[number + 1 :], {}), frame, call)
+                elif target.kind in LATER:
+                    passed = self.pass_arguments((plain[number + 1 :], {}), frame, call)[0]
+                    self.call_later(target, passed)
+        for value in named.values():
+            for target in in_order(value.pts):
+                if target.kind in LATER:
+                    self.call_later(target, ())
 
-    def call_later(self, target: Obj, frame: Frame) -> None:
-        """Have a function run on its own, with arguments of which nothing is known."""
+    def call_later(self, target: Obj, values: Sequence[Value]) -> None:
+        """Have a function run on its own; of other arguments than these nothing is known."""
         raise NotImplementedError
 
     # --- methods ------------------------------------------------------------------------------------------
@@ -118,6 +140,8 @@ class Library(Texts):
     ) -> Value:
         """Call a method of an object that is not a class of ours."""
         kind = target.kind if target is not None else ""
+        if name == "__new__" and kind in ("super", "class"):
+            return self._blank_object(Invocation(name, base, arguments, frame, call))
         if target is not None and isinstance(target.info, Publisher) and name == "publish":
             return self.send(Invocation(name, base, arguments, frame, call), target.info)
         if target is not None and kind in ("server", "goal"):
@@ -156,7 +180,7 @@ class Library(Texts):
     def _unknown_method(
         self, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
     ) -> Value:
-        self.call_back(arguments, frame)
+        self.call_back(arguments, frame, call)
         if name in TEXT_METHODS and not base.pts and base.consts:
             return Value(
                 self.use(base) | self.all_used(arguments), consts=self.text_of(base, name, arguments)
@@ -174,6 +198,21 @@ class Library(Texts):
         if not names:
             return self.generic(it.name, it.arguments, it.frame, it.call)
         return join_all([self.read(plain[0], n) for n in names] + plain[2:])
+
+    def _blank_object(self, it: Invocation) -> Value:
+        """Return what `object.__new__(cls)` gives."""
+        classes = [o for v in it.arguments[0][:1] for o in v.pts if o.kind == "class"]
+        return Value(pts=frozenset(self.blank_instance(c, it.frame, it.call) for c in classes))
+
+    def _weak(self, it: Invocation) -> Value:
+        """Return a weak reference: called, it gives what it refers to."""
+        obj = self.allocate("weak", it.frame, ("made", it.call.slot))
+        obj.info = it.arguments[0][0] if it.arguments[0] else UNKNOWN
+        return pointer(obj)
+
+    def _same(self, it: Invocation) -> Value:
+        """Return the first argument itself."""
+        return it.arguments[0][0] if it.arguments[0] else UNKNOWN
 
     def _set_attribute(self, it: Invocation) -> Value:
         plain = it.arguments[0]
@@ -230,6 +269,7 @@ class Library(Texts):
 
 BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(CONTAINERS, Library._new_container),
+    **dict.fromkeys(QUEUES, Library._new_queue),
     "dict": Library._new_mapping,
     "OrderedDict": Library._new_mapping,
     "defaultdict": Library._new_mapping,
@@ -239,6 +279,10 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "dataclasses.field": Library._field,
     "dataclasses.replace": Library._replaced,
     "copy.replace": Library._replaced,
+    **dict.fromkeys(("attr.evolve", "attrs.evolve"), Library._replaced),
+    "object.__new__": Library._blank_object,
+    **dict.fromkeys(("weakref.ref", "weakref.WeakMethod"), Library._weak),
+    **dict.fromkeys(("weakref.proxy", "vars", "typing.cast"), Library._same),
     "type": Library.type_of,
     **dict.fromkeys(("isinstance", "issubclass", "hasattr", "callable"), Library.of_type),
     "len": Library._counted,

@@ -76,14 +76,12 @@ class Linker(Execution):
 
     # --- roots --------------------------------------------------------------------------------------------
 
-    def add_root(self, root: Root, run: Callable[[Root], None]) -> None:
-        """Have something run on its own; seen again, its arguments may be news."""
-        known = self.roots.get(root.key)
-        if known is None:
-            self.roots[root.key] = (root, run)
+    def add_root(self, root: Root, run: Callable[[Root], None], *, news: bool = False) -> None:
+        """Have something run on its own; seen again, only if its arguments are news."""
+        root = self.roots.get(root.key, (root,))[0]
+        if news or root.key not in self.roots:
             self.pending[root] = None
-        else:
-            self.roots[root.key] = (known[0], run)
+        self.roots[root.key] = (root, run)
 
     def _settle(self) -> None:
         for _ in range(MAX_ROUNDS):

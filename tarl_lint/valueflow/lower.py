@@ -70,12 +70,8 @@ class Lowering(Expressions):
 
     def _augmented(self, node: ast.AugAssign, scope: Scope) -> list[ir.Stmt]:
         target = self.expr(node.target, scope)
-        operator = OPERATORS.get(type(node.op), "")
-        value = ir.Operation(
-            f"{operator}=" if operator in ("+", "|") else "",
-            [target, self.expr(node.value, scope)],
-            position(node),
-        )
+        operator = f"{OPERATORS[type(node.op)]}="
+        value = ir.Operation(operator, [target, self.expr(node.value, scope)], position(node))
         return [ir.Assign(scope.next(), position(node), [target], value, augmented=True)]
 
     def _evaluate(self, node: ast.Expr, scope: Scope) -> list[ir.Stmt]:

@@ -129,6 +129,7 @@ class Machine:
         self.guards: list[tuple[int, str]] = []  # decisions inside the expression that is being evaluated
         self.spent = 0  # statements executed in this run of a root
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
+        self.passed: dict[Hashable, list[Value]] = {}  # what each root is called with
         self.sources: dict[tuple[str, ir.Pos], SourceRecord] = {}
         self.sinks: dict[tuple[str, ir.Pos], SinkRecord] = {}
         self.called: set[tuple[str, int]] = set()  # functions that something calls: module, line
@@ -265,12 +266,20 @@ class Machine:
         """Let other roots run."""
         raise NotImplementedError
 
-    def add_root(self, root: Root, run: Callable[[Root], None]) -> None:
+    def add_root(self, root: Root, run: Callable[[Root], None], *, news: bool = False) -> None:
         """Have something run on its own."""
         raise NotImplementedError
 
     def assign_fallback(self, expr: ir.Expr, value: Value, frame: Frame) -> None:
         """Add data to the variable that holds an object of which nothing is known."""
+        raise NotImplementedError
+
+    def gate(self, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:
+        """Return the node of a decision which elements a new container gets."""
+        raise NotImplementedError
+
+    def truth(self, value: Value, frame: Frame, slot: Hashable) -> Nodes:
+        """Return the nodes that decide whether a value counts as true."""
         raise NotImplementedError
 
     def ros_call(self, it: Invocation) -> Value:

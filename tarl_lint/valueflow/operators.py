@@ -10,6 +10,7 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.combining import COMBINING, Combining
 from tarl_lint.valueflow.values import (
     BOTTOM,
+    BY_CLASS,
     NONE,
     Frame,
     Nodes,
@@ -39,6 +40,7 @@ CONTAINERS = frozenset(["sequence", "mapping"])
 CALLING = (ir.Call, ir.Choice, ir.Operation)  # parts in which calls may depend on those before
 OURS = frozenset(["instance", "sequence", "mapping"])  # whose type is in the files, whatever is in them
 MESSAGES = frozenset(["message", "goal"])
+THERE = frozenset([*MESSAGES, *OURS])  # never None themselves, whatever is in them
 MAX_TEXT = 300
 
 
@@ -49,6 +51,9 @@ class Operators(Combining):
         if expr.operator in ("or", "and"):
             return self.boolean(expr, frame)
         values = [self.evaluate(p, frame) for p in expr.parts]
+        said = self.operated(expr, values, frame)
+        if said is not None:
+            return said
         if expr.operator in ("+=", "|=") and values[0].pts:
             return self.grown(expr.operator, values)
         if expr.operator in COMBINING and any(v.pts for v in values):
@@ -67,7 +72,7 @@ class Operators(Combining):
         if name == "type":
             return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in OURS)))
         if name in ("is", "is not"):
-            return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in MESSAGES)))
+            return self.use(Value(value.deps, frozenset(o for o in value.pts if not _there(o))))
         return self.truth(value, frame, slot) if name == "not" else self.use(value)
 
     def truth(self, value: Value, frame: Frame, slot: Hashable) -> Nodes:
@@ -77,6 +82,9 @@ class Operators(Combining):
         """
         if not value.pts:
             return value.deps
+        said = self.special(value, "__bool__", (), frame, frame.function.pos)
+        if said is not None:
+            return self.use(said)
         ours = frozenset(o for o in value.pts if o.kind in CONTAINERS)
         kept = frozenset(o for o in value.pts if o.kind not in CONTAINERS and not self._always_true(o))
         deps = self.use(Value(value.deps, kept)) | self.length(Value(pts=ours))
@@ -89,7 +97,7 @@ class Operators(Combining):
     def _always_true(self, obj: Obj) -> bool:
         if obj.kind == "instance":
             return not any(self.read_field(obj, name).pts for name in ("__bool__", "__len__"))
-        return obj.kind in MESSAGES and obj.parent is None
+        return obj.info is BY_CLASS or (obj.kind in MESSAGES and obj.parent is None)
 
     def boolean(self, expr: ir.Operation, frame: Frame) -> Value:
         """Return what `a or b` may be: one of them, decided by the former, on which the rest depends."""
@@ -150,3 +158,8 @@ class Operators(Combining):
             if len(texts) > 4 or len(texts[0]) > MAX_TEXT:
                 return None
         return frozenset(texts)
+
+
+def _there(obj: Obj) -> bool:
+    """Tell whether an object is never None itself, whatever is in it: one that a class made."""
+    return obj.kind in THERE or obj.info is BY_CLASS

@@ -12,6 +12,7 @@ from tarl_lint.valueflow.heap import ANY, KEYS, item_field
 from tarl_lint.valueflow.machine import Arguments, Invocation
 from tarl_lint.valueflow.values import (
     BOTTOM,
+    BY_CLASS,
     UNKNOWN,
     ClassInfo,
     Frame,
@@ -140,7 +141,10 @@ class Records(Containers):
             obj.info = classes.pop()
             return obj
         kinds = {o.kind for o in value.pts} & {"sequence", "mapping"}
-        return self.allocate(kinds.pop() if kinds else "lib", frame, slot)
+        obj = self.allocate(kinds.pop() if kinds else "lib", frame, slot)
+        if all(o.info is BY_CLASS for o in value.pts):
+            obj.info = BY_CLASS
+        return obj
 
     def deep_copy(self, value: Value, frame: Frame, slot: Hashable, depth: int = 0) -> Value:
         """Return a copy whose inner objects are copies too."""
@@ -164,14 +168,14 @@ class Records(Containers):
                 self.weaken(obj, KEYS, Value(self.use(value)))
                 self.add_element(pointer(obj), Value(self.use(value)))
             elif value.pts:
-                self._entries(obj, value)
+                self.entries(obj, value)
         for key, value in named.items():
             self.store.put((obj, item_field(key)), value)
         if factory is not None:
             obj.info = factory
         return pointer(obj)
 
-    def _entries(self, obj: Obj, value: Value) -> None:
+    def entries(self, obj: Obj, value: Value) -> None:
         """Take over the entries of a mapping, or of a sequence of pairs."""
         for source in value.pts:
             if source.kind != "sequence":

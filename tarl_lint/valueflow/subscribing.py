@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
+from itertools import zip_longest
 from typing import Final
 
 from tarl_lint import catalog
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE, ROOT_CALL
+from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.graph import Place
+from tarl_lint.valueflow.library import LATER
 from tarl_lint.valueflow.machine import Invocation, Kind, Publisher, SourceRecord
 from tarl_lint.valueflow.publishing import Sinks, type_names
 from tarl_lint.valueflow.store import Root
@@ -55,7 +58,24 @@ class Sources(Sinks):
         extra = it.argument(it.fact.extra)
         passed = [extra] if extra is not BOTTOM else []
         self.connect(record, callback, passed)
+        self._forward(record, callback, it)
         return self.handle(it.frame, it.call)
+
+    def _forward(self, record: SourceRecord, callback: Value, it: Invocation) -> None:
+        """Where the callback is a method of no class of ours, as `other.publish`, call it where it is registered."""
+        for target in in_order(callback.pts):
+            if target.kind == "method":
+                obj = self._received(record, it.frame, ("forward", it.call.slot, target.key))
+                self.call_object(target, ([pointer(obj)], {}), it.frame, it.call)
+
+    def _received(self, record: SourceRecord, frame: Frame, slot: Hashable) -> Obj:
+        """Return the message object that arrives at a frame's current statement."""
+        obj = record.messages.get((frame.id, slot))
+        if obj is None:
+            obj = record.messages[frame.id, slot] = Obj("message", (record.path, record.pos, frame.id, slot))
+            obj.info = self.node(frame, ("receive", slot), "receive")
+            record.nodes.add(obj.info)
+        return obj
 
     def _configured_source(self, it: Invocation) -> Value:
         """Subscribe when one of the arguments is a function, else return the message."""
@@ -73,7 +93,7 @@ class Sources(Sinks):
     def connect(self, record: SourceRecord, callback: Value, extra: Sequence[Value]) -> None:
         """Run a callback whenever a message of the source arrives."""
         for target in callback.pts:
-            if target.kind in CALLABLE or target.kind == "instance":
+            if (target.kind in CALLABLE and target.kind != "method") or target.kind == "instance":
                 message = self.message(record, target)
                 self.call_when(
                     ("callback", record.path, record.pos), target, [pointer(message), *extra], "callback"
@@ -112,14 +132,7 @@ class Sources(Sinks):
 
     def receive(self, it: Invocation) -> Value:
         """Return the message that a waiting call gives."""
-        record = self.source(it, BOTTOM)
-        key = (it.frame.id, it.call.slot)
-        obj = record.messages.get(key)
-        if obj is None:
-            obj = record.messages[key] = Obj("message", (record.path, record.pos, key))
-            node = self.node(it.frame, ("receive", it.call.slot), "receive")
-            obj.info = node
-            record.nodes.add(node)
+        obj = self._received(self.source(it, BOTTOM), it.frame, it.call.slot)
         self._clear(obj)
         return pointer(obj)
 
@@ -187,6 +200,10 @@ class Sources(Sinks):
     ) -> None:
         """Run a function on its own with these arguments; `answer` takes what it returns."""
         root = Root((key, target.kind, target.key), kind, target.name, once=kind == "thread")
+        before = self.passed.get(root.key, [])
+        values = [join(a, b) for a, b in zip_longest(before, values, fillvalue=BOTTOM)]
+        news = bool(before) and values != before
+        self.passed[root.key] = values
 
         def run(root: Root) -> None:
             frame = self.root_frame(root)
@@ -199,15 +216,15 @@ class Sources(Sinks):
                 self.store.put((obj, name), value)
             self.call_object(target, (list(values), dict(named)), frame, ROOT_CALL)
 
-        self.add_root(root, run)
+        self.add_root(root, run, news=news)
 
     def root_frame(self, root: Root) -> Frame:
         """Return the frame that stands for ROS itself, calling."""
         raise NotImplementedError
 
-    def call_later(self, target: Obj, frame: Frame) -> None:  # noqa: ARG002
-        """Have a function run on its own, with arguments of which nothing is known."""
-        self.call_when("later", target, [], "callback")
+    def call_later(self, target: Obj, values: Sequence[Value]) -> None:
+        """Have a function run on its own; of other arguments than these nothing is known."""
+        self.call_when("later", target, values, "callback")
 
 
 def _supplied(frame: Frame, callback: Value) -> bool:
@@ -219,10 +236,10 @@ def _supplied(frame: Frame, callback: Value) -> bool:
 
 
 def _wrapped(target: Obj, frame: Frame) -> set[Obj]:
-    """Return the functions that were given to the helper, called from here, which made a callback around them."""
+    """Return the functions that a helper, this one or one called from here, was given to make a callback around."""
     if target.kind == "partial" and isinstance(target.info, tuple):
         return {o for o in target.info[0].pts if o.kind in CALLABLE}
     maker = target.info[1] if target.kind == "closure" and isinstance(target.info, tuple) else None
-    if not isinstance(maker, Frame) or maker.caller is not frame:
+    if not isinstance(maker, Frame) or frame not in (maker, maker.caller):
         return set()
-    return {o for value in maker.arguments for o in value.pts if o.kind in CALLABLE}
+    return {o for value in maker.arguments for o in value.pts if o.kind in LATER}

@@ -17,6 +17,9 @@ class Taking(Ros):
 
     def parts(self, value: Value, count: int, starred: int | None, frame: Frame, slot: str) -> list[Value]:
         """Return what each of several targets gets; the starred one gets a sequence."""
+        if any(o.kind == "instance" and self._iterator(o) is not BOTTOM for o in value.pts):
+            given = self.iterated(value, ir.Const(None, frame.function.pos), frame)
+            value = self.listed_parts(given, frame, slot)
         if starred is None:
             return [self.read_item(value, const(n)) for n in range(count)]
         rest = self.allocate("sequence", frame, ("rest", slot))
@@ -31,6 +34,12 @@ class Taking(Ros):
         for number, part in enumerate(known[starred:end]):
             self.store.put((rest, item_field(number)), part)
         return [*known[:starred], pointer(rest), *known[end:]]
+
+    def listed_parts(self, element: Value, frame: Frame, slot: str) -> Value:
+        """Return a sequence of what an object of ours gives when it is taken apart."""
+        obj = self.allocate("sequence", frame, ("parts", slot))
+        self.add_element(pointer(obj), element)
+        return pointer(obj, element.deps)
 
     def iterated(self, source: Value, expr: ir.Expr, frame: Frame) -> Value:
         """Return what a loop over a value gives; objects of ours are asked for it."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import count
+from typing import Final
 
 from tarl_lint.valueflow import ir
 
@@ -13,6 +14,7 @@ Consts = frozenset[object] | None  # None: anything
 Branches = frozenset[tuple[int, str]]
 
 NONE: Nodes = frozenset()
+BY_CLASS: Final = "by its class"  # `info` of a library's object that a class made: a message, mostly
 PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enum.Enum", "enum.IntEnum"])
 NUMBERS = count()  # of objects in the order in which they are made
 MAX_CONSTS = 4

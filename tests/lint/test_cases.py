@@ -1,7 +1,8 @@
 """Every marked file in tests/cases gives the flows that its comments say, and no others.
 
 `# source a` stands at a subscription (or the call that supplies its callback), `# sink a ~b` at a publish call that
-a reaches explicitly and b implicitly, `# clean` at one that nothing reaches.
+a reaches explicitly and b implicitly, `# clean` at one that nothing reaches. In files with `# step a ~b` these
+lines, and those alone, carry a's data to the sinks, and these lines of b decide.
 """
 
 import re
@@ -14,6 +15,7 @@ from tarl_lint.api import analyse
 
 CASES = Path(__file__).parent.parent / "cases"
 MARK = re.compile(r"# (source|sink|clean)((?: ~?\w+)*)")
+STEP = re.compile(r"# step((?: ~?\w+)+)")
 PLAIN = frozenset(["callbacks.py"])  # has no clean line
 
 
@@ -28,6 +30,7 @@ def units(directory: Path) -> Iterator[Path]:
 
 
 UNITS = list(units(CASES))
+STEPPED = [unit for unit in UNITS if unit.is_file() and "# step" in unit.read_text()]
 
 
 def marks(
@@ -64,3 +67,24 @@ def test_the_marked_flows_are_found_and_no_others(unit):
         found.add((source, Path(flow.sink.span.path).name, flow.sink.span.line, flow.kind))
     missing, surplus = sorted(wanted - found), sorted(found - wanted)
     assert (missing, surplus) == ([], [])
+
+
+@pytest.mark.parametrize("unit", STEPPED, ids=lambda p: p.relative_to(CASES).with_suffix("").as_posix())
+def test_the_marked_steps_are_found_and_no_other_data_steps(unit):
+    sources, _, _ = marks(unit)
+    marked = {
+        (name, number)
+        for number, line in enumerate(unit.read_text().splitlines(), 1)
+        for names in STEP.findall(line)
+        for name in names.split()
+    }
+    found: dict[str, set[tuple[str, int]]] = {"data": set(), "control": set(), "context": set()}
+    for flow in analyse([unit]).flows:
+        source = sources[unit.name, flow.source.span.line]
+        inner = (s for s in flow.steps if s.role not in ("publish", "receive"))
+        for step in inner:
+            found[step.dependence].add((source, step.span.line))
+    data = {(name, line) for name, line in marked if not name.startswith("~")}
+    deciding = {(name[1:], line) for name, line in marked if name.startswith("~")}
+    assert found["data"] == data
+    assert deciding <= found["control"]
