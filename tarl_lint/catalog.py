@@ -202,6 +202,20 @@ ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
     **dict.fromkeys(("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"), 0),
     **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), 0),
 }  # fmt: skip
+MAY_BE_NONE: Final = frozenset(
+    [
+        "get",
+        "match",
+        "search",
+        "fullmatch",
+        "find",
+        "imread",
+        "HoughLines",
+        "HoughLinesP",
+        "HoughCircles",
+        "getenv",
+    ]
+)  # functions of libraries that give None where they find nothing
 WRITTEN_KEYWORDS: Final = frozenset(["out", "dst"])  # arguments that numpy and cv2 put their result into
 
 NODE_BASES: Final = frozenset(

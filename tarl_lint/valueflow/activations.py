@@ -88,6 +88,7 @@ class Activations(Evaluation):
         result = self.run(frame)
         self.stack.pop()
         self.guards = guards
+        self.note_result(call, [v for _, v in frame.returns])
         if frame.escapes:
             self.escaped(frame, caller)
         self.store.cut(depth)

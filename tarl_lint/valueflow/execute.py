@@ -68,6 +68,7 @@ class Execution(Branches):
             return
         if isinstance(target, ir.Starred):
             target = target.value
+        self.note_absence(target, source, value, frame)
         node = self.node(frame, ("target", slot), "assign")
         self.mark(node, source, value, frame)
         self.assign(target, self.carry(value, node), frame)

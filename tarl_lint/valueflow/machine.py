@@ -15,7 +15,7 @@ from tarl_lint.valueflow.control import Branch, Control, control_dependence
 from tarl_lint.valueflow.graph import Graph, Place
 from tarl_lint.valueflow.lower import lower_body
 from tarl_lint.valueflow.store import Root, Shared, Store
-from tarl_lint.valueflow.values import BOTTOM, NONE, Branches, Frame, Nodes, Obj, Value
+from tarl_lint.valueflow.values import BOTTOM, NONE, Branches, Frame, Key, Nodes, Obj, Value
 
 Kind = Literal["topic", "service", "action", "transform"]
 
@@ -124,6 +124,9 @@ class Machine:
         self.frame_numbers: dict[Hashable, int] = {}
         self.stack: list[Frame] = []
         self.delivered: frozenset[Obj] = frozenset()  # messages that ROS hands over in this run
+        self.vacant: set[Key] = set()  # variables and fields that None is stored in
+        self.optional: set[Key] = set()  # those that get what may be None or not
+        self.doubtful: set[ir.Call] = set()  # calls that give such
         self.patient = True  # what is not known yet may be stored by a root that runs later
         self.waiting: dict[Root, None] = {}  # roots that met such a thing
         self.guards: list[tuple[int, str]] = []  # decisions inside the expression that is being evaluated
@@ -272,6 +275,14 @@ class Machine:
 
     def assign_fallback(self, expr: ir.Expr, value: Value, frame: Frame) -> None:
         """Add data to the variable that holds an object of which nothing is known."""
+        raise NotImplementedError
+
+    def holder(self, expr: ir.Name, frame: Frame) -> Obj:
+        """Return the object that holds a variable: an activation, a class being made, a module."""
+        raise NotImplementedError
+
+    def note_result(self, call: ir.Call, returned: list[Value]) -> None:
+        """Remember a call of a function that gives None beside other things."""
         raise NotImplementedError
 
     def gate(self, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:

@@ -7,7 +7,8 @@ from collections.abc import Callable, Hashable, Mapping
 from typing import Any
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.combining import COMBINING, Combining
+from tarl_lint.valueflow.combining import COMBINING
+from tarl_lint.valueflow.presence import Presence
 from tarl_lint.valueflow.values import (
     BOTTOM,
     BY_CLASS,
@@ -36,6 +37,7 @@ FOLDED: Mapping[str, Callable[..., object]] = {
     ">": operator.gt,
     ">=": operator.ge,
 }
+PRESENT = frozenset(["is", "is not", "==", "!="])  # operators that may ask whether a value is None
 CONTAINERS = frozenset(["sequence", "mapping"])
 CALLING = (ir.Call, ir.Choice, ir.Operation)  # parts in which calls may depend on those before
 OURS = frozenset(["instance", "sequence", "mapping"])  # whose type is in the files, whatever is in them
@@ -44,7 +46,7 @@ THERE = frozenset([*MESSAGES, *OURS])  # never None themselves, whatever is in t
 MAX_TEXT = 300
 
 
-class Operators(Combining):
+class Operators(Presence):
     """Evaluates operators."""
 
     def _operation(self, expr: ir.Operation, frame: Frame) -> Value:
@@ -60,6 +62,10 @@ class Operators(Combining):
             made = self.combined(expr, values, frame)
             if made is not None:
                 return made
+        if expr.operator in PRESENT and self.only_presence(expr, frame):
+            there = self.node(frame, ("there", expr.pos), "condition")
+            self.graph.choice(values[0].deps, there)
+            return Value(frozenset([there]), consts=self.fold(expr.operator, values))
         deps = NONE
         for number, value in enumerate(values):
             deps |= self.tested(expr.operator, value, frame, (expr.pos, number))
