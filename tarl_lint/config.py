@@ -53,6 +53,7 @@ class Config:
     `per_file_ignores` holds such patterns with the codes that are not wanted in the files they match.
     `sources`, `sinks` and `sanitizers` are qualified names (`robot.bus.listen`); what a sanitizer returns is clean.
     `wrappers` are functions that subscribe, publish or wait as one of ROS does.
+    `remaps` are pairs of topics: as the code names them, and as they are called when launched.
     With `tf2`, what is looked up in the tree of transforms is a source too.
     `origins` names where each value comes from: "default", "command line" or the settings file.
     """
@@ -67,6 +68,7 @@ class Config:
     sinks: tuple[str, ...] = ()
     sanitizers: tuple[str, ...] = ()
     wrappers: tuple[Wrapper, ...] = ()
+    remaps: tuple[tuple[str, str], ...] = ()
     tf2: bool = False
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] = ()
     file: Path | None = None
@@ -77,6 +79,11 @@ class Config:
         """Return the qualified names of the functions that the settings speak of."""
         wrappers = (wrapper.name for wrapper in self.wrappers)
         return frozenset((*self.sources, *self.sinks, *self.sanitizers, *wrappers))
+
+    @cached_property
+    def launched(self) -> dict[str, str]:
+        """Return the names of topics when launched, by their names in the code without leading slash."""
+        return {old.lstrip("/"): new for old, new in self.remaps}
 
     def enabled(self, code: str) -> bool:
         """Tell whether findings of a rule are wanted."""
@@ -111,6 +118,8 @@ def resolve(options: Options) -> Config:
         sinks=choose("sinks", None, ()),
         sanitizers=choose("sanitizers", None, ()),
         wrappers=choose("wrappers", None, ()),
+        remaps=choose("remaps", None, ()),
+        tf2=choose("tf2", None, False),
         per_file_ignores=choose("per-file-ignores", options.per_file_ignores, ()),
         file=file,
         origins=tuple(origins.items()),

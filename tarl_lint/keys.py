@@ -73,6 +73,15 @@ def _wrapper(name: str, spec: Any) -> Wrapper | None:
     return Wrapper(name, spec["like"], **places) if all(map(_place, places.values())) else None
 
 
+def _remaps(value: Any) -> tuple[tuple[str, str], ...] | None:
+    good = isinstance(value, dict) and all(_text(old) and _text(new) for old, new in value.items())
+    return tuple(value.items()) if good else None
+
+
+def _switch(value: Any) -> bool | None:
+    return value if isinstance(value, bool) else None
+
+
 def _place(value: Any) -> bool:
     """Tell whether a value says where an argument stands: its position from 0 or its keyword."""
     return (type(value) is int and value >= 0) or (isinstance(value, str) and value.isidentifier())
@@ -102,5 +111,7 @@ KEYS: Final[Mapping[str, tuple[Callable[[Any], Any], str]]] = {
         _wrappers,
         'a table such as {"bus.listen" = "rospy.Subscriber", "bus.talk" = {like = "rospy.Publisher", topic = 1}}',
     ),
+    "remaps": (_remaps, 'a table of topics as written and as they are, such as {"scan" = "/front/scan"}'),
+    "tf2": (_switch, "true or false"),
     "fail-on": (_fail_on, f"one of {', '.join(map(repr, FAIL_ON))}"),
 }

@@ -33,6 +33,8 @@ def _values(config: Config) -> Mapping[str, Any]:
         "sinks": list(config.sinks),
         "sanitizers": list(config.sanitizers),
         "wrappers": {wrapper.name: _wrapper(wrapper) for wrapper in config.wrappers},
+        "remaps": dict(config.remaps),
+        "tf2": config.tf2,
         "fail-on": config.fail_on,
     }
 

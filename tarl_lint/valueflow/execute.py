@@ -168,6 +168,8 @@ class Execution(Branches):
         if s.value is not None:
             value = self.evaluate(s.value, frame)
             frame.statement = s
+            if any(o.kind == "class" for o in value.pts):
+                value = self.call_value(value, ([], {}), frame, ir.Call(s.value, (), (), s.pos, -1))
             whole = Value(self.use(value), value.pts)  # what is inside is forgotten with the function's state
             value = self.carry(whole, self.node(frame, ("raise",), "call"))
         if frame.tries:

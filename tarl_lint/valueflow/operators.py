@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 import operator
 from collections.abc import Callable, Hashable, Mapping
-from typing import Any
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.combining import COMBINING
@@ -12,6 +13,7 @@ from tarl_lint.valueflow.presence import Presence
 from tarl_lint.valueflow.values import (
     BOTTOM,
     BY_CLASS,
+    MAX_CONSTS,
     NONE,
     Frame,
     Nodes,
@@ -143,17 +145,14 @@ class Operators(Presence):
         function = FOLDED.get(name)
         if function is None or any(v.pts for v in values):
             return None if any(v.pts or v.consts is None for v in values) or function is None else frozenset()
-        constants: list[Any] = []
-        for value in values:
-            known, constant = value.constant()
-            if not known:
-                return None
-            constants.append(constant)
-        try:
-            result = function(*constants)
-        except Exception:
+        known = [sorted(v.consts, key=str) for v in values if v.consts]
+        if len(known) < len(values) or math.prod(map(len, known)) > MAX_CONSTS:
             return None
-        return None if isinstance(result, (str, bytes)) and len(result) > MAX_TEXT else frozenset([result])
+        try:
+            results = frozenset(function(*constants) for constants in itertools.product(*known))
+        except Exception:  # whatever the program itself would fail with
+            return None
+        return None if any(isinstance(r, (str, bytes)) and len(r) > MAX_TEXT for r in results) else results
 
     def _fold_text(self, values: list[Value]) -> frozenset[object] | None:
         texts = [""]

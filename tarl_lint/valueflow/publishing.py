@@ -18,9 +18,14 @@ class Sinks(Library):
         if not isinstance(info, Publisher):
             info = Publisher(api=it.fact.api, path=it.frame.program.path, pos=it.call.pos)
         obj.info = info
-        info.topics.update(it.argument(it.fact.topic).texts())
+        info.topics.update(self.topics(it))
         info.types.update(type_names(it.argument(it.fact.type)))
         return pointer(obj)
+
+    def topics(self, it: Invocation) -> list[str]:
+        """Return the names that a registration's topic may have, as they are when launched."""
+        names = self.config.launched
+        return [names.get(text.lstrip("/"), text) for text in it.argument(it.fact.topic).texts()]
 
     def send(self, it: Invocation, info: Publisher) -> Value:
         """Record a sink: everything inside the message reaches it, and whether it is reached at all."""

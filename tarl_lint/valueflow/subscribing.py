@@ -43,7 +43,7 @@ class Sources(Sinks):
             record.kind = KINDS.get(it.fact.kind, "topic")
             self.sources[key] = record
         record.via.update(via)
-        record.topics.update(it.argument(it.fact.topic).texts())
+        record.topics.update(self.topics(it))
         record.types.update(type_names(it.argument(it.fact.type)))
         return record
 

@@ -138,6 +138,12 @@ def test_functions_of_the_project_are_named_in_full(in_directory):
     assert config.named == {"bus.listen", "robot.bus.Bus.send"}
 
 
+def test_topics_are_renamed_as_they_are_launched(in_directory):
+    config = settings(in_directory, 'tf2 = true\nremaps = {"/scan" = "/front/scan"}')
+    assert config.tf2
+    assert config.launched == {"scan": "/front/scan"}
+
+
 def test_wrappers_say_what_they_are_like_and_where_arguments_stand(in_directory):
     config = settings(
         in_directory,
@@ -163,6 +169,8 @@ def test_per_file_ignores_are_patterns_with_codes(in_directory):
         ('sources = ["listen"]', r"'sources' .* must be a list of qualified names .* not \['listen'\]"),
         ('sinks = "bus.send"', r"'sinks' .* must be a list of qualified names"),
         ('sanitizers = ["bus.send()"]', r"'sanitizers' .* must be a list of qualified names"),
+        ('remaps = ["scan"]', r"'remaps' .* must be a table of topics"),
+        ('tf2 = "yes"', r"'tf2' .* must be true or false, not 'yes'"),
         ('wrappers = ["bus.listen"]', r"'wrappers' .* must be a table"),
         ('wrappers = {"listen" = "rospy.Subscriber"}', r"'wrappers' .* must be a table"),
         ('wrappers = {"bus.listen" = {topic = 1}}', r"'wrappers' .* must be a table"),

@@ -28,10 +28,13 @@ pub = rospy.Publisher("out", Float64, queue_size=1)
 """
 
 
-def topics(statement):
+DEFAULT = Config()
+
+
+def topics(statement, config=DEFAULT):
     module = parse("node.py", (NODE + statement + "\n").encode(), "node")
     assert isinstance(module, Module)
-    return [flow.source.topics for flow in engine.analyse([module], Config())]
+    return [flow.source.topics for flow in engine.analyse([module], config)]
 
 
 @pytest.mark.parametrize(
@@ -63,3 +66,12 @@ def test_a_helper_passes_its_topic_on():
 
 def test_a_loop_subscribes_to_all_its_topics():
     assert topics("for name in NAMES:\n    rospy.Subscriber(name, Float64, on_value)") == [("left", "right")]
+
+
+def test_topics_are_called_what_they_are_remapped_to():
+    config = Config(remaps=(("/in", "/front/in"), ("other", "never")))
+    assert topics('subscribe("in", on_value)', config) == [("/front/in",)]
+
+
+def test_every_name_that_a_loop_gives_is_known():
+    assert topics('for side in NAMES:\n    subscribe(side + "/in", on_value)') == [("left/in", "right/in")]
