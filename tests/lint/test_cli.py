@@ -262,7 +262,8 @@ def test_per_file_ignores_that_cannot_be_meant_are_refused(node, capsys, value, 
 
 def test_shown_settings_read_back_as_the_same_settings(node, capsys):
     text = (
-        '[tool.tarl-lint]\nsinks = ["bus.send"]\ntf2 = true\nremaps = {"scan" = "/front/scan"}\nper-file-ignores = {"tests/" = ["TARL1"]}\n'
+        '[tool.tarl-lint]\nsinks = ["bus.send"]\ntf2 = true\nremaps = {"scan" = "/front/scan"}\n'
+        'per-file-ignores = {"tests/" = ["TARL1"]}\n'
         '[tool.tarl-lint.wrappers]\n"bus.listen" = "rospy.Subscriber"\n'
         '"bus.talk" = {like = "rospy.Publisher", topic = 1}\n'
     )
