@@ -11,9 +11,10 @@ from pytest_tarl import seeds
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.learning import localize
-from pytest_tarl.learning.drift import compare, paper_region, permuted_loss
+from pytest_tarl.learning.drift import compare, paper_region
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.merging import aligned
+from pytest_tarl.learning.permutation import permuted_loss
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.utility import batch
 from pytest_tarl.model import Comparison, ListComparison, Region, SitePlace, TaintList, Verdict

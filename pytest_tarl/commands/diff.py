@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from pytest_tarl.learning.drift import permuted_loss
 from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.permutation import permuted_loss
 from pytest_tarl.model import SitePlace
 from pytest_tarl.seeds import generator
 

@@ -7,13 +7,12 @@ import numpy as np
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning.drift import (
     compare,
-    max_statistic,
     outstanding,
     paper_region,
-    permuted_loss,
     smallest_detectable_loss,
 )
 from pytest_tarl.learning.merging import merge
+from pytest_tarl.learning.permutation import max_statistic, permuted_loss
 from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.seeds import generator

@@ -1,0 +1,147 @@
+"""How far the verdict can be believed: false alarms, power, and what the region holds, over many repetitions.
+
+    python benchmarks/gate.py [--repetitions 500] [--worlds track lane …]
+
+Eight small worlds and the two examples. For each one, and each way in which a sensor can show the drift, a pool of
+missions is made at every size of the drift; then off-line and on-line recordings are drawn from the pools over and over
+and compared. Beside the gate stand a two-sample Kolmogorov-Smirnov test on total reward, and a threshold of 10 %.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from itertools import product
+from statistics import fmean
+
+import numpy as np
+from gate_examples import EXAMPLES, recorded
+from gate_pools import MODES, Mode, Pool, drawn, simulated
+from gate_worlds import WORLDS
+from scipy.stats import ks_2samp
+
+from pytest_tarl import seeds
+from pytest_tarl.learning.drift import compare
+from pytest_tarl.learning.tables import Sample
+from pytest_tarl.sensors import Cell
+
+ALPHA = 0.05
+SIZES = (0.0, 0.1, 0.2, 0.5, 1.0)
+OFFLINE, ONLINE = 200, 40
+POOLED = {True: 3000, False: 1500}  # missions in the pool: as designed, drifting
+POOLED_EXAMPLE = {True: 1000, False: 300}
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What one comparison said, and what its rivals said of the same two recordings."""
+
+    degraded: bool
+    drift: bool
+    kolmogorov: bool
+    threshold: bool
+    held: float  # share of the changed cells that were visited on-line and lie in the region
+    others: int  # cells of the region that the drift leaves alone
+
+
+@dataclass(frozen=True)
+class Row:
+    """One world, one way to show its drift, one size of it: all repetitions."""
+
+    world: str
+    mode: str
+    size: float
+    seen: tuple[Seen, ...]
+
+    def share(self, what: str) -> float:
+        """Return how often something was said."""
+        return fmean(getattr(one, what) for one in self.seen)
+
+
+def pools(world: str, mode: Mode) -> dict[float, Pool]:
+    """Return a pool for every size of the drift."""
+    if world in WORLDS:
+        return {size: simulated(world, mode, size, POOLED[size == 0.0]) for size in SIZES}
+    return {size: recorded(world, size, POOLED_EXAMPLE[size == 0.0]) for size in SIZES}
+
+
+def rows(world: str, mode: Mode, repetitions: int) -> list[Row]:
+    """Compare over and over, at every size of the drift."""
+    pool = pools(world, mode)
+    designed = pool[0.0].sample
+    found = []
+    for size, there in pool.items():
+        judged = []
+        for repetition in range(repetitions):
+            draws = seeds.generator(repetition, f"{world}/{mode}/{size}")
+            order = draws.permutation(designed.episodes)
+            # Without drift both recordings come from one pool, and share no mission.
+            chosen = order[-ONLINE:] if size == 0.0 else draws.permutation(there.sample.episodes)[:ONLINE]
+            recordings = drawn(designed, order[:OFFLINE]), drawn(there.sample, chosen)
+            judged.append(_judged(*recordings, there.changed, draws))
+        found.append(Row(world, mode, size, tuple(judged)))
+    return found
+
+
+def _judged(before: Sample, after: Sample, changed: frozenset[Cell], draws: np.random.Generator) -> Seen:
+    found = compare(before, after, alpha=ALPHA, tolerance=None, generator=draws)
+    region = {*found.region.cells, *found.region.novel}
+    visited = changed & {after.cells[i] for i in np.unique(after.chain.cell).tolist()}
+    loss = before.total.mean() - after.total.mean()
+    return Seen(
+        degraded=found.verdict.result == "degraded",
+        drift=found.verdict.p_drift < ALPHA,
+        kolmogorov=bool(ks_2samp(before.total, after.total).pvalue < ALPHA),
+        threshold=bool(loss > 0.1 * abs(before.total.mean())),
+        held=len(region & visited) / len(visited) if visited else 0.0,
+        others=len(region - changed),
+    )
+
+
+def table(found: Iterable[Row]) -> str:
+    """Return all rows as a Markdown table; shares in percent."""
+    lines = [
+        "| world | the drift's sensor | size | degraded | p_drift | KS | 10 % | changed cells held | others |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    for row in found:
+        region = (f"{row.share('held'):.0%}", f"{row.share('others'):.1f}") if row.size else ("", "")
+        said = [f"{row.share(what):.1%}" for what in ("degraded", "drift", "kolmogorov", "threshold")]
+        lines.append(f"| {row.world} | {row.mode} | {row.size:g} | {' | '.join((*said, *region))} |")
+    return "\n".join(lines)
+
+
+def summary(found: Sequence[Row]) -> str:
+    """Return the mean over worlds by mode and size."""
+    lines = ["| the drift's sensor | size | degraded | p_drift | KS | 10 % |", "|---|---|---|---|---|---|"]
+    for mode, size in dict.fromkeys((row.mode, row.size) for row in found):
+        alike = [row for row in found if (row.mode, row.size) == (mode, size)]
+        said = [
+            f"{fmean(row.share(what) for row in alike):.1%}"
+            for what in ("degraded", "drift", "kolmogorov", "threshold")
+        ]
+        lines.append(f"| {mode} | {size:g} | {' | '.join(said)} |")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """Compare in every world, two processes side by side."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("--repetitions", type=int, default=500)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--worlds", nargs="+", default=[*WORLDS, *EXAMPLES], choices=[*WORLDS, *EXAMPLES])
+    arguments = parser.parse_args()
+    asked = [
+        *product([name for name in arguments.worlds if name in WORLDS], MODES),
+        *((name, EXAMPLES[name].mode) for name in arguments.worlds if name in EXAMPLES),
+    ]
+    with ProcessPoolExecutor(arguments.workers) as processes:
+        jobs = [processes.submit(rows, *one, arguments.repetitions) for one in asked]
+        found = [row for job in jobs for row in job.result()]
+    print(table(found), "", summary(found), sep="\n")
+
+
+if __name__ == "__main__":
+    main()

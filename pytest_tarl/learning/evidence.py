@@ -1,0 +1,77 @@
+"""The columns in which two worlds are compared: what an episode's residuals sum to, in every cell and over many."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.learning.residuals import fitted, in_fit, residuals
+from pytest_tarl.learning.tables import Floats, Ints, Sample
+from pytest_tarl.sensors import Cell
+
+NOVEL_VISITS = 3  # a cell unknown to the fit counts as novel from so many visits,
+NOVEL_EPISODES = 2  # in so many episodes
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Columns in which the worlds are compared, shape (episodes, columns): on-line episodes first.
+
+    A drift may be strong in a few cells or weak in many. So beside the cells stand slabs, the sums over all cells
+    that share a bin of one sensor, and the episodes' totals.
+    """
+
+    move: Floats  # per cell, like the next two
+    reward: Floats
+    novel: Floats
+    slabs: tuple[Ints, ...]  # the cells of each slab
+    totals: Floats
+
+    def columns(self) -> tuple[Floats, ...]:
+        """Return the blocks of columns: cells three times, slabs by move and by reward, totals."""
+        slabs = [_summed(part, self.slabs) for part in (self.move, self.reward)]
+        return (self.move, self.reward, self.novel, *slabs, self.totals)
+
+    def covered(self, significant: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return the cells that lie in one of the chosen slabs, shape (cells,)."""
+        chosen = np.zeros(self.move.shape[1], dtype=bool)
+        for slab in np.flatnonzero(significant).tolist():
+            chosen[self.slabs[slab]] = True
+        return chosen
+
+
+def gathered(offline: Sample, online: Sample) -> Evidence:
+    """Fit on the one half of the off-line episodes, hold the other half against the on-line ones."""
+    fit = np.array([in_fit(seed) for seed in offline.seeds])
+    rows = fit[offline.chain.episode]
+    known = type(offline.chain)(*(column[rows] for column in vars(offline.chain).values()))
+    model = fitted(known, len(offline.cells))
+    held_out, deployed = residuals(offline, model), residuals(online, model)
+    move, reward, novel = (
+        np.concatenate((getattr(deployed, part), getattr(held_out, part)[~fit]))
+        for part in ("move", "reward", "novel")
+    )
+    visited = ((novel > 0).sum(axis=0) >= NOVEL_EPISODES) & (novel.sum(axis=0) >= NOVEL_VISITS)
+    totals = np.concatenate((online.total, offline.total[~fit]))[:, None]
+    return Evidence(
+        move, reward, np.where(visited, np.minimum(novel, 1.0), 0.0), slabs(offline.cells), totals
+    )
+
+
+def slabs(cells: Sequence[Cell]) -> tuple[Ints, ...]:
+    """Return the rows of the cells that share a bin of one sensor, for every bin of every sensor; last all rows.
+
+    A single sensor's bins are the cells themselves and make no slabs.
+    """
+    table = np.array(cells, dtype=np.int64).reshape(len(cells), -1)
+    columns = table.T if table.shape[1] > 1 else ()
+    shared = [np.flatnonzero(column == value) for column in columns for value in np.unique(column)]
+    return (*shared, np.arange(len(cells)))
+
+
+def _summed(part: Floats, slabs: Sequence[Ints]) -> Floats:
+    """Return the sums over each slab, shape (episodes, slabs)."""
+    return np.stack([part[:, rows].sum(axis=1) for rows in slabs], axis=1)

@@ -1,0 +1,53 @@
+"""Permutation tests: what would be seen if it made no difference which group an episode is of.
+
+Corrected over many columns by the distribution of the largest statistic, step by step (Westfall & Young 1993).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pytest_tarl.learning.tables import Floats
+
+PERMUTATIONS = 999
+
+
+def permuted_loss(offline: Floats, online: Floats, generator: np.random.Generator) -> float:
+    """Return the one-sided permutation p-value for a lower mean on-line; inputs have shape (episodes,)."""
+    pooled = np.concatenate((online, offline))
+    pooled -= pooled.mean()
+    shuffled = labels(pooled.size, online.size, generator) @ pooled
+    tie = 1e-9 * float(np.abs(pooled).sum())  # sums of the same numbers in another order
+    return (1 + int(np.count_nonzero(shuffled[1:] <= shuffled[0] + tie))) / shuffled.size
+
+
+def max_statistic(columns: Floats, first: int, generator: np.random.Generator) -> Floats:
+    """Return each column's p-value corrected over all columns, shape (columns,).
+
+    The first `first` rows are one group, the others the other. The statistic is the difference of the groups' means in
+    units of the column's standard deviation, which orders columns as the pooled t statistic does. A column is held
+    against the largest of those that do not differ more than it does (step-down).
+    """
+    deviation = columns - columns.mean(axis=0)
+    scale = np.sqrt((deviation**2).mean(axis=0))
+    alive = np.flatnonzero(scale > 1e-12 * np.maximum(1.0, np.abs(columns).max(axis=0, initial=0.0)))
+    p_values = np.ones(columns.shape[1])
+    if not alive.size or not 0 < first < columns.shape[0]:
+        return p_values
+    standard = deviation[:, alive] / scale[alive]
+    statistic = np.abs(labels(columns.shape[0], first, generator) @ standard)
+    order = np.argsort(statistic[0], kind="stable")
+    largest = np.maximum.accumulate(statistic[:, order], axis=1)
+    reached = (largest[1:] >= largest[0] - 1e-9).sum(axis=0)
+    stepped = (1 + reached) / statistic.shape[0]
+    p_values[alive[order]] = np.maximum.accumulate(stepped[::-1])[::-1]
+    return p_values
+
+
+def labels(rows: int, first: int, generator: np.random.Generator) -> Floats:
+    """Return group indicators, shape (1 + PERMUTATIONS, rows): as observed, then shuffled."""
+    drawn = np.argpartition(generator.random((PERMUTATIONS, rows)), first, axis=1)[:, :first]
+    indicators = np.zeros((1 + PERMUTATIONS, rows))
+    indicators[0, :first] = 1.0
+    np.put_along_axis(indicators[1:], drawn, 1.0, axis=1)
+    return indicators

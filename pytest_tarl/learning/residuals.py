@@ -1,0 +1,81 @@
+"""What each step brought beside what the off-line world lets expect: the Bellman residual, in its two parts.
+
+Zero in expectation where the world still is the one that the utility was fitted in, so what stands out is where it
+changed, not what lies upstream of it (performance-difference lemma, Kakade & Langford 2002).
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from pytest_tarl.learning.tables import END, Chain, Floats, Sample, sum_by
+from pytest_tarl.learning.utility import GAMMA_STEP, chain_utility
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """Per episode and cell, shape (episodes, cells): the two parts of the Bellman residual, visits to novel cells."""
+
+    move: Floats
+    reward: Floats
+    novel: Floats
+
+
+def in_fit(seed: int) -> bool:
+    """Tell whether an off-line episode is one that the utility is fitted on; the others are compared with."""
+    return zlib.crc32(str(seed).encode()) % 2 == 0
+
+
+@dataclass(frozen=True)
+class Model:
+    """What one step is expected to bring in each cell of the off-line world, shape (cells,); NaN where unknown."""
+
+    utility: Floats
+    move: Floats  # mean of γU(x')-U(x) over the steps that are not the last
+    reward: Floats
+
+
+def fitted(chain: Chain, cells: int) -> Model:
+    """Fit the model to off-line transitions."""
+    utility = chain_utility(chain, cells)
+    inside = chain.next_cell != END
+    moves = sum_by(chain.cell, _gain(chain, utility) * chain.count, cells)
+    rewards = sum_by(chain.cell, chain.reward, cells)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        move = moves / sum_by(chain.cell, chain.count * inside, cells)
+        reward = rewards / sum_by(chain.cell, chain.count, cells)
+    return Model(utility, move, reward)
+
+
+def residuals(compared: Sample, model: Model) -> Residuals:
+    """Return each episode's residuals per cell, each part less what the off-line world brings per visit.
+
+    So both parts are zero in expectation in that world, however often a cell is visited. The last step of an episode
+    has no move. Transitions from or to a cell of unknown utility are left out.
+    """
+    chain, shape = compared.chain, (compared.episodes, len(compared.cells))
+    known = ~np.isnan(model.utility)
+    move = (_gain(chain, model.utility) - model.move[chain.cell]) * chain.count
+    move = np.where((chain.next_cell != END) & ~np.isnan(move), move, 0.0)
+    reward = chain.reward - model.reward[chain.cell] * chain.count
+    return Residuals(
+        move=_by_episode(chain, move, shape),
+        reward=_by_episode(chain, np.where(known[chain.cell], reward, 0.0), shape),
+        novel=_by_episode(chain, np.where(known[chain.cell], 0.0, chain.count), shape),
+    )
+
+
+def _gain(chain: Chain, utility: Floats) -> Floats:
+    """Return γU(x')-U(x) of every transition, 0 for the last step, NaN where a utility is unknown."""
+    inside = chain.next_cell != END
+    return np.where(
+        inside, GAMMA_STEP * utility[np.where(inside, chain.next_cell, 0)] - utility[chain.cell], 0.0
+    )
+
+
+def _by_episode(chain: Chain, weights: Floats, shape: tuple[int, int]) -> Floats:
+    """Return the sums per episode and cell, shape (episodes, cells)."""
+    return sum_by(chain.episode * shape[1] + chain.cell, weights, shape[0] * shape[1]).reshape(shape)
