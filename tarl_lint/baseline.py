@@ -74,7 +74,9 @@ def load(path: Path) -> Baseline:
     import json  # only where there is a baseline
 
     try:
-        document = json.loads(path.read_bytes())
+        document = json.loads(
+            path.read_bytes().decode("utf-8-sig", "surrogateescape")
+        )  # names may be no text
     except OSError as error:
         raise BaselineError(f"The baseline {path.as_posix()} cannot be read: {error.strerror}.") from None
     except ValueError as error:

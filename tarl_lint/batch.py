@@ -13,7 +13,7 @@ from tarl_lint.config import Config
 from tarl_lint.memory import tidy, without_collection
 from tarl_lint.progress import Tell, silent
 from tarl_lint.relevance import groups
-from tarl_lint.source import Module, Script, SourceError, parsed
+from tarl_lint.source import TOO_DEEP, Module, Script, SourceError, parsed
 
 MANY_LINES: Final = 30_000  # to analyse; with fewer, starting processes takes longer than they save
 UNTIDY: Final = 20_000  # lines after which what holds itself is freed
@@ -136,8 +136,13 @@ def _parsed(script: Script) -> Module | SourceError:
 
 def failure(path: str, error: Exception) -> SourceError:
     """Say that a file could not be analysed by our fault."""
+    if isinstance(error, RecursionError):
+        return SourceError(path, 1, TOO_DEEP.format("analysed"))
     what = f"{type(error).__name__}: {error}".rstrip(": ")
-    return SourceError(path, 1, f"tarl-lint failed on this file ({what}); the fault is ours.", bug=True)
+    advice = "Report it with the traceback that TARL_DEBUG=1 shows, please; --exclude leaves the file out."
+    return SourceError(
+        path, 1, f"tarl-lint failed on this file ({what}), which is our fault. {advice}", bug=True
+    )
 
 
 def debugging() -> bool:

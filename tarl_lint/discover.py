@@ -68,7 +68,7 @@ def find(paths: Sequence[Path], config: Config, stdin: Stdin | None = None) -> D
     for path in paths:
         if path.is_dir():
             walk.tree(_absolute(path))
-        elif path.exists() or (stdin is not None and path == stdin.path):
+        elif _exists(path) or (stdin is not None and path == stdin.path):
             walk.take(_absolute(path))
         else:
             raise UsageError(_missing(path))
@@ -131,8 +131,8 @@ class _Walk:
                 if self._left_out(entry, inside):
                     continue
                 if entry.is_symlink():
-                    self._links += [(entry.path, inside)] if entry.is_dir() or _is_python(entry) else []
-                elif entry.is_dir():
+                    self._links += [(entry.path, inside)] if _is_directory(entry) or _is_python(entry) else []
+                elif _is_directory(entry):
                     pending.append((entry.path, inside))
                 else:
                     self._file(entry)
@@ -146,7 +146,7 @@ class _Walk:
             return []
 
     def _left_out(self, entry: os.DirEntry[str], ignores: tuple[Ignore, ...]) -> bool:
-        is_directory = entry.is_dir()
+        is_directory = _is_directory(entry)
         if is_directory and _not_ours(entry.path, entry.name):
             return True
         return gitignore.ignored(entry.path, (*ignores, self._excluded), is_directory=is_directory)
@@ -180,9 +180,27 @@ def _leads_above_itself(path: str) -> bool:
     return parent == target or parent.startswith(target.rstrip("/") + "/")
 
 
+def _exists(path: Path) -> bool:
+    """Tell whether something is there, whatever it is; a link that leads round in a circle is not."""
+    try:
+        return path.exists()
+    except OSError:  # Python 3.12 and older on circles of links
+        return False
+
+
+def _is_directory(entry: os.DirEntry[str]) -> bool:
+    try:
+        return entry.is_dir()
+    except OSError:  # a link that leads round in a circle
+        return False
+
+
 def _is_python(entry: os.DirEntry[str]) -> bool:
     """Tell whether a file is Python by its name, or by its first line where it has no extension."""
-    if not entry.is_file():
+    try:
+        if not entry.is_file():
+            return False
+    except OSError:
         return False
     return entry.name.endswith(".py") or ("." not in entry.name and _has_python_shebang(entry.path))
 
@@ -227,6 +245,9 @@ def _missing(path: Path) -> str:
     """Say that a path does not exist, and which neighbour may have been meant."""
     import difflib  # only mistakes need it
 
+    if path.is_symlink():
+        target = path.readlink()
+        return f"{path.as_posix()} is a link to {target}, which leads nowhere: name the file itself."
     parent = path.parent
     if not parent.is_dir():
         return f"There is no {path.as_posix()}: the directory {parent.as_posix()} does not exist either."

@@ -14,6 +14,7 @@ from tarl_lint.config import Options, Stdin, suggestion
 from tarl_lint.errors import UsageError
 from tarl_lint.keys import BASELINE_NAME, FAIL_ON
 from tarl_lint.report import FORMATS
+from tarl_lint.source import LARGEST
 
 _DESCRIPTION: Final = (
     "Find every flow from a subscribed ROS topic to a published one, with the statements on its path."
@@ -186,4 +187,4 @@ def _stdin(typed: argparse.Namespace) -> Stdin | None:
         if typed.stdin_filename:
             raise UsageError("--stdin-filename is for text on the standard input: add - to the paths.")
         return None
-    return Stdin(typed.stdin_filename or Path("stdin.py"), sys.stdin.buffer.read())
+    return Stdin(typed.stdin_filename or Path("stdin.py"), sys.stdin.buffer.read(LARGEST + 1))

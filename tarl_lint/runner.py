@@ -137,11 +137,10 @@ def read(
 
 
 def _read(file: SourceFile, stdin: Stdin | None) -> Script | SourceError:
-    try:
-        typed = stdin is not None and stdin.path.absolute() == file.path
-        data = stdin.data if stdin is not None and typed else file.path.read_bytes()
-    except OSError as error:
-        return SourceError(file.shown, 1, f"This file cannot be read: {error.strerror}.")
+    typed = stdin is not None and stdin.path.absolute() == file.path
+    data = source.contents(file.path, file.shown, stdin.data if stdin is not None and typed else None)
+    if isinstance(data, SourceError):
+        return data
     found = source.read(file.shown, data, file.name)
     if isinstance(found, Script) and found.is_package != file.is_package:
         return replace(found, is_package=file.is_package)

@@ -5,9 +5,15 @@ from __future__ import annotations
 import ast
 import io
 import re
+import stat
 import tokenize
 import warnings
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+LARGEST: Final = 2_000_000  # bytes; Python's own parser takes 200 times as much memory
+TOO_DEEP: Final = "The code is nested too deeply to be {}: split the expression, or exclude the file."
 
 
 @dataclass(frozen=True)
@@ -58,6 +64,32 @@ def parse(path: str, data: bytes, name: str) -> Module | SourceError:
     return parsed(script) if isinstance(script, Script) else script
 
 
+def contents(place: Path, path: str, typed: bytes | None = None) -> bytes | SourceError:
+    """Read a file, unless its text was typed. Pipes and devices, which may never end, are not read."""
+    try:
+        data = typed if typed is not None else _whole(place)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        return SourceError(path, 1, f"This file cannot be read: {reason}. Make it readable, or exclude it.")
+    if data is None:
+        return SourceError(path, 1, "This is no regular file: leave it out, or pipe its text to tarl-lint -.")
+    if len(data) > LARGEST:
+        return SourceError(
+            path,
+            1,
+            f"The file has more than {LARGEST // 1_000_000} MB: move data out of the code, or exclude the file.",
+        )
+    return data
+
+
+def _whole(place: Path) -> bytes | None:
+    """Read a regular file as far as it is not too large; None for anything else."""
+    if not stat.S_ISREG(place.stat().st_mode):
+        return None
+    with place.open("rb") as file:
+        return file.read(LARGEST + 1)
+
+
 def read(path: str, data: bytes, name: str) -> Script | SourceError:
     """Decode as PEP 263 says. Never raises."""
     decoded = _decode(path, data)
@@ -81,9 +113,9 @@ def parsed(script: Script) -> Module | SourceError:
     except SyntaxError as error:
         return _syntax_error(path, script.text, error)
     except (RecursionError, MemoryError):
-        return SourceError(path, 1, "The code is nested too deeply to be parsed: split the expression.")
+        return SourceError(path, 1, TOO_DEEP.format("parsed"))
     except ValueError as error:
-        return SourceError(path, 1, f"The file cannot be parsed: {error}.")
+        return SourceError(path, 1, f"The file cannot be parsed ({error}): mend it, or exclude it.")
     return Module(path, script.name, script.text, tree, script.is_package)
 
 
@@ -101,7 +133,7 @@ def _decode(path: str, data: bytes) -> str | SourceError:
             line,
             f"The bytes are not valid {error.encoding}: name the encoding in the first line or save as UTF-8.",
         )
-    except LookupError as error:
+    except (LookupError, UnicodeError) as error:  # such as rot13, which makes no text of bytes
         return SourceError(path, 1, f"The encoding is not known: {error}. Save the file as UTF-8.")
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
@@ -112,4 +144,6 @@ def _syntax_error(path: str, text: str, error: SyntaxError) -> SourceError:
     if PYTHON_2.search(text):
         return SourceError(path, line, "This is Python 2, which is not analysed: port the file to Python 3.")
     reason = (error.msg or "invalid syntax").rstrip(".")
-    return SourceError(path, line, f"The file is not valid Python: {reason}.")
+    return SourceError(
+        path, line, f"The file is not valid Python ({reason}): mend this line, or exclude the file."
+    )

@@ -45,7 +45,12 @@ def plain(line: Line) -> str:
 
 def location(span: Span) -> str:
     """Write where a span begins, so that terminals and editors can go there."""
-    return f"{span.path}:{span.line}:{span.column}"
+    return f"{one_line(span.path)}:{span.line}:{span.column}"
+
+
+def one_line(path: str) -> str:
+    """Write a path without line feeds, which file names may have."""
+    return path.replace("\n", "\\n")
 
 
 def columns(text: str) -> int:

@@ -20,6 +20,8 @@ _COLOURS: Final[Mapping[Style, str]] = {
     "control": "yellow",
     "quiet": "bright_black",
 }
+# What is linted must not steer the terminal: names of files and code may hold anything.
+_CONTROLS: Final = {n: f"\\x{n:02x}" for n in (*range(32), *range(127, 160)) if chr(n) not in "\n\t"}
 
 
 def wants_colour(stream: TextIO, environment: Mapping[str, str] = os.environ) -> bool:
@@ -56,7 +58,7 @@ def write(lines: Iterable[Line], stream: TextIO, *, colour: bool) -> None:
         return
     encoding = stream.encoding or "utf-8"
     for line in lines:
-        text = plain(line) + "\n"
+        text = plain(line).translate(_CONTROLS) + "\n"
         stream.write(text.encode(encoding, "backslashreplace").decode(encoding))
 
 
@@ -69,5 +71,5 @@ def _write_coloured(lines: Iterable[Line], stream: TextIO) -> bool:
         return False
     console = Console(file=stream, force_terminal=True, highlight=False, soft_wrap=True, legacy_windows=False)
     for line in lines:
-        console.print(Text.assemble(*((text, _COLOURS[style]) for text, style in line)))
+        console.print(Text.assemble(*((text.translate(_CONTROLS), _COLOURS[style]) for text, style in line)))
     return True

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import copy
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
@@ -48,6 +49,7 @@ class Text:
     functions: dict[tuple[int, int], Written] = field(default_factory=dict)
     by_name: dict[str, list[Written]] = field(default_factory=dict)
     texts: dict[int, str] = field(default_factory=dict)
+    ordinals: dict[int, int] = field(default_factory=dict)
     lines: list[str] = field(default_factory=list)
     has_lambdas: bool = True
 
@@ -108,13 +110,19 @@ class Text:
 
     def site(self, written: Written) -> SiteId:
         """Return a statement's identity."""
-        text = self.text(written)
-        ordinal = 0
-        for other in self.by_name.get(written.qualname, ()):
-            if other is written:
-                break
-            ordinal += self.text(other) == text
-        return SiteId(self.module.name, written.qualname, text, ordinal)
+        if id(written) not in self.ordinals:
+            self._count(written.qualname)
+        return SiteId(
+            self.module.name, written.qualname, self.text(written), self.ordinals.get(id(written), 0)
+        )
+
+    def _count(self, qualname: str) -> None:
+        """Number the statements of a function that read the same, once for all of them."""
+        seen: Counter[str] = Counter()
+        for written in self.by_name.get(qualname, ()):
+            text = self.text(written)
+            self.ordinals[id(written)] = seen[text]
+            seen[text] += 1
 
     def text(self, written: Written) -> str:
         """Return a statement as `ast.unparse` writes it, of a compound one the header."""
