@@ -92,10 +92,11 @@ class Cache:
     def _load(self, file: Path) -> None:
         try:
             stated, _, text = file.read_text("utf-8").partition("\n")
-            if stated == digest([text]):
-                self._reports, self._plans = json.loads(text)
-        except (OSError, ValueError):
-            pass  # not there, or not ours: as if there were none
+            kept = json.loads(text) if stated == digest([text]) else None
+        except (OSError, ValueError, RecursionError):
+            return  # not there, or not ours: as if there were none
+        if isinstance(kept, list) and [type(part) for part in kept] == [dict, dict]:
+            self._reports, self._plans = kept
 
 
 def opened(paths: Sequence[Path], config: Config) -> Cache:

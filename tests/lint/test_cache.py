@@ -1,0 +1,138 @@
+"""Results of earlier runs: used when nothing changed, never wrong, never in the way."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tarl_lint import batch, cache
+from tarl_lint.cli import main
+
+PLACE = Path(".tarl/cache/lint")
+
+
+@pytest.fixture
+def node(example, in_directory) -> Path:
+    return in_directory({"node.py": example.text}) / "node.py"
+
+
+@pytest.fixture
+def analysed(monkeypatch) -> list[str]:
+    """The files that were analysed rather than remembered."""
+    seen: list[str] = []
+    perform = batch.perform
+
+    def noted(task, config):
+        seen.extend(script.path for script in task.scripts)
+        return perform(task, config)
+
+    monkeypatch.setattr(batch, "perform", noted)
+    return seen
+
+
+def lint(capsys, *arguments: str) -> str:
+    main(["--exit-zero", *arguments])
+    return capsys.readouterr().out
+
+
+def entries() -> list[Path]:
+    return sorted(PLACE.glob("*.json"))
+
+
+def test_a_second_run_analyses_nothing_and_says_the_same(node, capsys, analysed):
+    first = lint(capsys, "--format", "json")
+    assert analysed == ["node.py"]
+    assert lint(capsys, "--format", "json") == first
+    assert analysed == ["node.py"]
+
+
+def test_what_is_kept_lies_where_git_does_not_look(node, capsys):
+    lint(capsys)
+    assert len(entries()) == 1
+    assert (PLACE / ".gitignore").read_text() == "*\n"
+
+
+def test_an_edit_is_seen(node, capsys, analysed):
+    lint(capsys)
+    node.write_text(node.read_text().replace("vel = 5 * delta", "vel = 5"))
+    assert "No flow from a subscription" in lint(capsys)
+    assert analysed == ["node.py", "node.py"]
+
+
+@pytest.mark.parametrize(
+    "settings", ['sanitizers = ["robot.clamp"]', 'select = ["TARL1"]', 'sources = ["robot.listen"]']
+)
+def test_other_settings_are_other_results(node, capsys, analysed, settings):
+    Path("pyproject.toml").write_text("[tool.tarl-lint]\n")
+    lint(capsys)
+    Path("pyproject.toml").write_text(f"[tool.tarl-lint]\n{settings}\n")
+    lint(capsys)
+    assert analysed == ["node.py", "node.py"]
+
+
+def test_another_version_starts_afresh(node, capsys, analysed, monkeypatch):
+    lint(capsys)
+    monkeypatch.setattr(cache, "__version__", "0.0.0")
+    lint(capsys)
+    assert analysed == ["node.py", "node.py"]
+
+
+def test_without_cache_nothing_is_read_or_written(node, capsys, analysed):
+    lint(capsys, "--no-cache")
+    assert not Path(".tarl").exists()
+    lint(capsys)
+    lint(capsys, "--no-cache")
+    assert analysed == ["node.py"] * 3
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda data: b"",
+        lambda data: data[: len(data) // 2],
+        lambda data: data.replace(b"node.py", b"nude.py"),
+        lambda data: b"\xff\x00" + data,
+        lambda data: data.partition(b"\n")[0] + b"\n[]",
+    ],
+)
+def test_a_damaged_file_is_as_good_as_none(node, capsys, analysed, damage):
+    first = lint(capsys)
+    (file,) = entries()
+    file.write_bytes(damage(file.read_bytes()))
+    assert lint(capsys) == first
+    assert analysed == ["node.py", "node.py"]
+    assert lint(capsys) == first
+    assert len(analysed) == 2
+
+
+def test_a_whole_file_of_another_shape_is_as_good_as_none(node, capsys, analysed):
+    first = lint(capsys)
+    (file,) = entries()
+    for value in ([], {}, 3, [{}, []], [[], {}], None):
+        text = json.dumps(value)
+        file.write_text(f"{cache.digest([text])}\n{text}")
+        assert lint(capsys) == first
+
+
+def test_a_place_that_cannot_be_written_is_no_trouble(node, capsys, analysed):
+    Path(".tarl").write_text("in the way\n")
+    first = lint(capsys)
+    assert lint(capsys) == first
+    assert analysed == ["node.py", "node.py"]
+
+
+def test_two_processes_on_a_cold_cache_say_the_same_and_leave_it_whole(example, node, capsys, analysed):
+    for number in range(20):
+        (node.parent / f"node{number}.py").write_text(example.text.replace("odom", f"odom{number}"))
+    command = [sys.executable, "-m", "tarl_lint", "--exit-zero", "--format", "json"]
+    runs = [subprocess.Popen(command, stdout=subprocess.PIPE) for _ in range(2)]
+    one, other = (run.communicate()[0] for run in runs)
+    assert [run.returncode for run in runs] == [0, 0]
+    assert one == other
+    assert lint(capsys, "--format", "json") == one.decode()
+    assert analysed == []
+    assert {path.name for path in PLACE.iterdir()} == {".gitignore", entries()[0].name}
