@@ -19,7 +19,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations, product
+from itertools import chain, combinations, product
 from statistics import fmean
 from typing import Any
 
@@ -35,8 +35,7 @@ from tarl_lint.model import Operand
 
 FINE = (
     0.0,
-    0.03,
-    0.06,
+    0.05,
     0.1,
     0.15,
     0.2,
@@ -54,13 +53,15 @@ FINE = (
     0.8,
     0.85,
     0.9,
-    0.95,
 )
-FACTORS = (*FINE, *(round(1 / f, 3) for f in FINE[:0:-1]), -0.5, -1.0, -2.0)
+FACTORS = (*FINE, *(round(1 / factor, 3) for factor in FINE[:0:-1]), -1.0)
 COARSE = (0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.2, 1.5, 2.0, 2.75, 4.0, 8.0)
-EPISODES = 40
+SHOWN = 8  # repairs of the same sites in the drifted world, after which none is looked for that keeps the nominal one
+COARSEST = (0.35, 0.65, 1.5, 2.0, 3.0, 5.0)  # for the pairs of all operands
+EPISODES = 24
 RESTORED = 0.95
-MOST_LOST = 3  # episodes that may be lost before a candidate is dropped
+SCREENED = 3  # episodes of which a candidate may lose none ...
+MOST_LOST = 2  # ... and of all of them not more than so many
 
 Change = tuple[Mutation, ...]
 
@@ -110,9 +111,15 @@ class World:
         return list(dict.fromkeys(mutation for mutation in tried if mutation is not None))
 
     def tried(self, changes: Iterator[Change], guards: Sequence[Guard] | None = None) -> list[Found]:
-        """Return those changes that restore the drifted world under one of the guards."""
-        found = []
+        """Return those changes that restore the drifted world under one of the guards.
+
+        Sites that were shown to be right are not asked again.
+        """
+        found: list[Found] = []
         for change in changes:
+            shown = [one for one in found if _sites(one.change) == _sites(change)]
+            if len(shown) >= SHOWN or any(one.nominal > 0 for one in shown):
+                continue
             for guard in self.guards if guards is None else guards:
                 drifted = self.earned(change, guard, self.stage.drift)
                 if drifted is not None:
@@ -132,9 +139,7 @@ class World:
         for seed in self.seeds:
             totals.append(self._total(seed, drift, overlay))
             lost = sum(total < min(goal, self.least) - 0.1 * abs(self.offline) for total in totals)
-            if lost > min(MOST_LOST, (len(totals) + 1) // 2):
-                return None
-            if len(totals) in (4, 10) and fmean(totals) < goal - 0.4 * abs(self.offline):
+            if lost > (0 if len(totals) <= SCREENED else MOST_LOST):
                 return None
         mean = fmean(totals)
         return mean if mean >= goal else None
@@ -165,13 +170,13 @@ def singles(world: World) -> Iterator[Change]:
 def of_one_site(world: World) -> Iterator[Change]:
     """Yield what two operands of one site can change."""
     for site in dict.fromkeys(operand.site for operand in world.operands):
-        yield from pairs(world, [operand for operand in world.operands if operand.site == site])
+        yield from pairs(world, [operand for operand in world.operands if operand.site == site], COARSE)
 
 
-def pairs(world: World, operands: Sequence[Operand]) -> Iterator[Change]:
-    """Yield all changes of two operands on the coarse grid."""
+def pairs(world: World, operands: Sequence[Operand], factors: Sequence[float]) -> Iterator[Change]:
+    """Yield all changes of two operands."""
     for one, other in combinations(operands, 2):
-        yield from product(world.mutations(one, COARSE), world.mutations(other, COARSE))
+        yield from product(world.mutations(one, factors), world.mutations(other, factors))
 
 
 def replaced(world: World, known: Change) -> Iterator[Change]:
@@ -196,14 +201,14 @@ def known(world: World) -> Change:
 def answered(stage: Stage) -> dict[str, Any]:
     """Return a task's answer: what its author wrote, and what simulation found."""
     world = World(stage)
-    found = world.tried(singles(world)) + world.tried(of_one_site(world), world.guards[-1:])
+    found = world.tried(chain(singles(world), of_one_site(world)))
     how = "one site"
     culprits = len(stage.answer["known"])
     if not found and culprits == 2:
-        how, found = "two sites", world.tried(pairs(world, world.operands), world.guards[-1:])
+        how, found = "two sites", world.tried(pairs(world, world.operands, COARSEST), world.guards[-1:])
     elif not found and culprits > 2:
         how, found = "substitution", world.tried(replaced(world, known(world)))
-    sets = _minimal({tuple(sorted({str(m.operand.site) for m in one.change})) for one in found})
+    sets = _minimal({_sites(one.change) for one in found})
     return {
         **{name: stage.answer[name] for name in ("about", "known", "where")},
         "offline": round(world.offline, 3),
@@ -216,20 +221,23 @@ def answered(stage: Stage) -> dict[str, Any]:
     }
 
 
+def _sites(change: Change) -> tuple[str, ...]:
+    return tuple(sorted({str(mutation.operand.site) for mutation in change}))
+
+
 def _minimal(sets: set[tuple[str, ...]]) -> list[tuple[str, ...]]:
     return sorted(one for one in sets if not any(set(other) < set(one) for other in sets))
 
 
 def _evidence(sites: tuple[str, ...], found: Sequence[Found]) -> dict[str, Any]:
     """Return the best repair of a set of sites, those that hold in both worlds first."""
-    of_sites = [one for one in found if tuple(sorted({str(m.operand.site) for m in one.change})) == sites]
+    of_sites = [one for one in found if _sites(one.change) == sites]
     best = max(of_sites, key=lambda one: (one.nominal > 0, one.drifted))
     return {
         "edits": [[mutation.operand.code, mutation.value] for mutation in best.change],
         "guarded": bool(best.guard.conjuncts),
         "drifted": round(best.drifted, 3),
         "nominal": round(best.nominal, 3) if best.nominal > 0 else None,
-        "repairs": len(of_sites),
     }
 
 

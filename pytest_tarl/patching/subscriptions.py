@@ -148,15 +148,22 @@ class Subscriptions:
         return self._fresh(each.store, base, each.anchor.source)
 
     def _fresh(self, store: Store, base: str, *elsewhere: Document) -> str:
-        """Return a name that means nothing yet where it will be kept, and take it."""
+        """Return a name that means nothing yet where it will be kept and imported, and take it there."""
         attribute = store.owner is not None
-        key = (store.source.path, attribute)
-        if key not in self._taken:
-            self._taken[key] = self._attributes(store.source) if attribute else set(names(store.source))
-        taken = self._taken[key].union(*(() if attribute else (names(each) for each in elsewhere)))
-        name = free(base, taken)
-        self._taken[key].add(name)
+        known = [self._names(store.source, attribute)]
+        if not attribute:
+            known += [self._names(each, False) for each in elsewhere]
+        name = free(base, set().union(*known))
+        for taken in known:
+            taken.add(name)
         return name
+
+    def _names(self, source: Document, attribute: bool) -> set[str]:
+        """Return the names that are taken in a module, or the attributes that are taken in its classes."""
+        key = (source.path, attribute)
+        if key not in self._taken:
+            self._taken[key] = self._attributes(source) if attribute else set(names(source))
+        return self._taken[key]
 
     def _attributes(self, source: Document) -> set[str]:
         """Return every attribute that a class may have: its own, those of any analysed class, those of a node."""

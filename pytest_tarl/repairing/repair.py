@@ -46,13 +46,13 @@ class _Findings:
 def repair(order: Order) -> Repaired:
     """Run the searches asked for; the first candidate that is accepted counts."""
     mutants = Mutants(order)
-    evidence = _evidence(order)
-    guards = candidates.candidate_guards(evidence)
+    hints = evidence(order)
+    guards = candidates.candidate_guards(hints)
     examiner = Examiner(mutants, guards)
     found = _Findings()
     for method in order.options.searches:
         trials = _trials(mutants, method)
-        strategy = _strategy(mutants, method, candidates.telling(guards, evidence, MOST_GUARDS), trials)
+        strategy = _strategy(mutants, method, candidates.telling(guards, hints, MOST_GUARDS), trials)
         if found.accepted is None:
             found.accepted = examiner.first(strategy.candidates(), trials)
         else:
@@ -71,7 +71,7 @@ def operands(order: Order) -> tuple[Operand, ...]:
     return tuple(dict.fromkeys(o for step in steps for o in order.analysis.operands(step.site)))
 
 
-def _evidence(order: Order) -> candidates.Evidence:
+def evidence(order: Order) -> candidates.Evidence:
     comparison = order.comparison
     return candidates.Evidence(
         comparison.sensors,

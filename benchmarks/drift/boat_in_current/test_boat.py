@@ -70,6 +70,7 @@ class Fairway:
         Sensor("cross", topic="/fix", field="point.y", low=-4, high=4, bins=8, unit="m"),
     ],
     drifts={"spring tide": 1.35},
+    episodes=100,
     min_success=0.95,
 )
 def test_passes_the_strait(tarl, tarl_drift):

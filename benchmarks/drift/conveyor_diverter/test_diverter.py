@@ -69,6 +69,7 @@ class Belt:
         Sensor("belt", topic="/belt", field="data", low=0.2, high=1.2, bins=10, unit="m/s"),
     ],
     drifts={"faster belt": 0.8},
+    episodes=100,
     min_success=0.95,
 )
 def test_sorts(tarl, tarl_drift):

@@ -65,6 +65,7 @@ class Greenhouse:
         Sensor("light", topic="/light", field="illuminance", low=0, high=80000, bins=16, unit="lx"),
     ],
     drifts={"torn net": 3.0},
+    episodes=100,
     min_success=0.95,
 )
 def test_spares_the_crop(tarl, tarl_drift):

@@ -82,6 +82,7 @@ class Lawn:
         Sensor("grass", topic="/grass", field="data", low=0, high=20, bins=4, unit="cm"),
     ],
     drifts={"wet slope": 0.2},
+    episodes=100,
     min_success=0.95,
 )
 def test_mows_the_strip(tarl, tarl_drift):

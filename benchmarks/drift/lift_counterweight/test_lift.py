@@ -62,6 +62,7 @@ class Shaft:
     nodes=["lift.py"],
     sensors=[Sensor("height", topic="/encoder", field="data", low=0, high=6500, bins=13, unit="mm")],
     drifts={"light counterweight": 45.0},
+    episodes=100,
     min_success=0.95,
 )
 def test_stops_level(tarl, tarl_drift):

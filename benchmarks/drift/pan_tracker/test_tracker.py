@@ -70,6 +70,7 @@ class Scene:
     nodes=["tracker.py"],
     sensors=[Sensor("seen", topic="/target", field="point.x", low=100, high=540, bins=11, unit="px")],
     drifts={"slow network": 7},
+    episodes=100,
     min_success=0.95,
 )
 def test_keeps_the_target(tarl, tarl_drift):

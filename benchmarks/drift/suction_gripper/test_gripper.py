@@ -68,6 +68,7 @@ class Carton:
         Sensor("vacuum", topic="/vacuum", field="data", low=0, high=80, bins=8, unit="kPa"),
     ],
     drifts={"rough cardboard": 0.42},
+    episodes=100,
     min_success=0.95,
 )
 def test_lifts(tarl, tarl_drift):

@@ -65,6 +65,7 @@ class Aisle:
         Sensor("load", topic="/load", field="data", low=0, high=400, bins=4, unit="kg"),
     ],
     drifts={"worn wheels": 0.45},
+    episodes=100,
     min_success=0.95,
 )
 def test_docks(tarl, tarl_drift):

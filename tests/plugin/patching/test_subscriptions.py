@@ -660,3 +660,30 @@ def test_the_flow_of_the_site_decides_which_node_subscribes() -> None:
     step = Step(SiteId("node", "", "5 *"), own.source.span, "", "publish", "data")
     changed = repaired(sources, (*foreign, replace(own, steps=(step,))))["node.py"]
     assert f'    {NODES["rospy script"][2]}\n    rospy.Subscriber("/terrain"' in changed
+
+
+def test_two_modules_of_a_node_are_each_told_of_a_sensor() -> None:
+    node = (
+        "import rospy\nfrom driving import speed\nfrom nav_msgs.msg import Odometry\nfrom steering import turn\n\n"
+        "sent = []\n\n\ndef callback(msg):\n    sent.append((turn(msg), speed(msg)))\n\n\n"
+        'rospy.Subscriber("/odom", Odometry, callback)\n'
+    )
+    helpers = {
+        "steering.py": "def turn(msg):\n    return 5 * msg.pose.pose.position.x\n",
+        "driving.py": "def speed(msg):\n    return 3 * msg.pose.pose.position.x\n",
+    }
+    sources = {**helpers, "node.py": node}
+    analysis = HandMade(
+        sources,
+        subscribing(sources, "node.py", 'rospy.Subscriber("/odom", Odometry, callback)', "rospy.Subscriber"),
+    )
+    edits = [
+        Mutation(analysis.operand("5", 5, "5 *"), 12.0),
+        Mutation(analysis.operand("3", 3, "3 *", "driving.py"), 7.0),
+    ]
+    ros = TinyRos()
+    space = ros.run({**sources, **rewrite(analysis, edits, MUD, TOPICS)}, "node.py")
+    ros.deliver("/odom", odometry(1.0))
+    ros.deliver("/terrain", terrain(True))
+    ros.deliver("/odom", odometry(1.0))
+    assert space["sent"] == [(5.0, 3.0), (12.0, 7.0)]

@@ -1,0 +1,107 @@
+"""Our own way with a task: record, compare, search, accept; then look on seeds that nothing has seen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import fmean
+from typing import Any
+
+from stage import Stage
+
+from pytest_tarl.comparing import run_online
+from pytest_tarl.errors import TarlError
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.recording import mean_flows, run_episodes, sarsa_tables, sound
+from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.repair import repair
+from pytest_tarl.rollout import EpisodePlan
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.seeds import episode_seeds
+from pytest_tarl.settings import Options
+
+HELD_OUT = 30  # episodes of each world
+RESTORED = 0.95
+Overlay = Mapping[Path, str]
+
+
+def prepared(stage: Stage, seed: int, budget: int = Options.budget) -> Order:
+    """Record the task off-line and run it under its drift, as `--tarl-record` and `--tarl-online` do."""
+    marked = stage.marked
+    chosen = episode_seeds(seed, "offline", marked.episodes)
+    offline = run_episodes(stage.rollout, chosen, None, stage.sites.members, quiet)
+    tables = sarsa_tables(offline, mean_flows(offline.sample))
+    fixture = Fixture(
+        stage.test, seed, marked.sensors, stage.sites.lists, offline.topics, offline.sample, tables
+    )
+    options = Options(mode="repair", seed=seed, budget=budget)
+    online = run_online(stage.rollout, fixture, marked, options, stage.sites, stage.drift, quiet)
+    patches = stage.folder / ".tarl" / "patches"
+    return Order(stage.rollout, stage.analysis, stage.folder, fixture, online, options, quiet, patches)
+
+
+def ours(stage: Stage, seed: int) -> dict[str, Any]:
+    """Repair the task; return where the right sites were ranked, what was restored and what it took."""
+    order = prepared(stage, seed)
+    slices = [culprit.site.id for culprit in order.comparison.culprits]
+    outcome = repair(order)
+    fixed = outcome.comparison.repair
+    assert fixed is not None
+    overlay: Overlay = {}
+    if outcome.accepted is not None:
+        overlay = Mutants(order).source(outcome.accepted.candidate)
+    return {
+        "ranked": [culprit.site.id for culprit in outcome.comparison.culprits],
+        "slices": slices,
+        "verdict": outcome.comparison.verdict.result,
+        "accepted": fixed.accepted,
+        "reason": fixed.reason,
+        "guard": fixed.guard,
+        "edits": [f"{edit.path}:{edit.line} {edit.code} → {edit.value:g}" for edit in fixed.edits],
+        "episodes": {"comparison": order.online.recorded.sample.episodes, **outcome.episodes},
+        **judged(order, overlay if fixed.accepted else None),
+    }
+
+
+@dataclass(frozen=True)
+class Seen:
+    """Mean reward and pass rate over the held-out seeds of a world."""
+
+    mean: float
+    passed: float
+
+
+def judged(order: Order, overlay: Overlay | None) -> dict[str, Any]:
+    """Look at a repair on held-out seeds in both worlds; without one, nothing is restored."""
+    designed = seen(order, None, {})
+    found: dict[str, Any] = {"offline": designed.mean}
+    for name, drift in (("drifted", order.drift), ("nominal", None)):
+        world = seen(order, drift, overlay or {})
+        found[name] = world.mean
+        found[f"{name} restored"] = overlay is not None and world.mean >= designed.mean - (
+            1 - RESTORED
+        ) * abs(designed.mean)
+    return found
+
+
+def seen(order: Order, drift: str | None, overlay: Overlay) -> Seen:
+    """Run the held-out episodes of one world."""
+    chosen = episode_seeds(order.options.seed, "held out", HELD_OUT)
+    runs = [_outcome(order, EpisodePlan(seed, drift, overlay)) for seed in chosen]
+    return Seen(fmean(run.total for run in runs), fmean(run.passed for run in runs))
+
+
+def _outcome(order: Order, episode: EpisodePlan) -> Outcome:
+    """Run one episode; one that the node did not live to see the end of earns as little as the worst one recorded."""
+    try:
+        run = sound(order.rollout(episode))
+    except TarlError:
+        return Outcome(order.worst, passed=False)
+    total = float(run.trace.reward.sum())
+    return Outcome(min(total, order.worst) if run.crashed else total, run.passed)
+
+
+def quiet(done: int, total: int, what: str) -> None:
+    """Show no progress."""

@@ -1,0 +1,173 @@
+"""The tables of the benchmark, from its results."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from statistics import fmean
+from typing import Any
+
+from stage import HERE
+
+Result = Mapping[str, Any]
+
+
+def tables(results: Mapping[str, Result]) -> str:
+    """Return the comparison of the methods, and our own figures by task."""
+    methods = list(dict.fromkeys(key.split("/")[0] for key in sorted(results, key=_ours_first)))
+    rows = [_row(method, _of(results, method)) for method in methods]
+    slices = _slices(_of(results, "ours"))
+    return "\n".join([*_head(COLUMNS), *rows[:1], *slices, *rows[1:], "", *_by_task(_of(results, "ours"))])
+
+
+COLUMNS = (
+    "method",
+    "right site first",
+    "in first three",
+    "drifted world restored",
+    "both worlds restored",
+    "accepted though wrong",
+    "unrepairable: no patch",
+    "search episodes",
+    "comparison",
+    "acceptance",
+    "sum",
+)
+OUR_COLUMNS = (
+    "task",
+    "sites",
+    "operands",
+    "right sites",
+    "first",
+    "in first three",
+    "both worlds restored",
+    "search",
+    "acceptance",
+    "one repair",
+)
+
+
+def _head(columns: Sequence[str]) -> list[str]:
+    return [f"| {' | '.join(columns)} |", "|---" * len(columns) + "|"]
+
+
+def _row(method: str, found: Sequence[tuple[str, Result]]) -> str:
+    repairable = [(task, result) for task, result in found if _repairable(task)]
+    others = [result for task, result in found if not _repairable(task)]
+    spent = [
+        _mean(result["episodes"].get(kind, 0) for _, result in repairable)
+        for kind in ("search", "comparison", "acceptance")
+    ]
+    cells = [
+        method,
+        _share(_within(task, result["ranked"], 1) for task, result in repairable)
+        if method == "ours"
+        else "–",
+        _share(_within(task, result["ranked"], 3) for task, result in repairable)
+        if method == "ours"
+        else "–",
+        _share(result["drifted restored"] for _, result in repairable),
+        _share(both(result) for _, result in repairable),
+        _share(result["accepted"] and not both(result) for _, result in found),
+        _share(not result["accepted"] for result in others),
+        *(f"{one:.0f}" for one in (*spent, sum(spent))),
+    ]
+    return f"| {' | '.join(cells)} |"
+
+
+def _slices(found: Sequence[tuple[str, Result]]) -> list[str]:
+    """Return the row of the slices: the ranking that the paper ends with."""
+    ranked = [(task, result["slices"]) for task, result in found if _repairable(task)]
+    if not ranked:
+        return []
+    first, third = (_share(_within(task, sites, most) for task, sites in ranked) for most in (1, 3))
+    return [f"| utility slices, as in the paper | {first} | {third} | – | – | – | – | 0 | 40 | 0 | 40 |"]
+
+
+def _by_task(found: Sequence[tuple[str, Result]]) -> list[str]:
+    """Return our figures by task."""
+    rows = _head(OUR_COLUMNS)
+    for task in dict.fromkeys(task for task, _ in found):
+        seen, known = [result for name, result in found if name == task], answer(task)
+        cells = [
+            task,
+            str(known.get("sites")),
+            str(known.get("operands")),
+            _right(known),
+            _share(_within(task, result["ranked"], 1) for result in seen),
+            _share(_within(task, result["ranked"], 3) for result in seen),
+            _share(both(result) for result in seen),
+            *(
+                f"{_mean(result['episodes'].get(kind, 0) for result in seen):.0f}"
+                for kind in ("search", "acceptance")
+            ),
+            _example(seen),
+        ]
+        rows.append(f"| {' | '.join(cells)} |")
+    return rows
+
+
+def _example(seen: Sequence[Result]) -> str:
+    """Write the guard and the edits of a repair that was accepted, or why none was."""
+    last = next((result for result in seen if result["accepted"]), None)
+    if last is None:
+        return str(seen[0]["reason"])
+    edits = "; ".join(edit.split(" ", 1)[1] for edit in last["edits"])
+    return f"`{edits}` where `{last['guard']}`" if last["guard"] else f"`{edits}`"
+
+
+def _right(known: Mapping[str, Any]) -> str:
+    """Tell how many sets of how many sites are right."""
+    sets = known.get("right", [])
+    return f"{len(sets)}" + (f" sets of {len(sets[0])}" if sets and len(sets[0]) > 1 else "")
+
+
+def rank(sites: Sequence[str], answer: Mapping[str, Any]) -> int | None:
+    """Return the rank of the first right set: 1 where its sites are the very first; None where it is nowhere.
+
+    Of several culprits all have to be ranked before others.
+    """
+    places = {site: i for i, site in enumerate(sites)}
+    ranks = [
+        max(places[site] for site in right) + 2 - len(right)
+        for right in answer.get("right", ())
+        if all(site in places for site in right)
+    ]
+    return min(ranks, default=None)
+
+
+def both(result: Result) -> bool:
+    """Tell whether a repair was accepted and holds in both worlds."""
+    return bool(result["accepted"] and result["drifted restored"] and result["nominal restored"])
+
+
+def answer(task: str) -> Any:
+    """Return what is known of a task."""
+    return json.loads((HERE / task / "answer.json").read_text())
+
+
+def _repairable(task: str) -> bool:
+    return bool(answer(task)["known"])
+
+
+def _of(results: Mapping[str, Result], method: str) -> list[tuple[str, Result]]:
+    return [(key.split("/")[1], result) for key, result in results.items() if key.split("/")[0] == method]
+
+
+def _within(task: str, sites: Sequence[str], most: int) -> bool:
+    found = rank(sites, answer(task))
+    return found is not None and found <= most
+
+
+def _ours_first(key: str) -> tuple[bool, str]:
+    return not key.startswith("ours/"), key
+
+
+def _mean(values: Iterable[float]) -> float:
+    kept = list(values)
+    return fmean(kept) if kept else 0.0
+
+
+def _share(values: Iterable[Any]) -> str:
+    kept = [bool(value) for value in values]
+    return f"{sum(kept)}/{len(kept)}"
