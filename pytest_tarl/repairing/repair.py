@@ -72,6 +72,7 @@ def operands(order: Order) -> tuple[Operand, ...]:
 
 
 def evidence(order: Order) -> candidates.Evidence:
+    """Return what guards can be read from."""
     comparison = order.comparison
     return candidates.Evidence(
         comparison.sensors,
