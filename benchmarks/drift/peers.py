@@ -9,7 +9,7 @@ guard does that we would search under first; the nominal world is not asked, as 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -107,7 +107,11 @@ class Optuna:
         self.study.tell(self.trial, cost)
 
 
-OPTIMISERS = {"random": Random, "CMA-ES": Cma, "Optuna": Optuna}
+OPTIMISERS: dict[str, Callable[[int, np.random.Generator], Optimiser]] = {
+    "random": Random,
+    "CMA-ES": Cma,
+    "Optuna": Optuna,
+}
 
 
 def peer(stage: Stage, seed: int, name: str, guarded: bool) -> dict[str, Any]:
