@@ -25,6 +25,7 @@ class Belt:
             self.places.append(self.places[-1] - rng.uniform(0.7, 1.0))
         self.pushed = [0.0] * 4
         self.seen = 0
+        self.force = 0.0
         self.sorted = [False] * 4
         self.missed = [False] * 4
 
@@ -42,7 +43,7 @@ class Belt:
 
     def advance(self, command):
         """Let the belt run for one step; the pusher moves what is in front of it."""
-        force = max(0.0, min(1.0, command.data)) if command else 0.0
+        force = self.force = max(0.0, min(1.0, command.data)) if command else 0.0
         for i, place in enumerate(self.places):
             if not self.sorted[i] and abs(place - PUSHER) <= REACH:
                 self.pushed[i] += force * DT
@@ -50,7 +51,7 @@ class Belt:
 
     def judge(self):
         """Return the reward of the step: two and a half for a parcel, as much less for a lost one; force costs."""
-        reward = -0.002
+        reward = -0.02 * self.force
         for i, weight in enumerate(self.weights):
             if self.sorted[i] or self.missed[i]:
                 continue
