@@ -23,7 +23,15 @@ class Tarl:
     """The fixture `tarl`: random numbers, the in-process ROS, sensors and reward of one episode."""
 
     def __init__(
-        self, seed: int, sensors: Sequence[Sensor], folder: Path, recorder: Recorder, imports: NodeImports
+        self,
+        seed: int,
+        sensors: Sequence[Sensor],
+        folder: Path,
+        recorder: Recorder,
+        imports: NodeImports,
+        *,
+        kind: str = "embedded",
+        nodes: Sequence[str] = (),
     ) -> None:
         self.seed = seed
         self.topics: dict[str, str] = {}
@@ -32,6 +40,8 @@ class Tarl:
         self._bins: dict[str, int | None] = {}
         self._situated = False  # whether there ever was a cell
         self._folder = folder
+        self._kind = kind
+        self._nodes = tuple(nodes)
         self._recorder = recorder
         self._imports = imports
         self._rewards = 0
@@ -48,11 +58,11 @@ class Tarl:
 
     @property
     def ros(self) -> Ros:
-        """The in-process ROS of this episode."""
+        """The ROS of this episode: the in-process one, or the real one under `--tarl-ros=real`."""
         if self._ros is None:
-            from pytest_tarl.ros import Ros
+            from pytest_tarl.realros.choice import make_ros
 
-            self._ros = Ros()
+            self._ros = make_ros(self._kind, [self._folder / node for node in self._nodes])
             self._open.enter_context(self._ros.installed())
             self._open.callback(self._ros.close)
             self._ros.on_delivery(self._latch)

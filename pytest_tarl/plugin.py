@@ -67,6 +67,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help="episodes to run at a time, each in its own process; auto: as many as cores (default 1)",
     )
     flag("--tarl-cluster", metavar="ADDRESS", help="run the episodes on the Dask cluster of this scheduler")
+    flag(
+        "--tarl-ros",
+        metavar="KIND",
+        default="embedded",
+        help="the ROS that nodes run on: embedded (default), real, or auto (real where it is installed)",
+    )
     flag("--tarl-strict", action="store_true", help="with --tarl-online: a test without fixture fails")
 
 
@@ -149,6 +155,7 @@ def _options(config: pytest.Config) -> Options:
                     "workers",
                     "cluster",
                     "strict",
+                    "ros",
                 )
             }
         )

@@ -69,6 +69,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
     from pytest_tarl.episode import Tarl
     from pytest_tarl.instrumentation.importhook import NodeImports
     from pytest_tarl.instrumentation.recorder import Recorder
+    from pytest_tarl.realros.choice import check_kind
 
     episode = _episode(item)
     recorder = Recorder()
@@ -80,7 +81,15 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         publishes=episode.instruments.publishes,
         bind=recorder.bind,
     )
-    tarl = Tarl(episode.plan.seed, episode.designation.sensors, item.path.parent, recorder, imports)
+    tarl = Tarl(
+        episode.plan.seed,
+        episode.designation.sensors,
+        item.path.parent,
+        recorder,
+        imports,
+        kind=check_kind(item.config.getoption("--tarl-ros")),
+        nodes=episode.designation.nodes,
+    )
     try:
         yield tarl
     finally:

@@ -15,6 +15,7 @@ from pytest_tarl.sensors import Sensor
 Mode = Literal["plain", "record", "online", "repair"]
 SEARCHES = ("sweep", "epsilon-greedy")
 UTILITIES = ("batch", "sarsa", "expected-sarsa", "td-lambda")
+ROS_KINDS = ("embedded", "real", "auto")
 MARKER_ARGUMENTS = ("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance")
 
 
@@ -33,6 +34,7 @@ class Options:
     utility: str = "batch"
     workers: int = 1  # episodes at a time, each in a process of its own when more than one
     cluster: str | None = None  # address of a Dask scheduler
+    ros: str = "embedded"
 
     ONLINE_EPISODES = 40
 
@@ -49,6 +51,7 @@ class Options:
             "--tarl-alpha": (self.alpha, 0.05),
             "--tarl-budget": (self.budget, 300),
             "--tarl-utility": (self.utility, "batch"),
+            "--tarl-ros": (self.ros, "embedded"),
         }
         return tuple(
             text for flag, (value, usual) in chosen.items() if value != usual for text in (flag, str(value))
@@ -82,6 +85,7 @@ def options(given: Mapping[str, Any]) -> Options:
     for name in searches:
         _known("--tarl-search", name, SEARCHES)
     _known("--tarl-utility", given["utility"], UTILITIES)
+    _known("--tarl-ros", given["ros"], ROS_KINDS)
     if given["episodes"] is not None:
         _number("--tarl-episodes", "it", given["episodes"], int, 2, 10**6)
     mode: Mode = "record" if given["record"] else "repair" if given["repair"] else "online"
@@ -97,6 +101,7 @@ def options(given: Mapping[str, Any]) -> Options:
         utility=given["utility"],
         workers=_workers(given["workers"]),
         cluster=given["cluster"],
+        ros=given["ros"],
     )
 
 

@@ -9,6 +9,10 @@ from types import FrameType, TracebackType
 
 _HERE = str(Path(__file__).parent)
 _LIBRARIES = tuple({sysconfig.get_path(key) for key in ("stdlib", "platstdlib", "purelib", "platlib")})
+_SYSTEM = (
+    "/dist-packages/",
+    "/opt/ros/",
+)  # seen from a virtual environment, a ROS of the system is in neither
 
 Place = tuple[str, int, str]  # file, line, function
 
@@ -42,7 +46,7 @@ def describe(place: Place | None) -> str:
 
 def is_library(file: str) -> bool:
     """Tell a file of Python or of an installed package from one of the user's."""
-    return file.startswith((*_LIBRARIES, "<"))
+    return file.startswith((*_LIBRARIES, "<")) or any(place in file for place in _SYSTEM)
 
 
 def _outwards(frame: FrameType | None) -> Iterator[Place]:

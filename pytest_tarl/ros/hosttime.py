@@ -12,6 +12,8 @@ from typing import Any
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.scheduler import Scheduler, running_task
 
+REAL_MONOTONIC = time.monotonic
+
 _CLOCKS: tuple[tuple[Any, str], ...] = (
     (time, "time"),
     (time, "monotonic"),

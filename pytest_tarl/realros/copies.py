@@ -1,0 +1,55 @@
+"""Private copies of a package that keeps its state in its modules: one ROS node each, several in one process."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib import import_module
+from types import ModuleType
+
+Modules = dict[str, ModuleType]
+
+
+def load_copy(package: str, parts: Sequence[str], argv: Sequence[str]) -> Modules:
+    """Import a package and these parts of it anew; what others have imported of it stays as it is.
+
+    `argv` is the command line that the package reads while it is imported.
+    """
+    with _hidden(package), _command_line(argv):
+        for name in (package, *(f"{package}.{part}" for part in parts)):
+            import_module(name)
+        return present(package)
+
+
+def present(package: str) -> Modules:
+    """Return the modules of a package that imports find at present."""
+    inner = f"{package}."
+    return {name: module for name, module in sys.modules.items() if name == package or name.startswith(inner)}
+
+
+def show(package: str, modules: Modules) -> None:
+    """Let imports of the package find these modules and no others."""
+    for name in present(package):
+        del sys.modules[name]
+    sys.modules.update(modules)
+
+
+@contextmanager
+def _hidden(package: str) -> Iterator[None]:
+    before = present(package)
+    show(package, {})
+    try:
+        yield
+    finally:
+        show(package, before)
+
+
+@contextmanager
+def _command_line(argv: Sequence[str]) -> Iterator[None]:
+    before = sys.argv
+    sys.argv = list(argv)
+    try:
+        yield
+    finally:
+        sys.argv = before

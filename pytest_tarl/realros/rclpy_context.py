@@ -1,0 +1,101 @@
+"""The rclpy context of a node under test: up and down as it likes, while the participant behind it stays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from inspect import ismethod
+from typing import TYPE_CHECKING, Any
+from weakref import WeakMethod
+
+from pytest_tarl.ros.scheduler import running_task
+
+if TYPE_CHECKING:
+    from pytest_tarl.realros.rclpy_network import RclpyNetwork
+
+_HANDLE = "_Context__context"  # where rclpy's own class keeps it
+_NODES = "_Context__node_weak_ref_list"
+
+
+class SharedParticipant:
+    """A context as rclpy.init makes one, to be mixed into rclpy's own class."""
+
+    network: RclpyNetwork
+    error: Any  # rclpy's RCLError
+    handle: Any
+    _callbacks: list[Any]
+    _call_on_shutdown_callbacks: Callable[[], None]
+    _remove_callback: Callable[[Any], None]
+
+    def __init__(self) -> None:
+        super().__init__()
+        task = running_task()
+        self._up = False
+        self.process = None if task is None else task.process
+        self.network.contexts.append(self)
+
+    def init(self, args: Any = None, **_: Any) -> None:
+        """Bring ROS up. Raises RuntimeError if it was up before."""
+        if self.handle is not None:
+            raise RuntimeError("Context.init() must only be called once")
+        if args is not None:
+            self.network.arguments = tuple(args)
+        setattr(self, _HANDLE, self.network.context.handle)
+        self._up = True
+
+    def ok(self) -> bool:
+        """Tell whether ROS is up."""
+        return self._up and not (self.process is not None and self.process.ending)
+
+    def destroy(self) -> None:
+        """Do nothing: the participant is not ours to destroy."""
+
+    def shutdown(self) -> None:
+        """Bring ROS down. Raises RuntimeError before `init`, RCLError where it is down."""
+        if self.handle is None:
+            raise RuntimeError("Context must be initialized before it can be shutdown")
+        if not self.ok():
+            failure = self.error("failed to shutdown: rcl_shutdown already called on the given context")
+            failure.tarl_shutdown = self.process is not None and self.process.ending
+            raise failure
+        self._cleanup()
+
+    def try_shutdown(self) -> None:
+        """Bring ROS down unless it is."""
+        if self.ok():
+            self._cleanup()
+
+    def on_shutdown(self, callback: Any) -> None:
+        """Have a function called when ROS goes down."""
+        if not callable(callback):
+            raise TypeError("callback should be a callable, got {}", type(callback))
+        if self.handle is not None and not self.ok():
+            callback()
+        else:
+            self._callbacks.append(
+                WeakMethod(callback, self._remove_callback) if ismethod(callback) else callback
+            )
+
+    def stop(self) -> None:
+        """Go down as on Ctrl-C: nodes stay until their program destroys them."""
+        if self._up:
+            self._up = False
+            self._call_on_shutdown_callbacks()
+
+    def _cleanup(self) -> None:
+        for reference in list(getattr(self, _NODES)):
+            node = reference()
+            if node is not None:
+                node.destroy_node()
+        self.stop()
+        self.network.wake_listening()
+
+    def __exit__(self, *_: object) -> None:
+        self.try_shutdown()
+
+
+def shared_context(network: RclpyNetwork) -> type[Any]:
+    """Return a class of contexts that share the participant of the run."""
+    rclpy = network.rclpy
+    error = rclpy.impl.implementation_singleton.rclpy_implementation.RCLError
+    bases = (SharedParticipant, rclpy.context.Context)
+    return type("Context", bases, {"network": network, "error": error})

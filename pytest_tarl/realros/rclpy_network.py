@@ -1,0 +1,198 @@
+"""The ROS 2 network of a test run: one participant, kept between episodes; the world's node; messages under way."""
+
+from __future__ import annotations
+
+import os
+import random
+from collections import Counter, deque
+from collections.abc import Callable, Mapping
+from time import monotonic, sleep
+from types import ModuleType
+from typing import Any
+
+from pytest_tarl.errors import RecordingError
+from pytest_tarl.realros.lockstep import PATIENCE, WireScheduler
+from pytest_tarl.ros.process import Process
+from pytest_tarl.ros.scheduler import Task
+
+WORLD = "tarl_world"
+_DOMAINS = range(1, 100)  # all of whose ports are below those that the kernel hands out
+_PAUSE = 0.0001  # seconds of wall time between two looks for a message that was sent
+
+
+class RclpyNetwork:
+    """One per test run. Everything is in one process and one participant, so that nothing has to be discovered."""
+
+    def __init__(self) -> None:
+        self._environment = _own_domain()
+        import rclpy
+        from rclpy.context import Context
+        from rclpy.node import Node
+
+        self.rclpy: ModuleType = rclpy
+        self.context = Context()
+        self.context.init(args=[WORLD])
+        self.world = Node(WORLD, context=self.context, start_parameter_services=False, enable_rosout=False)
+        self.scheduler = WireScheduler()
+        self.parameters: Mapping[str, Any] = {}
+        self.arguments: tuple[str, ...] = ()
+        self.listening: list[Task] = []  # tasks that any arrival may concern
+        self.nodes: list[tuple[Process, Any]] = []
+        self.clocks: list[Any] = []
+        self.contexts: list[Any] = []
+        self.expected: Counter[Any] = Counter()  # messages under way, by subscription of a node
+        self.for_world: deque[Any] = deque()  # subscriptions of the world, once for each message under way
+        self.node_publishes: Callable[[str, Any, Any], None] | None = None
+        self.node_subscribes: Callable[[str], None] | None = None
+        self._state: dict[Process, dict[str, Any]] = {}
+        self._told = -1
+
+    def close(self) -> None:
+        """Leave the network."""
+        self.world.destroy_node()
+        self.context.try_shutdown()
+        for name, value in self._environment.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+    def begin(self, scheduler: WireScheduler, parameters: Mapping[str, Any]) -> None:
+        """Start an episode."""
+        self.scheduler, self.parameters = scheduler, parameters
+        self._told = -1
+
+    def end(self) -> None:
+        """Destroy what the episode's nodes have left behind."""
+        for _, node in self.nodes:
+            node.destroy_node()
+        for entity in (*self.world.subscriptions, *self.world.publishers):
+            entity.destroy()
+        self.world._subscriptions.clear()
+        self.world._publishers.clear()
+        for kept in (self.nodes, self.clocks, self.contexts, self.listening, self.for_world):
+            kept.clear()
+        self.expected.clear()
+        self._state.clear()
+
+    def enter(self, process: Process, before: Process | None) -> None:
+        """Give a process the default context and executor that are its own."""
+        if before is not None:
+            self._state[before] = self._globals()
+        state = self._state.pop(process, {"context": None, "executor": None})
+        self.rclpy.utilities.__dict__["g_default_context"] = state["context"]
+        self.rclpy.__dict__["__executor"] = state["executor"]
+
+    def stop_contexts(self, process: Process) -> Callable[[], None]:
+        """Return what takes ROS down in a process."""
+
+        def stop() -> None:
+            for context in tuple(self.contexts):
+                if context.process is process:
+                    context.stop()
+            self.wake_listening()
+
+        return stop
+
+    def tell_time(self) -> None:
+        """Set the clocks of the nodes."""
+        now = self.scheduler.time
+        if now == self._told:
+            return
+        self._told = now
+        for clock in self.clocks:
+            clock.set_ros_time_override(self.rclpy.time.Time(nanoseconds=now, clock_type=clock.clock_type))
+
+    def wake_listening(self) -> None:
+        """Let tasks look again whether what they wait for has come."""
+        tasks, self.listening = self.listening, []
+        for task in tasks:
+            self.scheduler.wake(task)
+
+    def sent(self, publisher: Any) -> None:
+        """Note that a message is under way to everybody who is matched with its publisher."""
+        for subscription in self.matched(publisher):
+            if subscription in self.world._subscriptions:
+                self.for_world.append(subscription)
+            else:
+                self.expected[subscription] = min(
+                    self.expected[subscription] + 1, capacity(subscription.qos_profile)
+                )
+        self.scheduler.sent()
+        self.wake_listening()
+
+    def taken(self, subscription: Any) -> None:
+        """Note that an executor takes a message."""
+        if self.expected[subscription] > 0:
+            self.expected[subscription] -= 1
+
+    def under_way(self, executor: Any) -> bool:
+        """Tell whether something was sent to a node of the executor that it could take and has not found yet."""
+        return any(
+            self.expected[subscription] > 0 and executor.can_execute(subscription)
+            for node in executor.get_nodes()
+            for subscription in node.subscriptions
+        )
+
+    def take_for_world(self) -> tuple[str, Any] | None:
+        """Return topic and message of what nodes have sent first; None when nothing is under way."""
+        if not self.for_world:
+            return None
+        subscription = self.for_world.popleft()
+        deadline = monotonic() + PATIENCE
+        while monotonic() < deadline:
+            with subscription.handle:
+                found = subscription.handle.take_message(subscription.msg_type, False)
+            if found is not None:
+                return subscription.topic_name, found[0]
+            pause()
+        raise RecordingError(
+            f"A message on {subscription.topic_name} did not reach the world within {PATIENCE:g} s: look whether the "
+            "network of this machine lets processes talk on 127.0.0.1."
+        )
+
+    def matched(self, publisher: Any) -> list[Any]:
+        """Return the subscriptions that get what a publisher sends."""
+        topic = publisher.topic_name
+        return [
+            subscription
+            for node in (self.world, *(node for _, node in self.nodes))
+            for subscription in node.subscriptions
+            if subscription.topic_name == topic
+            and subscription.msg_type is publisher.msg_type
+            and self.compatible(publisher.qos_profile, subscription.qos_profile)
+        ]
+
+    def compatible(self, offered: Any, requested: Any) -> bool:
+        """Tell whether the middleware connects two profiles."""
+        answer, _ = self.rclpy.qos.qos_check_compatible(offered, requested)
+        return bool(answer != self.rclpy.qos.QoSCompatibility.ERROR)
+
+    def _globals(self) -> dict[str, Any]:
+        return {
+            "context": self.rclpy.utilities.__dict__["g_default_context"],
+            "executor": self.rclpy.__dict__["__executor"],
+        }
+
+
+def capacity(profile: Any) -> int:
+    """Return how many messages a subscription holds."""
+    keeps_all = profile.history.name == "KEEP_ALL"
+    return 1_000_000 if keeps_all else max(1, int(profile.depth))
+
+
+def pause(_sleep: Any = sleep) -> None:
+    """Let the threads of the middleware run for a while of wall time."""
+    _sleep(_PAUSE)
+
+
+def _own_domain() -> dict[str, str | None]:
+    """Keep to this machine and to a domain of our own; return what the environment said before."""
+    wanted = {
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        "ROS_DOMAIN_ID": str(random.SystemRandom().choice(_DOMAINS)),
+        "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",  # nothing is left in /dev/shm, whatever ends this process
+    }
+    before = {name: os.environ.get(name) for name in wanted}
+    os.environ.update(wanted)
+    return before

@@ -1,0 +1,92 @@
+"""One real rospy node: a private copy of rospy that is initialised once and keeps its connections between episodes."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Sequence
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from pytest_tarl.realros.copies import Modules, load_copy, show
+from pytest_tarl.ros.process import Process
+
+if TYPE_CHECKING:
+    from pytest_tarl.realros.rospy_network import RospyNetwork
+
+_PARTS = ("client", "core", "names", "rostime", "timer", "topics", "service", "numpy_msg", "impl.init",
+          "impl.tcpros", "impl.tcpros_base", "impl.tcpros_pubsub", "impl.tcpros_service", "impl.paramserver",
+          "impl.registration", "impl.simtime", "impl.rosout")  # fmt: skip
+
+
+class RospyCopy:
+    """A rospy of its own. `process` is the node that uses it in the present episode, None for the world's."""
+
+    def __init__(self, network: RospyNetwork, argv: Sequence[str]) -> None:
+        self.network = network
+        self.argv = tuple(argv)
+        self.modules: Modules = load_copy("rospy", _PARTS, argv)
+        self.process: Process | None = None
+        self.name = ""  # set by init_node
+        self.real: dict[str, Callable[..., Any]] = {}  # what patches have replaced
+        self.services: list[Any] = []  # of the present episode
+
+    def __getattr__(self, part: str) -> ModuleType:
+        """Return a module of this copy: `copy.core`, `copy.topics`."""
+        try:
+            return self.modules[f"rospy.{part}"]
+        except KeyError:
+            raise AttributeError(part) from None
+
+    @property
+    def rospy(self) -> ModuleType:
+        """What `import rospy` gives."""
+        return self.modules["rospy"]
+
+    @property
+    def tcp_services(self) -> ModuleType:
+        """Where services live."""
+        return self.modules["rospy.impl.tcpros_service"]
+
+    @property
+    def topic_manager(self) -> Any:
+        """What knows the connections of this node."""
+        return self.modules["rospy.impl.registration"].get_topic_manager()
+
+    def show(self) -> None:
+        """Let `import rospy` find this copy."""
+        show("rospy", self.modules)
+
+    def register(self, name: str, arguments: dict[str, Any]) -> None:
+        """Run the real `init_node`, once."""
+        self.real["init_node"](name, **{**arguments, "disable_signals": True})
+        self.name = self.names.get_caller_id()
+
+    def begin(self, process: Process) -> None:
+        """Look like a process that was just started. Connections stay."""
+        self.process = process
+        self.core.__dict__.update(_client_shutdown_hooks=[])
+        self.rostime.__dict__.update(_rostime_initialized=False, _rostime_current=None)
+        self.core.set_initialized(False)
+        self.core.__dict__["_logging_once"].called_caller_ids.clear()
+        self.core.__dict__["_logging_throttle"].last_logging_time_table.clear()
+        self.core.__dict__["_logging_identical"].last_logging_msg_table.clear()
+        for subscriber in self.topic_manager.subs.values():
+            subscriber.callbacks, subscriber.queue_size = [], None
+        for publisher in self.topic_manager.pubs.values():
+            publisher.seq, publisher.is_latch, publisher.latch = 0, False, None
+            publisher.subscriber_listeners.clear()
+
+    def end(self) -> None:
+        """Let go of the episode: no callback of it is called any more."""
+        for service in self.services:
+            service.shutdown("")
+        self.services.clear()
+        for subscriber in self.topic_manager.subs.values():
+            subscriber.callbacks = []
+        self.process = None
+
+    def close(self) -> None:
+        """Shut the real node down."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            self.real["signal_shutdown"]("the test run is over")

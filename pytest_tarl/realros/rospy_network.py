@@ -1,0 +1,293 @@
+"""The ROS 1 network of a test run: a master, the world's node, the nodes under test, kept from episode to episode."""
+
+from __future__ import annotations
+
+import threading
+import warnings
+import xmlrpc.client
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from time import monotonic, sleep
+from typing import Any
+
+from pytest_tarl.errors import NodeError, RecordingError
+from pytest_tarl.realros.lockstep import PATIENCE, Way, Wire, WireScheduler
+from pytest_tarl.realros.master import Master
+from pytest_tarl.realros.rospy_copy import RospyCopy
+from pytest_tarl.realros.rospy_patches import patch
+from pytest_tarl.ros.names import absolute
+from pytest_tarl.ros.process import Process
+from pytest_tarl.ros.scheduler import Task, running_task
+from pytest_tarl.ros.watchdog import WATCHDOG
+
+WORLD = "tarl_world"
+_BASE = frozenset({"/run_id", "/rosdistro", "/rosversion"})
+
+
+class RospyNetwork:
+    """One per test run. The episode sets `scheduler` and the two callbacks."""
+
+    def __init__(self) -> None:
+        self.master = Master()
+        self.wire = Wire()
+        self.scheduler = WireScheduler()
+        self.listening: list[Task] = []  # tasks that any arrival may concern
+        self.in_hooks = False
+        self.parameters: Mapping[str, Any] = {}
+        self.node_publishes: Callable[[str, Any], None] | None = None
+        self.node_subscribes: Callable[[str], None] | None = None
+        self._kept: dict[tuple[str, ...], RospyCopy] = {}
+        self._copies: dict[Process, RospyCopy] = {}
+        self._server = xmlrpc.client.ServerProxy(self.master.uri)
+        self.world = self._made((WORLD,))
+        self.world.register(WORLD, {"argv": [WORLD], "disable_rosout": True})
+
+    def close(self) -> None:
+        """Shut every node down, then the master."""
+        for copy in (*self._kept.values(), self.world):
+            copy.close()
+        self.master.close()
+
+    def begin(self, scheduler: WireScheduler, parameters: Mapping[str, Any]) -> None:
+        """Start an episode with an empty parameter server."""
+        self.wire.forget()
+        self.scheduler, self.parameters, self.in_hooks = scheduler, parameters, False
+        self.listening.clear()
+        for name in set(self._call("getParamNames")) - _BASE:
+            self._call("deleteParam", name)
+        for name, value in parameters.items():
+            if not name.startswith("~"):
+                self.world.rospy.set_param(absolute(name), value)
+
+    def end(self) -> None:
+        """Let go of an episode."""
+        for copy in self._copies.values():
+            copy.end()
+        self._copies.clear()
+        self.wire.forget()
+
+    def enter(self, process: Process) -> None:
+        """Give a process that starts its rospy, the same one as in the last episode."""
+        if process in self._copies:
+            return
+        key, number = process.argv, 0
+        while (copy := self._kept.get((*key, str(number)))) is not None and copy.process is not None:
+            number += 1  # the same program twice in one episode
+        if copy is None:
+            copy = self._kept[(*key, str(number))] = self._made(key)
+        copy.begin(process)
+        self._copies[process] = copy
+        process.at_end(lambda: self._run_hooks(copy, process))
+
+    def copy_of(self, process: Process) -> RospyCopy:
+        """Return the rospy of a process."""
+        return self._copies[process]
+
+    def initialise(self, copy: RospyCopy, name: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> None:
+        """Do what `init_node` does; a node that is kept only looks as if it were new."""
+        if copy.core.is_initialized():
+            copy.real["init_node"](name, *args, **kwargs)  # raises where the arguments differ
+            return
+        given = dict(zip(("argv", "anonymous", "log_level"), args, strict=False)) | dict(kwargs)
+        if not copy.name:
+            copy.register(name, given)
+        elif not given.get("anonymous") and copy.name.rpartition("/")[2] not in (name, self._renamed(copy)):
+            raise NodeError(
+                f"The node called itself {copy.name} in an earlier episode and {name} now: real rospy cannot rename a "
+                "node while its connections are kept. Start it with tarl.start(…, argv=[…]) that tell the names apart."
+            )
+        copy.core.set_initialized(True)
+        copy.rostime.set_rostime_initialized(True)
+        copy.rostime.__dict__["_rostime_current"] = copy.rostime.Time(0)
+        if copy.process is not None:
+            copy.process.label = copy.name
+        self._give_parameters(copy, given.get("argv"))
+        WATCHDOG.beat()
+
+    def joined(self, copy: RospyCopy, impl: Any, *, publishes: bool) -> None:
+        """Wait until a new publisher or subscriber has all its connections."""
+        if copy is not self.world and impl.resolved_name != "/rosout":
+            if publishes and self.node_publishes is not None:
+                self.node_publishes(impl.resolved_name, impl.data_class)
+            elif not publishes and self.node_subscribes is not None:
+                self.node_subscribes(impl.resolved_name)
+        self.connect(impl.resolved_name)
+
+    def connect(self, topic: str) -> None:
+        """Wait until everybody who publishes on a topic is connected with everybody who subscribes to it."""
+        deadline = monotonic() + PATIENCE
+        for sender, publisher in self._ends(topic, "pubs"):
+            for receiver, subscriber in self._ends(topic, "subs"):
+                if mismatch(publisher, subscriber):
+                    continue
+                while not _connected(sender, publisher, receiver, subscriber):
+                    if monotonic() > deadline:
+                        raise RecordingError(
+                            f"{sender.name} and {receiver.name} did not connect on {topic} within {PATIENCE:g} s."
+                        )
+                    sleep_really(0.0005)
+        WATCHDOG.beat()
+
+    def subscribers(self, topic: str) -> list[tuple[RospyCopy, Any]]:
+        """Return who subscribes to a topic, with the end of the connection."""
+        return [end for end in self._ends(topic, "subs") if end[0] is not self.world]
+
+    def sent(self, way: Way) -> None:
+        """Note that a message is under way."""
+        if way.receiver in {copy.name for copy in (self.world, *self._kept.values())}:
+            self.wire.expect(way)
+            self.scheduler.sent()
+
+    def latched(self, copy: RospyCopy, subscriber: Any, callback: Any, arguments: Any) -> None:
+        """Hand a new callback what others have latched on its topic."""
+        if copy.process is None:
+            return
+        for sender, publisher in self._ends(subscriber.resolved_name, "pubs"):
+            if publisher.is_latch and publisher.latch is not None and sender is not copy:
+                job = partial(spawn_callback, copy.process, callback, publisher.latch, arguments)
+                self.scheduler.later(job)
+
+    def wake_listening(self) -> None:
+        """Let tasks look again whether what they wait for has come."""
+        tasks, self.listening = self.listening, []
+        for task in tasks:
+            self.scheduler.wake(task)
+
+    def served(self, process: Process, handler: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        """Return a service's handler that runs as a task of its node, whoever's thread calls it."""
+
+        def handle(request: Any) -> Any:
+            answer: deque[Callable[[], Any]] = deque()
+            done = threading.Event()
+
+            def work() -> None:
+                try:
+                    result = handler(request)
+                    answer.append(lambda: result)
+                except Exception as error:
+                    answer.append(lambda error=error: _raise(error))  # type: ignore[misc]
+                finally:
+                    done.set()
+
+            self.wire.ask(lambda: _spawned(process, work))
+            done.wait()
+            return answer[0]() if answer else None
+
+        return handle
+
+    def in_thread(self, task: Task, call: Callable[[], Any]) -> Any:
+        """Run a blocking call of rospy in a thread; meanwhile nodes run, the calling task waits."""
+        outcome: list[Callable[[], Any]] = []
+
+        def work() -> None:
+            try:
+                result = call()
+                outcome.append(lambda: result)
+            except BaseException as error:
+                outcome.append(lambda error=error: _raise(error))  # type: ignore[misc]
+            finally:
+                self.wire.wake()
+
+        threading.Thread(target=work, daemon=True).start()
+
+        def attend() -> None:
+            job = self.wire.wait_for_job(lambda: bool(outcome))
+            if job is not None:
+                job()
+            if outcome:
+                self.scheduler.wake(task)
+            else:
+                self.scheduler.later(attend)
+
+        self.scheduler.later(attend)
+        while not outcome:
+            self.scheduler.wait()
+        return outcome[0]()
+
+    def _made(self, argv: Sequence[str]) -> RospyCopy:
+        copy = RospyCopy(self, argv)
+        patch(copy)
+        return copy
+
+    def _ends(self, topic: str, kind: str) -> list[tuple[RospyCopy, Any]]:
+        found = []
+        for copy in (self.world, *self._kept.values()):
+            impl = getattr(copy.topic_manager, kind).get(topic)
+            if impl is not None and copy.name:
+                found.append((copy, impl))
+        return found
+
+    def _renamed(self, copy: RospyCopy) -> str:
+        return str(copy.names.get_mappings().get("__name", ""))
+
+    def _give_parameters(self, copy: RospyCopy, argv: Sequence[str] | None) -> None:
+        for name, value in self.parameters.items():
+            if not name.startswith("/"):
+                own = f"{copy.name}/{name.removeprefix('~')}"
+                if not self._call("hasParam", own):
+                    self.world.rospy.set_param(own, value)
+        copy.client._init_node_params(copy.argv if argv is None else argv, copy.name)
+
+    def _run_hooks(self, copy: RospyCopy, process: Process) -> None:
+        hooks, copy.core.__dict__["_client_shutdown_hooks"] = copy.core._client_shutdown_hooks, []
+        self.in_hooks = True
+        task = running_task()
+        for hook in hooks:
+            if task is None:
+                self.scheduler.spawn(process, hook)
+                continue
+            try:
+                hook()
+            except Exception as error:
+                process.failed(task, error)
+        self.scheduler.later(self._hooks_done)
+
+    def _hooks_done(self) -> None:
+        self.in_hooks = False
+
+    def _call(self, name: str, *args: Any) -> Any:
+        return getattr(self._server, name)("/" + WORLD, *args)[2]
+
+
+def spawn_callback(process: Process, callback: Any, message: Any, arguments: Any) -> None:
+    """Run a callback in a task of its node."""
+    if process.ending:
+        return
+    if arguments is None:
+        process.scheduler.spawn(process, callback, message)
+    else:
+        process.scheduler.spawn(process, callback, message, arguments)
+
+
+def mismatch(publisher: Any, subscriber: Any) -> bool:
+    """Tell whether two ends of a topic are of different types."""
+    sums = (publisher.data_class._md5sum, subscriber.data_class._md5sum)
+    return "*" not in sums and sums[0] != sums[1]
+
+
+def sleep_really(duration: float, _sleep: Callable[[float], None] = sleep) -> None:
+    """Let other threads run for a while of wall time."""
+    _sleep(duration)
+
+
+def quiet_publisher(copy: RospyCopy, topic: str, message_class: Any) -> Any:
+    """Return a publisher that sends in the caller's thread; rospy would advise against it."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SyntaxWarning)
+        return copy.rospy.Publisher(topic, message_class)
+
+
+def _connected(sender: RospyCopy, publisher: Any, receiver: RospyCopy, subscriber: Any) -> bool:
+    out = any(connection.endpoint_id == receiver.name for connection in publisher.connections)
+    return out and any(
+        getattr(connection, "callerid_pub", None) == sender.name for connection in subscriber.connections
+    )
+
+
+def _spawned(process: Process, work: Callable[[], None]) -> None:
+    process.scheduler.spawn(process, work)
+
+
+def _raise(error: BaseException) -> Any:
+    raise error
