@@ -34,6 +34,7 @@ class Options:
     select: tuple[str, ...] | None = None
     ignore: tuple[str, ...] | None = None
     exclude: tuple[str, ...] | None = None
+    extend_exclude: tuple[str, ...] = ()
     baseline: Path | None = None
     no_baseline: bool = False
     write_baseline: bool = False
@@ -107,11 +108,17 @@ def resolve(options: Options) -> Config:
         origins[key] = origin
         return typed if typed is not None else table.get(key, default)
 
+    excluded = choose("exclude", options.exclude, ())
+    if options.extend_exclude:
+        before = origins["exclude"]
+        origins["exclude"] = (
+            f"{before} and command line" if file and before == shown(file) else "command line"
+        )
     return Config(
         root=root,
         select=choose("select", options.select, ()),
         ignore=choose("ignore", options.ignore, ()),
-        exclude=choose("exclude", options.exclude, ()),
+        exclude=(*excluded, *options.extend_exclude),
         baseline=_baseline(options, root, choose("baseline", options.baseline, None)),
         fail_on=choose("fail-on", options.fail_on, "explicit"),
         sources=choose("sources", None, ()),

@@ -78,10 +78,6 @@ def _remaps(value: Any) -> tuple[tuple[str, str], ...] | None:
     return tuple(value.items()) if good else None
 
 
-def _switch(value: Any) -> bool | None:
-    return value if isinstance(value, bool) else None
-
-
 def _place(value: Any) -> bool:
     """Tell whether a value says where an argument stands: its position from 0 or its keyword."""
     return (type(value) is int and value >= 0) or (isinstance(value, str) and value.isidentifier())
@@ -92,6 +88,10 @@ _WRAPPER_KEYS: Final = frozenset({"like", "topic", "type", "callback", "extra"})
 
 def _text(value: Any) -> str | None:
     return value if isinstance(value, str) and value else None
+
+
+def _switch(value: Any) -> bool | None:
+    return value if isinstance(value, bool) else None
 
 
 def _fail_on(value: Any) -> str | None:

@@ -7,7 +7,7 @@ import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final, NoReturn
+from typing import Final, NoReturn, TypeVar
 
 from tarl_lint import __version__
 from tarl_lint.config import Options, Stdin, suggestion
@@ -15,6 +15,8 @@ from tarl_lint.errors import UsageError
 from tarl_lint.keys import BASELINE_NAME, FAIL_ON
 from tarl_lint.report import FORMATS
 from tarl_lint.source import LARGEST
+
+T = TypeVar("T")
 
 _DESCRIPTION: Final = (
     "Find every flow from a subscribed ROS topic to a published one, with the statements on its path."
@@ -53,7 +55,17 @@ def _codes(text: str) -> tuple[str, ...]:
     return tuple(code.strip().upper() for code in text.split(",") if code.strip())
 
 
-def _per_file(text: str) -> tuple[str, tuple[str, ...]]:
+def _patterns(text: str) -> tuple[str, ...]:
+    """Split at commas, except in braces and brackets, which patterns may hold."""
+    return tuple(part.strip() for part in re.split(r",(?![^\[{]*[\]}])", text) if part.strip())
+
+
+def _per_file(text: str) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Read `PATTERN:CODES PATTERN:CODES …`, as flake8 writes them."""
+    return tuple(_pair(part) for part in re.split(r"(?<=[A-Za-z0-9])\s+(?=\S+:)", text.strip()))
+
+
+def _pair(text: str) -> tuple[str, tuple[str, ...]]:
     pattern, _, codes = text.rpartition(":")
     if not pattern or not _codes(codes):
         raise argparse.ArgumentTypeError(f"{text!r} has no form PATTERN:CODES, such as 'tests/:TARL1'")
@@ -96,20 +108,24 @@ def _add_output(group: argparse._ArgumentGroup) -> None:
 
 
 def _add_choice(group: argparse._ArgumentGroup) -> None:
-    group.add_argument("--select", type=_codes, metavar="CODES", help="only these rules: TARL101,TARL2 …")
-    group.add_argument("--ignore", type=_codes, metavar="CODES", help="not these rules")
+    for option, meaning in (("select", "only these rules: TARL101,TARL2 …"), ("ignore", "not these rules")):
+        group.add_argument(f"--{option}", action="extend", type=_codes, metavar="CODES", help=meaning)
     group.add_argument(
         "--exclude",
-        action="append",
-        metavar="PATTERN",
-        help="leave out paths, as .gitignore does; may be repeated",
+        action="extend",
+        type=_patterns,
+        metavar="PATTERNS",
+        help="leave out paths, as .gitignore does: vendor/,*_gen.py; instead of those of the settings",
+    )
+    group.add_argument(
+        "--extend-exclude", action="extend", type=_patterns, metavar="PATTERNS", help="leave out these too"
     )
     group.add_argument(
         "--per-file-ignores",
-        action="append",
+        action="extend",
         type=_per_file,
         metavar="PATTERN:CODES",
-        help="not these rules in the files that match; may be repeated",
+        help="not these rules in the files that match: 'tests/:TARL1 *_demo.py:TARL102,TARL2'",
     )
     group.add_argument(
         "--stdin-filename", type=Path, metavar="FILE", help="which file's text the standard input holds"
@@ -129,10 +145,12 @@ def _add_policy(group: argparse._ArgumentGroup) -> None:
         "--exit-zero", action="store_const", const="never", dest="fail_on", help="--fail-on never"
     )
     group.add_argument(
-        "--baseline", type=Path, metavar="FILE", help=f"accepted flows (default: {BASELINE_NAME})"
+        "--baseline", type=Path, metavar="FILE", help=f"what is accepted (default: {BASELINE_NAME})"
     )
-    group.add_argument("--no-baseline", action="store_true", help="report accepted flows too")
-    group.add_argument("--write-baseline", action="store_true", help="accept all present flows")
+    group.add_argument("--no-baseline", action="store_true", help="report what is accepted, too")
+    group.add_argument(
+        "--write-baseline", action="store_true", help="accept the flows and hazards that are there"
+    )
 
 
 def _add_speed(group: argparse._ArgumentGroup) -> None:
@@ -168,17 +186,22 @@ def options(typed: argparse.Namespace) -> Options:
         paths=paths or (Path(),),
         stdin=stdin,
         config=typed.config,
-        select=typed.select,
-        ignore=typed.ignore,
-        exclude=tuple(typed.exclude) if typed.exclude else None,
+        select=_given(typed.select),
+        ignore=_given(typed.ignore),
+        exclude=_given(typed.exclude),
+        extend_exclude=tuple(typed.extend_exclude or ()),
         baseline=typed.baseline,
         no_baseline=typed.no_baseline,
         write_baseline=typed.write_baseline,
         fail_on=typed.fail_on,
-        per_file_ignores=tuple(typed.per_file_ignores) if typed.per_file_ignores else None,
+        per_file_ignores=_given(typed.per_file_ignores),
         cache=not typed.no_cache,
         jobs=typed.jobs,
     )
+
+
+def _given(values: list[T] | None) -> tuple[T, ...] | None:
+    return tuple(values) if values is not None else None
 
 
 def _stdin(typed: argparse.Namespace) -> Stdin | None:

@@ -237,4 +237,7 @@ def _place(finding: Finding) -> tuple[object, ...]:
 def _nothing(paths: Sequence[Path], notes: Notes) -> str:
     places = ", ".join(path.as_posix() for path in paths)
     nodes = f" (there are {notes.cpp_nodes} C++ nodes, which it does not read)" if notes.cpp_nodes else ""
-    return f"There is no Python file to lint in {places}{nodes}: name a file or a directory that holds some."
+    return (
+        f"There is no Python file to lint in {places}{nodes}: name a file, or a directory that holds some. "
+        "What .gitignore or exclude names, is hidden, or was installed is left out."
+    )

@@ -90,7 +90,11 @@ class Library(Texts):
         if catalog.scalar(qualified):
             same = qualified == "builtins.float" and len(arguments[0]) == 1
             return Value(deps, arguments[0][0].pts if same else frozenset())
-        return self.new_object(arguments, deps, frame, call, fields=name[:1].isupper())
+        made = self.new_object(arguments, deps, frame, call, fields=name[:1].isupper())
+        if self.config.named and name[:1].isupper():
+            for obj in made.pts:
+                obj.name = qualified  # the settings may speak of its methods
+        return made
 
     def new_object(
         self, arguments: Arguments, deps: frozenset[int], frame: Frame, call: ir.Call, *, fields: bool
@@ -140,6 +144,8 @@ class Library(Texts):
     ) -> Value:
         """Call a method of an object that is not a class of ours."""
         kind = target.kind if target is not None else ""
+        if target is not None and kind == "lib" and f"{target.name}.{name}" in self.config.named:
+            return self.call_library(f"{target.name}.{name}", arguments, frame, call)
         if name == "__new__" and kind in ("super", "class"):
             return self._blank_object(Invocation(name, base, arguments, frame, call))
         if target is not None and isinstance(target.info, Publisher) and name == "publish":
