@@ -26,7 +26,9 @@ from pytest_tarl.rollout import Rollout
 from pytest_tarl.settings import Designation, Options
 from tarl_lint.api import Analysis, analyse
 
-IGNORED = "# Only the recorded utility is worth committing.\n*\n!.gitignore\n!utility/\n!utility/**\n"
+IGNORED = (
+    "# Only the recorded utility is worth committing.\n*\n!.gitignore\n!utility/\n!utility/**\nutility/.*\n"
+)
 
 
 @dataclass(frozen=True)

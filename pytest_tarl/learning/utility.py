@@ -7,14 +7,17 @@ to, q = (I - γP)⁻¹ρ̄, straight from the counts.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from pytest_tarl.learning.tables import START, Chain, Floats, Ints, ListSample, sum_by
 
 GAMMA_EVENT = 0.95
 GAMMA_STEP = 0.97
-DENSE = 1500  # states up to which the equations are solved at once
+DENSE = 150  # states up to which the equations are solved at once
 PRECISE = 1e-12  # of the largest utility: the change in one sweep at which solving by sweeps ends
+STEPS = 300  # of the biconjugate gradients, which are left to the sweeps where they do not get there by then
 
 
 def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamma: float) -> Floats:
@@ -30,10 +33,17 @@ def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamm
     inside = place[next_state] >= 0  # END indexes the last entry, which stays -1
     start, end, mean = place[state[inside]], place[next_state[inside]], visits[seen]
     weight = gamma * count[inside] / mean[start]
-    solve = _solved if gamma >= 1.0 or seen.size <= DENSE else _swept
+    solve = _solved if gamma >= 1.0 or seen.size <= DENSE else _approached
     utility = np.full(states, np.nan)
-    utility[seen] = solve(start, end, weight, reward[seen] / mean)
+    utility[seen] = solve(*_united(start, end, weight), reward[seen] / mean)
     return utility
+
+
+def _united(start: Ints, end: Ints, weight: Floats) -> tuple[Ints, Ints, Floats]:
+    """Add up the weights of transitions that several episodes have made."""
+    span = int(end.max(initial=0)) + 1
+    codes, place = np.unique(start * span + end, return_inverse=True)
+    return codes // span, codes % span, sum_by(place, weight, codes.size)
 
 
 def _solved(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
@@ -43,14 +53,51 @@ def _solved(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
     return np.linalg.solve(system, mean).astype(np.float64, copy=False)
 
 
-def _swept(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
-    """Solve the same by sweeps, which contract by γ each: memory for the transitions only, not for all pairs."""
-    utility: Floats = mean.copy()
+def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
+    """Solve the same by stabilised biconjugate gradients (van der Vorst 1992), then by sweeps, which contract by γ.
+
+    It takes memory for the transitions only, not for all pairs of states. The sweeps finish what the gradients began:
+    one or two where these converged, as many as it takes where they broke down.
+    """
+
+    def ahead(values: Floats) -> Floats:
+        return sum_by(start, weight * values[end], mean.size)
+
+    utility = _gradients(lambda values: values - ahead(values), mean)
     change = np.inf
     while change > PRECISE * np.abs(utility).max():
-        swept: Floats = mean + sum_by(start, weight * utility[end], mean.size)
+        swept: Floats = mean + ahead(utility)
         change, utility = float(np.abs(swept - utility).max()), swept
     return utility
+
+
+def _gradients(system: Callable[[Floats], Floats], right: Floats) -> Floats:
+    """Return the x nearest to a solution of system(x) = right that biconjugate gradients reach, from x = right."""
+    best = solution = right.copy()
+    shadow = residual = right - system(solution)
+    direction = residual.copy()
+    nearest = scale = float(np.linalg.norm(residual))
+    along = float(shadow @ residual)
+    for _ in range(STEPS):
+        moved = system(direction)
+        overlap = float(shadow @ moved)
+        if nearest <= PRECISE * scale or overlap == 0.0:
+            break
+        reach = along / overlap
+        half = residual - reach * moved
+        turned = system(half)
+        size = float(turned @ turned)
+        damping = float(turned @ half) / size if size else 0.0
+        solution = solution + reach * direction + damping * half
+        residual = half - damping * turned
+        length = float(np.linalg.norm(residual))
+        if length < nearest:
+            nearest, best = length, solution
+        before, along = along, float(shadow @ residual)
+        if not np.isfinite(along) or damping == 0.0 or before == 0.0:
+            break
+        direction = residual + (along / before) * (reach / damping) * (direction - damping * moved)
+    return best
 
 
 def batch(recorded: ListSample, cells: int, scale: float, gamma: float = GAMMA_EVENT) -> Floats:

@@ -141,13 +141,21 @@ def test_sarsa_knows_cells_by_what_they_are_and_not_by_their_number_in_a_trace()
     assert np.isnan(table[1:, 0]).all()
 
 
-def test_solving_by_sweeps_agrees_with_solving_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_solving_step_by_step_agrees_with_solving_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     draws = np.random.default_rng(3)
     state, following = np.repeat(np.arange(40), 5), draws.integers(-1, 40, 200)
     arguments = (state, following, draws.integers(1, 9, 200), draws.normal(size=40))
     at_once = fixed_point(*arguments, gamma=0.95)
     monkeypatch.setattr(utility, "DENSE", 10)
     assert fixed_point(*arguments, gamma=0.95) == pytest.approx(at_once, abs=1e-9)
+
+
+def test_where_the_gradients_break_down_the_sweeps_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(utility, "DENSE", 1)
+    monkeypatch.setattr(utility, "STEPS", 2)
+    state = np.arange(300)
+    values = fixed_point(state, np.append(state[1:], END), np.ones_like(state), np.ones(300), gamma=0.9)
+    assert values == pytest.approx(10 * (1 - 0.9 ** np.arange(300, 0, -1)))
 
 
 def test_a_hundred_thousand_states_need_no_table_of_all_their_pairs() -> None:

@@ -1,0 +1,236 @@
+"""What statistics and utility cost: from the buffer to counts, from counts to q, and how it grows.
+
+    python benchmarks/statistics_cost.py            # about a minute
+    python benchmarks/statistics_cost.py --workers  # also records with one and two worker processes
+
+Not called statistics.py: beside other scripts it would stand in for the module of that name.
+Times are CPU time of this process, minimum of several; the speed-up by workers is wall time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import time
+import tracemalloc
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from pytest_tarl.instrumentation.recorder import Recorder
+from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.learning.fixture import Fixture, load, save
+from pytest_tarl.learning.merging import merge
+from pytest_tarl.learning.statistics import sample
+from pytest_tarl.learning.tables import Sample
+from pytest_tarl.learning.utility import batch, chain_utility
+from pytest_tarl.model import SitePlace, TaintList
+from pytest_tarl.sensors import Sensor
+
+SITES = 12
+REPEATS = 5
+GROWTH = (1, 2, 4, 8)
+
+
+def main() -> None:
+    """Print every table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("--workers", action="store_true", help="also measure two worker processes")
+    arguments = parser.parse_args()
+    print("| what | measured | goal |\n|---|---|---|")
+    for line in (*throughput(), *solving()):
+        print(line)
+    print("\n| | 1× | 2× | 4× | 8× |\n|---|---|---|---|---|")
+    for line in growth():
+        print(line)
+    if arguments.workers:
+        print("\n| 60 episodes of 0.2 s | wall s |\n|---|---|")
+        for line in speed_up():
+            print(line)
+
+
+def throughput(events: int = 1_000_000) -> Iterator[str]:
+    """Measure from a recorder's buffer to the statistics of one episode."""
+    steps = events // SITES
+    recorder = recorded(steps)
+    whole = least(lambda: sample(recorder().finish(), 0, True, [range(SITES)]))
+    filling = least(recorder)
+    trace = recorder().finish()
+    counting = least(lambda: sample(trace, 0, True, [range(SITES)]))
+    rate = events / (whole - filling) / 1e6
+    yield f"| buffer → statistics, {events:,} events | {rate:.1f} M events/s | ≥ 10 |"
+    yield f"| of which trace → statistics | {events / counting / 1e6:.1f} M events/s | |"
+
+
+def recorded(steps: int) -> Callable[[], Recorder]:
+    """Return what makes a recorder with `steps` steps of events in its buffer."""
+    draws = np.random.default_rng(0)
+    cells = np.abs(np.cumsum(draws.integers(-1, 2, steps))) % 48
+    rewards = draws.normal(size=steps).tolist()
+    chunks = [[x for n in range(SITES) for x in (n, float(n) + reward)] for reward in rewards]
+
+    def fill() -> Recorder:
+        recorder = Recorder()
+        namespace: dict[str, object] = {}
+        recorder.bind(namespace, "hook")
+        entries = recorder._entries()
+        for cell, chunk, reward in zip(cells.tolist(), chunks, rewards, strict=True):
+            recorder.latch((cell,))
+            entries.extend(chunk)
+            recorder.reward(reward)
+        return recorder
+
+    return fill
+
+
+def solving() -> Iterator[str]:
+    """Measure the batch solution."""
+    chained = walk(episodes=200, steps=400, cells=2000, sites=0)
+    measured = least(lambda: chain_utility(chained.chain, 2000)) * 1e3
+    seen = len(np.unique(chained.chain.cell))
+    yield f"| solve U(x), {seen:,} cells, {chained.chain.cell.size:,} transitions | {measured:.1f} ms | ≤ 5 |"
+    listed = walk(episodes=200, steps=400, cells=170, sites=SITES)
+    states = len(np.unique(listed.lists[0].edges.state))
+    solved = least(lambda: batch(listed.lists[0], 170, 1.0)) * 1e3
+    yield f"| solve q(x, n), {states:,} states | {solved:.1f} ms | ≤ 5 |"
+
+
+def growth() -> Iterator[str]:
+    """Measure time, peak memory and file size against the number of events, cells, lists and episodes."""
+    base = {"episodes": 50, "steps": 400, "cells": 50, "lists": 1}
+    for grown, label in (
+        ("steps", "events"),
+        ("cells", "cells"),
+        ("lists", "lists"),
+        ("episodes", "episodes"),
+    ):
+        rows = [cost(**base | {grown: base[grown] * factor}) for factor in GROWTH]
+        for position, what in enumerate(("ms to count and merge", "ms to solve", "peak MB", "fixture kB")):
+            figures = " | ".join(f"{row[position]:.3g}" for row in rows)
+            yield f"| {label}: {what} | {figures} |"
+
+
+def cost(episodes: int, steps: int, cells: int, lists: int) -> tuple[float, float, float, float]:
+    """Return milliseconds to count and to solve, peak memory in MB and the size of the fixture in kB."""
+    traces = [episode(seed, steps, cells, SITES) for seed in range(episodes)]
+    members = [range(SITES)] * lists
+
+    def counted() -> Sample:
+        return merge([sample(trace, seed, True, members) for seed, trace in enumerate(traces)])
+
+    whole = counted()
+    counting = least(counted, repeats=2)
+    solved = least(lambda: [batch(one, len(whole.cells), 1.0) for one in whole.lists], repeats=2)
+    tracemalloc.start()
+    counted()
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return counting * 1e3, solved * 1e3, peak / 1e6, stored(whole) / 1e3
+
+
+def stored(whole: Sample) -> int:
+    """Return the size of the fixture in bytes."""
+    places = tuple(SitePlace(f"s{n}", "node.py", n, f"x = {n}", "data", "assign") for n in range(SITES))
+    lists = tuple(TaintList(f"/in{i}", "/out", places) for i in range(len(whole.lists)))
+    tables = tuple(np.full((len(whole.cells), SITES), np.nan) for _ in lists)
+    fixture = Fixture("test", 0, (Sensor("x"),), lists, {}, whole, tables)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "a.npz")
+        save(fixture, path)
+        load(path)
+        return path.stat().st_size
+
+
+def walk(episodes: int, steps: int, cells: int, sites: int) -> Sample:
+    """Return many episodes of a random walk over cells."""
+    members = [range(sites)] if sites else []
+    return merge(
+        [sample(episode(s, steps, cells, max(sites, 1)), s, True, members) for s in range(episodes)],
+        cells=[(i,) for i in range(cells)],
+    )
+
+
+def episode(seed: int, steps: int, cells: int, sites: int) -> Trace:
+    """Return an episode in which every step passes through all sites, in a cell near the last one."""
+    draws = np.random.default_rng(seed)
+    cell = (draws.integers(cells) + np.cumsum(draws.integers(-1, 2, steps))) % cells
+    names, place = np.unique(cell, return_inverse=True)
+    place = place.astype(np.int32)
+    return Trace(
+        cells=tuple((int(name),) for name in names),
+        site=np.tile(np.arange(sites, dtype=np.int32), steps),
+        flow=np.abs(draws.normal(size=steps * sites)),
+        event_cell=np.repeat(place, sites),
+        event_step=np.repeat(np.arange(steps, dtype=np.int32), sites),
+        step_cell=place,
+        reward=draws.normal(size=steps),
+        parts={},
+    )
+
+
+def speed_up() -> Iterator[str]:
+    """Record a simulation that takes its time, here and on two workers."""
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        (root / "node.py").write_text(NODE)
+        (root / "test_slow.py").write_text(TEST)
+        seconds = {}
+        for workers in (1, 2):
+            command = [sys.executable, "-m", "pytest", "-q", "--tarl-record", f"--tarl-workers={workers}"]
+            before = time.perf_counter()
+            subprocess.run(command, cwd=root, check=True, stdout=subprocess.DEVNULL, env=dict(os.environ))
+            seconds[workers] = time.perf_counter() - before
+            yield f"| {workers} worker{'s' * (workers > 1)} | {seconds[workers]:.1f} |"
+        yield f"| ratio | {seconds[1] / seconds[2]:.2f} |"
+
+
+def least(work: Callable[[], object], repeats: int = REPEATS) -> float:
+    """Return the least CPU time of several runs, in seconds."""
+    times = []
+    for _ in range(repeats):
+        before = time.process_time()
+        work()
+        times.append(time.process_time() - before)
+    return min(times)
+
+
+NODE = """\
+import rospy
+from std_msgs.msg import Float64
+
+def heard(msg):
+    out.publish(2.0 * msg.data)
+
+rospy.init_node("doubler")
+out = rospy.Publisher("/out", Float64, queue_size=1)
+rospy.Subscriber("/in", Float64, heard)
+rospy.spin()
+"""
+TEST = """\
+import time
+import pytest
+from pytest_tarl import Sensor
+from pytest_tarl.ros import message_type
+
+Float64 = message_type("std_msgs/msg/Float64")
+
+X = Sensor("x", topic="/in", field="data", low=0, high=1, bins=4)
+
+@pytest.mark.tarl(nodes=["node.py"], sensors=[X], episodes=60)
+def test_doubles(tarl):
+    tarl.start("node.py")
+    for value in tarl.rng("world").uniform(size=10):
+        tarl.bus.publish("/in", Float64(data=float(value)))
+        tarl.step(0.1)
+        until = time.process_time() + 0.02  # a simulation that computes
+        while time.process_time() < until:
+            pass
+        tarl.reward(1.0)
+"""
+
+if __name__ == "__main__":
+    main()
