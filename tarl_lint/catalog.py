@@ -202,6 +202,20 @@ ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
     **dict.fromkeys(("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"), 0),
     **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), 0),
 }  # fmt: skip
+KEEPERS: Final = frozenset(
+    [
+        "functools.wraps",
+        "functools.update_wrapper",
+        "builtins.print",
+        "builtins.repr",
+        "builtins.id",
+        "builtins.hash",
+        "inspect.signature",
+        "inspect.getfullargspec",
+        "inspect.iscoroutinefunction",
+        "asyncio.iscoroutinefunction",
+    ]
+)  # functions of libraries that never call what they are given
 MAY_BE_NONE: Final = frozenset(
     [
         "get",

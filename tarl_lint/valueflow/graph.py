@@ -145,6 +145,20 @@ class Graph:
             for node, item in pending:
                 carrier = self.carried[node][0]
                 self.flow(self.through(frozenset([item]), frozenset(self.data[carrier])), node)
+        self._feed()
+
+    def _feed(self) -> None:
+        """Let what goes in circles between objects begin somewhere: each maker feeds all that only pass it round."""
+        circles: dict[int, list[int]] = {}
+        for node, (_, origin) in self.carried.items():
+            circles.setdefault(origin, []).append(node)
+        for origin, nodes in circles.items():
+            fed, rest = {origin}, nodes
+            while news := [n for n in rest if not self.data[n].isdisjoint(fed)]:
+                fed.update(news)
+                rest = [n for n in rest if n not in fed]
+            for node in rest:
+                self.flow([origin], node)
 
     def hold(self, carrier: int, content: Nodes) -> None:
         """Remember what was inside an object when `carrier` passed it on."""

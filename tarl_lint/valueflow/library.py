@@ -78,7 +78,8 @@ class Library(Texts):
         """Pass the arguments on to the result; write the argument that the catalog says is written."""
         name = qualified.rpartition(".")[2]
         deps = self.all_used(arguments)
-        self.call_back(arguments, frame, call)
+        if qualified not in catalog.KEEPERS:
+            self.call_back(arguments, frame, call)
         written = catalog.written(qualified)
         if written is not None and written < len(arguments[0]):
             news = self.through_statement(Value(deps), frame, call)
