@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Final
 
-from tarl_lint.model import Dependence, Finding, Flow, Sink, Source, Step
+from tarl_lint.model import Dependence, Finding, Flow, Sink, Step
 from tarl_lint.report.frame import frame
-from tarl_lint.report.line import Glyphs, Line, Style, View, columns, crop, location, tabs
+from tarl_lint.report.line import Glyphs, Line, Style, View, columns, crop, location, one_line, tabs
 
 _WIDE: Final = 140  # columns of a statement where no terminal sets a limit
 _STYLES: Final[Mapping[Dependence, Style]] = {"data": "data", "control": "control", "context": "quiet"}
@@ -63,16 +63,19 @@ def _flow(finding: Finding, flow: Flow, name: str) -> Line:
         (f"{finding.code} {flow.kind}", flow.kind),
         (" from ", ""),
         (name, "strong"),
-        (f"  {subscription(flow.source, flow.sink.span.path)}", "quiet"),
+        (f"  {subscription(flow)}", "quiet"),
     )
 
 
-def subscription(source: Source, beside: str) -> str:
-    """Say where a message comes in, as seen from a file: `line 36, callback`."""
+def subscription(flow: Flow) -> str:
+    """Say where a message comes in, as seen from the publish call: `line 36, on_odom`."""
+    source, sink = flow.source, flow.sink
     place = f"line {source.span.line}"
-    if source.span.path != beside:
-        place = f"{source.span.path}:{source.span.line}"
-    return f"{place}, {source.callback}" if source.callback else place
+    if source.span.path != sink.span.path:
+        place = f"{one_line(source.span.path)}:{source.span.line}"
+    owner = sink.qualname.rpartition(".")[0]
+    callback = source.callback.removeprefix(f"{owner}.") if owner else source.callback
+    return f"{place}, {callback}" if callback else place
 
 
 def taint_list(flow: Flow, view: View) -> Iterator[Line]:
@@ -91,7 +94,7 @@ def taint_list(flow: Flow, view: View) -> Iterator[Line]:
 
 
 def _where(step: Step, beside: str) -> str:
-    return str(step.span.line) if step.span.path == beside else f"{step.span.path}:{step.span.line}"
+    return str(step.span.line) if step.span.path == beside else f"{one_line(step.span.path)}:{step.span.line}"
 
 
 def _one_line(code: str) -> str:

@@ -45,7 +45,7 @@ def _flows(result: Result) -> Iterator[_Note]:
 
 
 def _sentence(finding: Finding, flow: Flow) -> str:
-    return f"{finding.message}: {flow.kind}, subscribed at {subscription(flow.source, flow.sink.span.path)}."
+    return f"{finding.message}: {flow.kind}, subscribed at {subscription(flow)}."
 
 
 def _hazards(result: Result) -> Iterator[_Note]:

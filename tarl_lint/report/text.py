@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from tarl_lint.model import Finding
 from tarl_lint.report import summary
-from tarl_lint.report.line import Line, Style, View, location
+from tarl_lint.report.line import Line, Style, View, location, one_line
 from tarl_lint.runner import UNREADABLE, Result
 
 
@@ -19,6 +19,10 @@ def report(result: Result, view: View) -> Iterator[Line]:
     for finding in result.new:
         if finding.flow is None:
             yield from _hazard(finding, result, view)
+    if flows := [f.flow for f in result.new if f.flow]:
+        from tarl_lint.report.overview import overview
+
+        yield from overview(flows, view)
     yield from summary.vanished(result, view)
     yield from summary.unused(result)
     if view.statistics:
@@ -42,7 +46,11 @@ def concise(result: Result, view: View) -> Iterator[Line]:
 
 def _errors(result: Result) -> Iterator[Line]:
     for error in result.errors if result.names_errors else ():
-        yield ((f"{error.path}:{error.line}:1", "place"), (f" {UNREADABLE} ", "error"), (error.message, ""))
+        yield (
+            (f"{one_line(error.path)}:{error.line}:1", "place"),
+            (f" {UNREADABLE} ", "error"),
+            (error.message, ""),
+        )
 
 
 def _flows(result: Result, view: View) -> Iterator[Line]:
