@@ -1,0 +1,44 @@
+"""Every way to keep state, with every way to be called, to make a message, to hold a publisher and to run."""
+
+import random
+from collections.abc import Iterator
+
+import pytest
+
+from tarl_lint import engine
+from tarl_lint.config import Config
+from tarl_lint.source import Module, parse
+from tests.lint.combining import AXES, node
+
+Parts = tuple[str, ...]
+USUAL = ("attribute", "method", "scalar", "attribute", "timer")
+MIXED = 60  # random combinations, the same ones in every run
+
+
+def chosen() -> Iterator[Parts]:
+    for place, axis in enumerate(AXES):
+        for part in axis:
+            yield (*USUAL[:place], part, *USUAL[place + 1 :])
+    draw = random.Random(7)
+    for _ in range(MIXED):
+        yield tuple(draw.choice(sorted(axis)) for axis in AXES)
+
+
+def lines_with(text: str, word: str) -> set[int]:
+    return {number for number, line in enumerate(text.splitlines(), 1) if word in line}
+
+
+@pytest.mark.parametrize("parts", dict.fromkeys(chosen()), ids="-".join)
+def test_the_value_reaches_the_publish_call_by_its_statements_and_nothing_reaches_the_other(parts):
+    text = node(*parts)
+    module = parse("node.py", text.encode(), "node")
+    assert isinstance(module, Module)
+    flows = engine.analyse([module], Config())
+    assert [(f.kind, {f.sink.span.line}) for f in flows] == [("explicit", lines_with(text, "# sink"))]
+    data = [s.span.line for s in flows[0].steps if s.dependence == "data"]
+    stored, read = lines_with(text, "msg.data"), lines_with(text, "value = ") | lines_with(text, "value, ")
+    assert (stored | read) - lines_with(text, "publish") <= set(data)
+    assert {data[-1]} == lines_with(text, "# sink")
+    assert not lines_with(text, "clean = ") & {
+        s.span.line for s in flows[0].steps if s.dependence != "context"
+    }
