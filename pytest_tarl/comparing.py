@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -11,9 +11,10 @@ from pytest_tarl import seeds
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.learning import localize
-from pytest_tarl.learning.drift import compare, paper_region
+from pytest_tarl.learning.drift import Difference, compare, paper_region
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.learning.merging import aligned
+from pytest_tarl.learning.looks import Look, certain, concluded, planned
+from pytest_tarl.learning.merging import aligned, merge
 from pytest_tarl.learning.permutation import permuted_loss
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.utility import batch
@@ -51,14 +52,9 @@ def run_online(
     members = current_members(fixture, plan)
     learner = _learner(fixture, options)
     seed = episode_seeds(options.seed, "online", count)
-    recorded = run_episodes(rollout, seed, drift, members, progress, learner)
-    difference = compare(
-        fixture.sample,
-        recorded.sample,
-        alpha=options.alpha,
-        tolerance=designation.tolerance,
-        generator=seeds.generator(options.seed, "compare"),
-    )
+    watch = _Watch(fixture.sample, designation, options, planned(count, options.most_looks))
+    recorded = run_episodes(rollout, seed, drift, members, progress, learner, watch)
+    difference = concluded(watch.seen, options.alpha)
     offline, online = aligned(fixture.sample, recorded.sample)
     learned = sarsa_tables(recorded, mean_flows(fixture.sample))
     if options.learner:
@@ -85,7 +81,11 @@ def run_online(
         paper_region=near_half,
         totals={"offline": tuple(offline.total.tolist()), "online": tuple(online.total.tolist())},
         culprits=localize.culprits(ranked, {}, (), difference.verdict.loss),
-        notes=(*lost_sites(fixture, plan), *failing(offline, online, difference.verdict, options)),
+        notes=(
+            *_early(recorded.sample, count),
+            *lost_sites(fixture, plan),
+            *failing(offline, online, difference.verdict, options),
+        ),
         parts=_parts(offline, online),
         changes=difference.changes,
     )
@@ -102,10 +102,44 @@ def _learner(fixture: Fixture, options: Options) -> str:
     return fixture.learner
 
 
+@dataclass
+class _Watch:
+    """Compares after as many episodes as planned, and tells when the verdict is certain."""
+
+    offline: Sample
+    designation: Designation
+    options: Options
+    looks: Sequence[Look]
+    seen: list[tuple[Look, Difference]] = field(default_factory=list)
+
+    def __call__(self, samples: Sequence[Sample]) -> bool:
+        look = next((one for one in self.looks if one.episodes == len(samples)), None)
+        if look is None:
+            return False
+        difference = compare(
+            self.offline,
+            merge(samples),
+            alpha=self.options.alpha * look.share,
+            tolerance=self.designation.tolerance,
+            generator=seeds.generator(self.options.seed, "compare"),
+        )
+        self.seen.append((look, difference))
+        return certain(difference)
+
+
 def current_members(fixture: Fixture, plan: Plan) -> tuple[tuple[int, ...], ...]:
     """Return, per list of the fixture, the sites' numbers in the node as it is now; -1 for a site that is gone."""
     number = {place.id: n for n, place in enumerate(plan.places)}
     return tuple(tuple(number.get(site.id, -1) for site in one.sites) for one in fixture.lists)
+
+
+def _early(online: Sample, planned: int) -> tuple[str, ...]:
+    """Tell that not all episodes were needed."""
+    if online.episodes == planned:
+        return ()
+    return (
+        f"stopped after {online.episodes} of {planned} episodes: the verdict was certain (--tarl-looks 1 runs all).",
+    )
 
 
 def lost_sites(fixture: Fixture, plan: Plan) -> tuple[str, ...]:

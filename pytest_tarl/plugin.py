@@ -42,6 +42,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
     flag("--tarl-alpha", metavar="P", type=float, default=0.05, help="rate of false alarms (default 0.05)")
     flag(
+        "--tarl-looks",
+        metavar="N",
+        type=int,
+        help="with --tarl-online: looks at the verdict, to end early when it is certain (default 3; 1 to repair)",
+    )
+    flag(
         "--tarl-search",
         metavar="METHOD",
         action="append",
@@ -149,6 +155,7 @@ def _options(config: pytest.Config) -> Options:
                     "seed",
                     "episodes",
                     "alpha",
+                    "looks",
                     "search",
                     "budget",
                     "utility",

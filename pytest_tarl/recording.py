@@ -99,8 +99,13 @@ def run_episodes(
     members: Members,
     progress: Progress,
     learner: str = "sarsa",
+    enough: Callable[[Sequence[Sample]], bool] | None = None,
 ) -> Recorded:
-    """Run one instrumented episode per seed. Raises RecordingError when the test itself is broken."""
+    """Run one instrumented episode per seed, or as many as are enough, which is asked after each of them.
+
+    Raises:
+        RecordingError: the test itself is broken.
+    """
     learners = tuple(LEARNERS[learner](len(chosen)) for chosen in members)
     first: Trace | None = None
     samples: list[Sample] = []
@@ -117,6 +122,8 @@ def run_episodes(
                 one.learn(sequence, run.trace.cells)
         failures += [] if run.passed else [run.failure]
         topics.update(run.topics)
+        if enough is not None and enough(samples):
+            break
     if first is None:
         raise RecordingError("There is nothing to learn from: no episode was asked for.")
     return Recorded(first, merge(samples), learners, topics, tuple(failures), learner)

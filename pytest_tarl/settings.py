@@ -35,8 +35,15 @@ class Options:
     workers: int = 1  # episodes at a time, each in a process of its own when more than one
     cluster: str | None = None  # address of a Dask scheduler
     ros: str = "embedded"
+    looks: int | None = None  # at the verdict, at most
 
     ONLINE_EPISODES = 40
+    LOOKS = 3
+
+    @property
+    def most_looks(self) -> int:
+        """Return how often the verdict may be looked at; once before a repair, which needs the region whole."""
+        return self.looks or (1 if self.mode == "repair" else self.LOOKS)
 
     @property
     def learner(self) -> str:
@@ -49,6 +56,7 @@ class Options:
         chosen = {
             "--tarl-episodes": (self.episodes, None),
             "--tarl-alpha": (self.alpha, 0.05),
+            "--tarl-looks": (self.looks, None),
             "--tarl-budget": (self.budget, 300),
             "--tarl-utility": (self.utility, "batch"),
             "--tarl-ros": (self.ros, "embedded"),
@@ -88,6 +96,8 @@ def options(given: Mapping[str, Any]) -> Options:
     _known("--tarl-ros", given["ros"], ROS_KINDS)
     if given["episodes"] is not None:
         _number("--tarl-episodes", "it", given["episodes"], int, 2, 10**6)
+    if given["looks"] is not None:
+        _number("--tarl-looks", "it", given["looks"], int, 1, 5)
     mode: Mode = "record" if given["record"] else "repair" if given["repair"] else "online"
     return Options(
         mode=mode,
@@ -102,6 +112,7 @@ def options(given: Mapping[str, Any]) -> Options:
         workers=_workers(given["workers"]),
         cluster=given["cluster"],
         ros=given["ros"],
+        looks=given["looks"],
     )
 
 

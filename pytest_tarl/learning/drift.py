@@ -7,7 +7,7 @@ corrected over all columns by the largest statistic.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import comb, inf
 from statistics import NormalDist
 
@@ -47,14 +47,20 @@ def compare(
     p_loss = permuted_loss(offline.total, online.total, generator)
     loss = float(offline.total.mean() - online.total.mean())
     p_drift, region, changes = _drift(offline, online, alpha, generator)
-    result: Result = "no difference"
-    if p_loss < alpha and loss > margin:
-        result = "degraded"
-    elif p_drift < alpha:
-        result = "drifted"
     detectable = max(margin, smallest_detectable_loss(offline.total, online.total, alpha))
-    found = region if result != "no difference" else Region()
-    return Difference(Verdict(result, p_drift, p_loss, loss, detectable, margin), found, changes)
+    verdict = judged(Verdict("no difference", p_drift, p_loss, loss, detectable, margin), alpha)
+    found = region if verdict.result != "no difference" else Region()
+    return Difference(verdict, found, changes)
+
+
+def judged(verdict: Verdict, alpha: float) -> Verdict:
+    """Return the verdict with the result that its figures call for."""
+    result: Result = "no difference"
+    if verdict.p_loss < alpha and verdict.loss > verdict.tolerance:
+        result = "degraded"
+    elif verdict.p_drift < alpha:
+        result = "drifted"
+    return replace(verdict, result=result)
 
 
 def smallest_detectable_loss(offline: Floats, online: Floats, alpha: float) -> float:
