@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pytest_tarl.learning.drift import Difference, judged
 from pytest_tarl.model import Region
 
-FEWEST = 5  # episodes before the first look
+FEWEST = 10  # episodes before the first look
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,8 @@ FLAGS: dict[str, Any] = {
     "utility": "batch",
     "workers": "1",
     "cluster": None,
+    "ros": "embedded",
+    "looks": None,
     "strict": False,
 }
 
