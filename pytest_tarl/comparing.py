@@ -82,6 +82,7 @@ def run_online(
         totals={"offline": tuple(offline.total.tolist()), "online": tuple(online.total.tolist())},
         culprits=localize.culprits(ranked, {}, (), difference.verdict.loss),
         notes=(
+            *recorded.notes,
             *_early(recorded.sample, count),
             *lost_sites(fixture, plan),
             *failing(offline, online, difference.verdict, options),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from pytest_tarl import seeds
 from pytest_tarl.errors import RecordingError, SettingsError
-from pytest_tarl.sensors import Cell, Sensor, field_value
+from pytest_tarl.sensors import Cell, Sensor, as_number, field_value
 
 if TYPE_CHECKING:
     import numpy as np
@@ -104,10 +105,19 @@ class Tarl:
 
     def step(self, dt: float) -> None:
         """Let the nodes run and virtual time advance by `dt` seconds, until every node waits again."""
-        self.ros.step(dt)
+        seconds = as_number(dt)
+        if seconds is None or not 0 <= seconds < math.inf:
+            raise SettingsError(
+                f"tarl.step got {dt!r}: time advances by a finite number of seconds, such as 0.1."
+            )
+        self.ros.step(seconds)
 
     def message(self, topic: str, message: Any) -> None:
         """Tell what is being delivered to the node, in a test that delivers messages itself."""
+        if not isinstance(topic, str):
+            raise SettingsError(
+                f"tarl.message got {topic!r} as topic: it takes the name first, tarl.message('/odom', message)."
+            )
         self._latch(topic, message)
 
     def observe(self, **values: Any) -> None:
@@ -127,16 +137,25 @@ class Tarl:
             raise SettingsError(
                 "tarl.reward needs a number, or parts such as tarl.reward(progress=0.2, clearance=-1)."
             )
-        amount = sum(parts.values()) if total is None else float(total)
-        for value in (amount, *parts.values()):
-            if not abs(value) < float("inf"):
-                raise SettingsError(f"tarl.reward got {value}: rewards must be finite numbers.")
+        given = {name: _reward(value) for name, value in parts.items()}
+        amount = sum(given.values()) if total is None else _reward(total)
+        self._recorder.reward(amount, given)
         self._rewards += 1
-        self._recorder.reward(float(amount), {name: float(value) for name, value in parts.items()})
 
     def close(self) -> None:
         """End the nodes and forget the episode."""
         self._open.close()
+
+    def notes(self) -> tuple[str, ...]:
+        """Return what the user should hear, though the episode counts; known once it is closed."""
+        late = self._ros.shutdown_errors if self._ros is not None else ()
+        ended = [f"{error} It was being ended, so the episode counts all the same." for error in late]
+        missing = [
+            f"nothing can be recorded at {path.name}:{', '.join(map(str, sorted({line for line, _ in positions})))}: "
+            "the slices there stay empty."
+            for path, positions in self._imports.unrecorded.items()
+        ]
+        return (*ended, *missing)
 
     def problem(self) -> RecordingError | None:
         """Return why the episode cannot be learned from: no reward, a silent sensor, a mute node; None when it can."""
@@ -183,6 +202,13 @@ class Tarl:
 def same_topic(first: str, second: str) -> bool:
     """Compare topic names; a leading slash makes no difference."""
     return first.lstrip("/") == second.lstrip("/")
+
+
+def _reward(value: Any) -> float:
+    number = as_number(value)
+    if number is None or not abs(number) < math.inf:
+        raise SettingsError(f"tarl.reward got {value!r}: rewards must be finite numbers.")
+    return number
 
 
 def message_type_name(message: Any) -> str:

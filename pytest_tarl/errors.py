@@ -27,6 +27,10 @@ class NodeError(TarlError):
     """A node misbehaves towards the simulation: it never waits, or ends in an exception."""
 
 
+class StuckNodeError(NodeError):
+    """A node kept the processor without ever waiting; each such episode costs seconds."""
+
+
 class UnsupportedApiError(TarlError):
     """A node asks the in-process ROS for something that it does not have."""
 

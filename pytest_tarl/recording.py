@@ -25,6 +25,8 @@ from pytest_tarl.settings import Designation, Options
 Progress = Callable[[int, int, str], None]
 Members = Sequence[Sequence[int]]
 
+ENOUGH_FAILURES = 5  # that settle a recording whose min_success can no longer be reached
+
 NOT_REPRODUCIBLE = (
     "not reproducible: two runs with the same seed differ. Draw all random numbers from tarl.rng(name) and read no "
     "wall clock, or the comparison will see differences that are none."
@@ -44,6 +46,7 @@ class Recorded:
     topics: dict[str, str]
     failures: tuple[str, ...]
     learner: str = "sarsa"
+    notes: tuple[str, ...] = ()
 
     @property
     def success(self) -> float:
@@ -71,11 +74,17 @@ def record(
 ) -> RecordResult:
     """Run the off-line episodes and write the fixture, unless too many of them fail."""
     seeds = episode_seeds(options.seed, "offline", options.episodes or designation.episodes)
-    recorded = run_episodes(rollout, seeds, None, plan.members, progress, options.learner or "sarsa")
+    bearable = int(len(seeds) * (1 - designation.min_success) + 1e-9)
+
+    def settled(samples: Sequence[Sample]) -> bool:
+        return sum(not one.passed.all() for one in samples) >= max(bearable + 1, ENOUGH_FAILURES)
+
+    learner = options.learner or "sarsa"
+    recorded = run_episodes(rollout, seeds, None, plan.members, progress, learner, settled)
     again = rollout(EpisodePlan(seeds[0], record=True))
-    notes = [] if identical(recorded.first, again.trace) else [NOT_REPRODUCIBLE]
-    if recorded.success < designation.min_success:
-        return RecordResult("", _unfinished(recorded, designation), tuple(notes))
+    notes = [*recorded.notes, *([] if identical(recorded.first, again.trace) else [NOT_REPRODUCIBLE])]
+    if len(recorded.failures) > bearable:
+        return RecordResult("", _unfinished(recorded, designation, len(seeds)), tuple(notes))
     notes += _silent_lists(recorded.sample, plan)
     old = _previous(path)
     new = Fixture(
@@ -104,12 +113,13 @@ def run_episodes(
     """Run one instrumented episode per seed, or as many as are enough, which is asked after each of them.
 
     Raises:
-        RecordingError: the test itself is broken.
+        RecordingError: the test itself is broken, or the node never waits.
     """
     learners = tuple(LEARNERS[learner](len(chosen)) for chosen in members)
     first: Trace | None = None
     samples: list[Sample] = []
     failures: list[str] = []
+    notes: dict[str, None] = {}
     topics: dict[str, str] = {}
     plans = (EpisodePlan(seed, drift, record=True) for seed in seeds)
     for done, (seed, episode) in enumerate(zip(seeds, in_order(rollout, plans), strict=True)):
@@ -122,15 +132,20 @@ def run_episodes(
                 one.learn(sequence, run.trace.cells)
         failures += [] if run.passed else [run.failure]
         topics.update(run.topics)
+        notes |= dict.fromkeys(run.notes)
         if enough is not None and enough(samples):
             break
     if first is None:
         raise RecordingError("There is nothing to learn from: no episode was asked for.")
-    return Recorded(first, merge(samples), learners, topics, tuple(failures), learner)
+    return Recorded(first, merge(samples), learners, topics, tuple(failures), learner, tuple(notes))
 
 
 def sound(run: EpisodeRun) -> EpisodeRun:
-    """Return the run. Raises RecordingError where it was neither a success nor a failed mission."""
+    """Return the run. Raises RecordingError where it was neither a success nor a failed mission, or got stuck."""
+    if run.stuck:
+        raise RecordingError(
+            f"Stopped at an episode (seed {run.plan.seed}) that came to no end: {run.failure}"
+        )
     if run.broken:
         raise RecordingError(f"An episode (seed {run.plan.seed}) broke outside of the mission:\n{run.broken}")
     return run
@@ -160,13 +175,15 @@ def _plain(value: object) -> object:
     return {k: v.tolist() for k, v in value.items()} if isinstance(value, dict) else value
 
 
-def _unfinished(recorded: Recorded, designation: Designation) -> str:
-    episodes = recorded.sample.episodes
-    failed = episodes - int(recorded.sample.passed.sum())
+def _unfinished(recorded: Recorded, designation: Designation, asked: int) -> str:
+    episodes, failed = recorded.sample.episodes, len(recorded.failures)
+    ran = f"{episodes} episodes" if episodes == asked else f"the first {episodes} episodes"
+    stopped = "" if episodes == asked else f"; the other {asked - episodes} were not run"
     return (
-        f"{failed} of {episodes} episodes fail off-line (success {recorded.success:.1%}, min_success "
-        f"{designation.min_success:.1%}), so this is not yet the software as designed and no utility was written. "
-        f"The first failure: {recorded.failures[0].rstrip('.')}. Mend the node, or lower min_success on the marker."
+        f"{failed} of {ran} fail off-line (success {recorded.success:.1%}, min_success "
+        f"{designation.min_success:.1%}{stopped}), so this is not yet the software as designed and no utility was "
+        f"written. The first failure: {recorded.failures[0].rstrip('.')}. Mend the node, or lower min_success on the "
+        "marker."
     )
 
 

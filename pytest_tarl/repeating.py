@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from _pytest.runner import runtestprotocol
 
-from pytest_tarl.errors import NodeError, SettingsError, TarlError
+from pytest_tarl.errors import NodeError, SettingsError, StuckNodeError, TarlError
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 from pytest_tarl.seeds import episode_seed
 from pytest_tarl.settings import Designation, designation
@@ -51,9 +51,11 @@ class Episode:
     problem: TarlError | None = None  # why it cannot be learned from
     trace: Trace | None = None
     topics: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
 
 EPISODE = pytest.StashKey[Episode]()
+LIMIT = pytest.StashKey[Any]()  # the settings of pytest-timeout for an item
 INTERRUPTS = (pytest.exit.Exception, KeyboardInterrupt)  # what ends the whole run
 
 
@@ -99,6 +101,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
             episode.problem = tarl.problem()
         finally:
             tarl.close()
+            episode.notes = tarl.notes()
 
 
 def drift_value(item: pytest.Item) -> Any:
@@ -148,11 +151,33 @@ class ItemRollout:
         self.item._report_sections.clear()  # else the output of all episodes would be kept, and shown
         try:
             # An item's parent keeps all that is wider than the item itself; pytest asks it for no more than that.
-            with _heeding_interrupts():
+            with _heeding_interrupts(), _limited(self.item):
                 reports = runtestprotocol(self.item, log=False, nextitem=self.item.parent)  # type: ignore[arg-type]
         finally:
             del self.item.stash[EPISODE]
         return _outcome(episode, reports)
+
+
+def defer_limit(item: pytest.Item, settings: Any) -> bool | None:
+    """Keep a limit that pytest-timeout is about to set, for each episode anew; None where one is running."""
+    if EPISODE in item.stash:
+        return None
+    item.stash[LIMIT] = settings
+    return True
+
+
+@contextmanager
+def _limited(item: pytest.Function) -> Iterator[None]:
+    """Give one episode the time that pytest-timeout gives a test."""
+    settings = item.stash.get(LIMIT, None)
+    if settings is None:
+        yield
+        return
+    item.ihook.pytest_timeout_set_timer(item=item, settings=settings)
+    try:
+        yield
+    finally:
+        item.ihook.pytest_timeout_cancel_timer(item=item)
 
 
 @contextmanager
@@ -211,7 +236,14 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
         broken="\n".join(report.longreprtext for report in broken),
         topics=episode.topics,
         crashed=isinstance(episode.error, NodeError),
+        stuck=isinstance(episode.error, StuckNodeError) or _timed_out(episode.error),
+        notes=episode.notes,
     )
+
+
+def _timed_out(error: BaseException | None) -> bool:
+    """Tell whether pytest-timeout ended the episode; it fails a test as `pytest.fail` does."""
+    return isinstance(error, pytest.fail.Exception) and str(error).startswith("Timeout (>")
 
 
 def _expected(report: pytest.TestReport) -> bool:

@@ -27,7 +27,8 @@ class EpisodePlan:
 class EpisodeRun:
     """What came of it. `failure` says why the test failed, one line; `topics` are message types by sensor topic.
 
-    `crashed` tells that the node ended it before its time.
+    `crashed` tells that the node ended it before its time, `stuck` that it did so by never waiting. `notes` are
+    what else the user should hear.
 
     `broken` holds what is neither a pass nor a failed mission, such as an error in the test's own code, as text.
     """
@@ -39,6 +40,8 @@ class EpisodeRun:
     broken: str = ""
     topics: Mapping[str, str] = field(default_factory=dict)
     crashed: bool = False
+    stuck: bool = False
+    notes: tuple[str, ...] = ()
 
 
 class Pending(Protocol):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
@@ -33,7 +34,7 @@ class Sensor:
     unit: str = ""
 
     def __post_init__(self) -> None:
-        if not self.name.isidentifier():
+        if not isinstance(self.name, str) or not self.name.isidentifier():
             raise SettingsError(
                 f"Sensor name {self.name!r} is not a Python identifier: choose one such as 'x'."
             )
@@ -42,20 +43,45 @@ class Sensor:
                 f"Sensor {self.name!r} has a topic or a field but not both: give both, or neither "
                 f"and report it with tarl.observe({self.name}=…)."
             )
+        for given, what in ((self.topic, "topic"), (self.field, "field")):
+            if given is not None and (not isinstance(given, str) or not given.strip("/.")):
+                raise SettingsError(
+                    f"Sensor {self.name!r}: {what} must be a text such as topic='/odom', field='pose.pose.position.x', "
+                    f"got {given!r}."
+                )
+        self._check_bins()
+        self._check_categories()
+
+    def _check_bins(self) -> None:
         bounds = (self.low, self.high, self.bins)
-        if any(b is not None for b in bounds) and any(b is None for b in bounds):
+        if all(bound is None for bound in bounds):
+            return
+        if self.low is None or self.high is None or self.bins is None:
             raise SettingsError(f"Sensor {self.name!r} needs low, high and bins together, or none of them.")
-        if self.low is not None and self.high is not None and self.bins is not None:
-            finite = math.isfinite(self.low) and math.isfinite(self.high)
-            if not finite or not self.low < self.high or not isinstance(self.bins, int) or self.bins < 1:
-                raise SettingsError(
-                    f"Sensor {self.name!r}: low must be below high, both finite, and bins at least 1 and whole, got "
-                    f"low={self.low}, high={self.high}, bins={self.bins}."
-                )
-            if self.categories:
-                raise SettingsError(
-                    f"Sensor {self.name!r} is either numeric (low, high, bins) or has categories."
-                )
+        finite = all(math.isfinite(math.nan if end is None else end) for end in map(as_number, bounds[:2]))
+        whole = isinstance(self.bins, int) and not isinstance(self.bins, bool)
+        if not finite or not self.low < self.high or not whole or self.bins < 1:
+            raise SettingsError(
+                f"Sensor {self.name!r}: low must be below high, both finite, and bins at least 1 and whole, got "
+                f"low={self.low!r}, high={self.high!r}, bins={self.bins!r}."
+            )
+        if self.categories:
+            raise SettingsError(
+                f"Sensor {self.name!r} is either numeric (low, high, bins) or has categories."
+            )
+
+    def _check_categories(self) -> None:
+        given: Any = self.categories
+        if isinstance(given, list):  # else the sensor could not be hashed
+            object.__setattr__(self, "categories", tuple(given))
+        elif not isinstance(given, tuple):
+            raise SettingsError(
+                f"Sensor {self.name!r}: categories lists the texts that it may get, for instance "
+                f"categories=('auto', 'manual'), got {given!r}."
+            )
+        twice = next((one for one in self.categories if self.categories.count(one) > 1), None)
+        if twice is not None:
+            raise SettingsError(f"Sensor {self.name!r} has the category {twice!r} twice; name each once.")
 
     @property
     def numeric(self) -> bool:
@@ -70,7 +96,7 @@ class Sensor:
     def bin(self, value: Any) -> int | None:
         """Return the bin of `value`: 0 to bins-1, -1 and `bins` outside; None for NaN, which tells nothing."""
         if self.bins is not None and self.low is not None and self.high is not None:
-            number = float(value)
+            number = self._measurement(value)
             if math.isnan(number):
                 return None
             place = (number - self.low) / (self.high - self.low) * self.bins
@@ -85,13 +111,22 @@ class Sensor:
                     f"{', '.join(map(repr, self.categories))}: add it there."
                 )
             return self.categories.index(value)
-        number = float(value) if not isinstance(value, str) else math.nan
-        if not number.is_integer():
+        whole = as_number(value)
+        if whole is None or not whole.is_integer():
             raise SettingsError(
                 f"Sensor {self.name!r} got {value!r}: give it low, high and bins for a measurement, "
                 "or categories for texts."
             )
-        return int(number)
+        return int(whole)
+
+    def _measurement(self, value: Any) -> float:
+        number = as_number(value)
+        if number is None:
+            raise SettingsError(
+                f"Sensor {self.name!r} got {value!r}, which is no number: mend its field, or give it categories for "
+                "texts."
+            )
+        return number
 
     def interval(self, first: int, last: int) -> tuple[float, float]:
         """Return the values that bins `first` to `last` cover; infinite beyond the outer bins."""
@@ -110,6 +145,18 @@ class Sensor:
         if self.categories:
             return self.categories[index]
         return str(index)
+
+
+def as_number(value: Any) -> float | None:
+    """Return a real number, or a single one of numpy, as a float; None for anything else."""
+    if not isinstance(value, Real) and getattr(value, "ndim", None) != 0:
+        return None
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+    except (TypeError, ValueError):
+        return None
 
 
 def field_value(message: Any, field: str) -> Any:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import pytest
 
 from pytest_tarl.errors import FixtureError, SettingsError, TarlError
-from pytest_tarl.repeating import INTERRUPTS, Instruments, ItemRollout, designated, finish
+from pytest_tarl.repeating import INTERRUPTS, Instruments, ItemRollout, defer_limit, designated, finish
 from pytest_tarl.settings import Options
 
 if TYPE_CHECKING:
@@ -96,6 +96,11 @@ class TarlSession:
             item.ihook.pytest_runtest_logreport(report=one)
         item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
         return True
+
+    @pytest.hookimpl(optionalhook=True, tryfirst=True)
+    def pytest_timeout_set_timer(self, item: pytest.Item, settings: object) -> bool | None:
+        """Let a limit of pytest-timeout hold for each episode of a designated test, not for all of them."""
+        return None if item.get_closest_marker("tarl") is None else defer_limit(item, settings)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Collect what the tests have to tell, also from xdist's workers."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from pytest_tarl.errors import NodeError, TarlError, UnsupportedApiError
+from pytest_tarl.errors import NodeError, StuckNodeError, TarlError, UnsupportedApiError
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.scheduler import Scheduler, Spinning, Task, current_task, running_task
 
@@ -122,7 +122,7 @@ class Process:
 
     def spins(self, place: blame.Place | None) -> NodeError:
         """Say that the node never waits."""
-        return NodeError(
+        return StuckNodeError(
             f"Node {self.label!r} never waits: {self.ros.watchdog_limit:g} s went by while virtual time stood "
             f"still, at {blame.describe(place)}. Call Rate.sleep(), rospy.sleep() or a spin function in that loop."
         )

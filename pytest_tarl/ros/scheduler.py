@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from greenlet import GreenletExit, getcurrent, greenlet
 
-from pytest_tarl.errors import NodeError
+from pytest_tarl.errors import NodeError, StuckNodeError
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.watchdog import WATCHDOG, Spinning
 
@@ -180,7 +180,7 @@ class Scheduler:
         """Blame the task that ran last for never waiting."""
         task = self._running
         if task is None or task.worker is None:
-            return NodeError("A node never waits.")
+            return StuckNodeError("A node never waits.")
         return task.process.spins(blame.of_frame(task.worker.gr_frame))
 
     def _resume(self, task: Task, woken: bool) -> None:

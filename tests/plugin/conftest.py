@@ -21,5 +21,6 @@ for package in (tarl_lint, pytest_tarl):
 def tank(pytester: pytest.Pytester) -> pytest.Pytester:
     """A project of its own: a node, and a simulation test of it."""
     pytester.makefile(".py", keeper=NODE, test_tank=TEST)
-    pytester.makeini("[pytest]\nfilterwarnings = error\n")
+    # What shuffles tests, or warns that it is not set up, is asked for where it is the subject.
+    pytester.makeini("[pytest]\nfilterwarnings = error\naddopts = -p no:randomly -p no:asyncio\n")
     return pytester

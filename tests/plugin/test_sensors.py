@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from array import array
+from fractions import Fraction
 from types import SimpleNamespace
 
 import numpy as np
@@ -51,6 +52,15 @@ def test_booleans_integers_and_categories_are_taken_as_they_are() -> None:
         ({"name": "x", "low": 2.0, "high": 1.0, "bins": 3}, "low must be below high"),
         ({"name": "x", "low": 0.0, "high": 1.0, "bins": 0}, "bins at least 1"),
         ({"name": "x", "low": 0.0, "high": 1.0, "bins": 2, "categories": ("a",)}, "either numeric"),
+        ({"name": 5}, "not a Python identifier"),
+        ({"name": "x", "low": "a", "high": 1.0, "bins": 2}, "both finite"),
+        ({"name": "x", "low": 0.0, "high": float("nan"), "bins": 2}, "both finite"),
+        ({"name": "x", "low": 0.0, "high": 1.0, "bins": 2.0}, "bins at least 1 and whole"),
+        ({"name": "x", "low": 0.0, "high": 1.0, "bins": True}, "bins at least 1 and whole"),
+        ({"name": "x", "topic": 5, "field": "data"}, "topic must be a text"),
+        ({"name": "x", "topic": "/odom", "field": ""}, "field must be a text"),
+        ({"name": "x", "categories": "auto"}, "categories lists the texts"),
+        ({"name": "x", "categories": ["auto", "auto"]}, "'auto' twice"),
     ],
 )
 def test_a_wrong_declaration_says_what_to_mend(arguments: dict[str, object], words: str) -> None:
@@ -62,6 +72,26 @@ def test_a_wrong_declaration_says_what_to_mend(arguments: dict[str, object], wor
 def test_a_measurement_needs_bins_and_a_text_categories(value: object) -> None:
     with pytest.raises(SettingsError, match=r"low, high and bins for a measurement"):
         Sensor("x").bin(value)
+
+
+@pytest.mark.parametrize("value", ["wet", None, [1.0], np.array([1.0, 2.0])])
+def test_what_is_no_number_is_told_and_not_binned(value: object) -> None:
+    with pytest.raises(SettingsError, match=r"'x' got .* is no number"):
+        Sensor("x", low=0, high=1, bins=2).bin(value)
+
+
+@pytest.mark.parametrize("value", [1, True, np.float32(1.0), np.array(1.0), Fraction(1)])
+def test_numbers_of_any_kind_are_binned(value: object) -> None:
+    assert Sensor("x", low=0, high=2, bins=2).bin(value) == 1
+
+
+def test_a_number_beyond_all_floats_lies_outside() -> None:
+    assert Sensor("x", low=0, high=1, bins=2).bin(10**400) == 2
+    assert Sensor("x", low=0, high=1, bins=2).bin(-(10**400)) == -1
+
+
+def test_a_list_of_categories_is_taken() -> None:
+    assert Sensor("mode", categories=["dry", "wet"]) == Sensor("mode", categories=("dry", "wet"))  # type: ignore[arg-type]
 
 
 def test_an_unknown_category_is_named() -> None:

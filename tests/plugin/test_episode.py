@@ -1,0 +1,131 @@
+"""What a test sees as `tarl`: streams of random numbers, latched sensors, and every mistake a sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pytest_tarl import Sensor
+from pytest_tarl.episode import Tarl
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.instrumentation.importhook import NodeImports
+from pytest_tarl.instrumentation.recorder import Recorder
+
+SENSORS = (
+    Sensor("x", topic="/odom", field="data", low=0, high=10, bins=10),
+    Sensor("wet"),
+)
+
+
+@contextmanager
+def episode(folder: Path, seed: int = 7) -> Iterator[tuple[Tarl, Recorder]]:
+    recorder = Recorder()
+    tarl = Tarl(seed, SENSORS, folder, recorder, NodeImports(folder, {}, recorder.hook))
+    try:
+        yield tarl, recorder
+    finally:
+        tarl.close()
+
+
+def test_streams_are_told_by_their_names_whatever_was_drawn_before(tmp_path):
+    with episode(tmp_path) as (tarl, _):
+        first = tarl.rng("wind").random(4).tolist()
+        tarl.rng("noise").random(100)
+        assert tarl.rng("wind").random() not in first
+    with episode(tmp_path) as (tarl, _):
+        tarl.rng("noise").random(3)
+        assert tarl.rng("wind").random(4).tolist() == first
+    with episode(tmp_path, seed=8) as (tarl, _):
+        assert tarl.rng("wind").random(4).tolist() != first
+
+
+def test_a_cell_is_latched_when_its_last_sensor_is_known_and_holds_until_the_next_message(tmp_path):
+    with episode(tmp_path) as (tarl, recorder):
+        tarl.message("odom", SimpleNamespace(data=3.5))
+        tarl.reward(0.0)
+        tarl.observe(wet=True)
+        tarl.reward(0.0)
+        tarl.message("/other", SimpleNamespace(data=9.0))
+        tarl.reward(0.0)
+        tarl.message("/odom", SimpleNamespace(data=float("nan")))
+        tarl.reward(0.0)
+        tarl.message("/odom", SimpleNamespace(data=8.5))
+        tarl.reward(0.0)
+        trace = recorder.finish()
+    cells = [*trace.cells, None]
+    assert [cells[i] for i in trace.step_cell] == [None, (3, 1), (3, 1), None, (8, 1)]
+
+
+@pytest.mark.parametrize(
+    "value", [2, 1.5, True, np.float32(0.5), np.int64(3), np.array(1.0)], ids=lambda v: type(v).__name__
+)
+def test_rewards_are_numbers_of_any_kind(tmp_path, value):
+    with episode(tmp_path) as (tarl, recorder):
+        tarl.reward(value)
+        tarl.reward(progress=value, clearance=-1)
+        trace = recorder.finish()
+    assert trace.reward.tolist() == [float(value), float(value) - 1]
+    assert trace.parts["clearance"].tolist() == [0.0, -1.0]
+
+
+MISTAKES: dict[str, Any] = {
+    "a text as reward": (
+        lambda t: t.reward("good"),
+        r"tarl.reward got 'good': rewards must be finite numbers",
+    ),
+    "a text as part": (lambda t: t.reward(progress="good"), "tarl.reward got 'good'"),
+    "a list as reward": (lambda t: t.reward([1.0]), r"tarl.reward got \[1.0\]"),
+    "an array as reward": (lambda t: t.reward(np.array([1.0])), "tarl.reward got array"),
+    "infinity as reward": (lambda t: t.reward(float("-inf")), "tarl.reward got -inf"),
+    "a huge whole number as reward": (lambda t: t.reward(10**400), "finite numbers"),
+    "nothing as reward": (lambda t: t.reward(None), "needs a number, or parts"),
+    "a text as time": (lambda t: t.step("0.1"), "tarl.step got '0.1': time advances by"),
+    "time backwards": (lambda t: t.step(-0.1), "tarl.step got -0.1"),
+    "no time": (lambda t: t.step(float("nan")), "tarl.step got nan"),
+    "a message without topic": (lambda t: t.message(SimpleNamespace(data=1), None), "takes the name first"),
+    "a sensor that is not declared": (lambda t: t.observe(y=1), "no sensor is named 'y'; .* x, wet"),
+    "a measurement for flags": (lambda t: t.observe(wet=0.5), "low, high and bins for a measurement"),
+    "no number for a sensor": (lambda t: t.observe(x="far"), "'x' got 'far', which is no number"),
+    "a message without the field": (lambda t: t.message("/odom", SimpleNamespace()), "has no field 'data'"),
+    "a script that is not there": (lambda t: t.start("nod.py"), "there is no file 'nod.py'"),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_is_told_in_a_sentence(tmp_path, mistake):
+    call, words = MISTAKES[mistake]
+    with episode(tmp_path) as (tarl, recorder):
+        with pytest.raises(SettingsError, match=words):
+            call(tarl)
+        assert not recorder.finish().steps
+
+
+def test_what_happens_while_a_node_is_being_ended_is_a_note(tmp_path):
+    (tmp_path / "node.py").write_text(
+        "import rospy\nrospy.init_node('late')\nrospy.on_shutdown(lambda: 1 / 0)\nrospy.spin()\n"
+    )
+    with episode(tmp_path) as (tarl, _):
+        tarl.start("node.py")
+        tarl.step(0.1)
+    (note,) = tarl.notes()
+    assert "ZeroDivisionError" in note
+    assert "the episode counts all the same" in note
+
+
+def test_places_where_nothing_can_be_recorded_are_a_note(tmp_path):
+    node = tmp_path / "node.py"
+    node.write_text("x = 1.0\nimport math\n")
+    recorder = Recorder()
+    imports = NodeImports(
+        tmp_path, {node: {(1, 1): 0, (2, 1): 1, (12, 1): 2, (9, 5): 3, (9, 1): 4}}, recorder.hook
+    )
+    tarl = Tarl(1, SENSORS, tmp_path, recorder, imports)
+    tarl.start("node.py")
+    tarl.close()
+    assert tarl.notes() == ("nothing can be recorded at node.py:9, 12: the slices there stay empty.",)
