@@ -12,7 +12,6 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from hashlib import blake2b
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
@@ -21,6 +20,11 @@ from tarl_lint.config import Config
 from tarl_lint.files import write_whole
 from tarl_lint.model import Finding, Flow, Sink, SiteId, Source, Span, Step
 from tarl_lint.source import SourceError
+
+try:
+    from _blake2 import blake2b  # hashlib would bring OpenSSL, which takes longer than to lint a clean file
+except ImportError:
+    from hashlib import blake2b
 
 T = TypeVar("T")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import sys
 from collections.abc import Sequence
@@ -26,6 +27,24 @@ _EPILOG: Final = (
     "the baseline cannot be used, 130 interrupted. Settings are read from [tool.tarl-lint] in pyproject.toml."
 )
 _DASH: Final = Path("-")
+
+
+class _Help(argparse.HelpFormatter):
+    """Asks for the width itself: argparse imports shutil for that, with every option that is added."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, width=max(40, _columns() - 2))
+
+
+def _columns() -> int:
+    try:
+        return int(os.environ.get("COLUMNS", "")) or 80
+    except ValueError:
+        pass
+    try:
+        return os.get_terminal_size(1).columns or 80
+    except OSError:  # no terminal
+        return 80
 
 
 class _Parser(argparse.ArgumentParser):
@@ -74,7 +93,9 @@ def _pair(text: str) -> tuple[str, tuple[str, ...]]:
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    made = _Parser(prog="tarl-lint", description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False)
+    made = _Parser(
+        prog="tarl-lint", description=_DESCRIPTION, epilog=_EPILOG, allow_abbrev=False, formatter_class=_Help
+    )
     made.add_argument(
         "paths",
         nargs="*",
