@@ -128,6 +128,7 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
         "title": name,
         "world": comparison.drift or "on-line",
         "headline": words.verdict_sentence(comparison),
+        "loss": words.loss_words(comparison),
         "region": words.region_words(comparison),
         "paper_region": words.paper_region_words(comparison),
         "atr": {world: words.atr(comparison, world) for world, totals in comparison.totals.items() if totals},

@@ -34,6 +34,7 @@ def _entries(
 ) -> Iterator[tuple[str, list[str]]]:
     yield "verdict", [words.verdict_sentence(comparison)]
     yield "reward", [_rewards(comparison)]
+    yield "loss", list(_loss(comparison))
     if comparison.verdict.result != "no difference":
         yield "where", [words.region_words(comparison) or "no single situation stands out"]
         yield "lines", list(_culprits(comparison, width - LABEL - 2, root))
@@ -64,6 +65,12 @@ def _rewards(comparison: Comparison) -> str:
         if comparison.totals.get(world)
     ]
     return ", ".join(figures)
+
+
+def _loss(comparison: Comparison) -> Iterator[str]:
+    sure = words.loss_words(comparison)
+    if sure and comparison.verdict.result != "no difference":
+        yield f"{words.amount(comparison.verdict.loss)} an episode, {sure}"
 
 
 def _culprits(comparison: Comparison, width: int, root: Path) -> Iterator[str]:

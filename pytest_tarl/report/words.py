@@ -9,10 +9,12 @@ from itertools import accumulate
 from pathlib import Path
 from statistics import fmean
 
+from pytest_tarl.learning.intervals import difference_bounds, effect_size
 from pytest_tarl.model import Comparison, Edit, OperandEffect, Reason, Repair, Slice
 from pytest_tarl.report.regions import Vocabulary
 
 SIGNIFICANT = 0.05  # p from which a loss is not spoken of
+CONFIDENCE = 0.95  # of the interval around a loss
 SHORTEST = 16  # characters of a code line that are shown however narrow the place is
 REASONS: dict[Reason, str] = {
     "": "no reason was recorded",
@@ -77,6 +79,17 @@ def verdict_sentence(comparison: Comparison) -> str:
     if not math.isfinite(verdict.detectable_loss):
         seen = "too few episodes were run to see any loss"
     return f"No difference was found between {world} and the designed one; {seen}."
+
+
+def loss_words(comparison: Comparison) -> str:
+    """Say how large the loss is and how surely it is known; empty where too few episodes tell nothing."""
+    offline, online = (comparison.totals.get(world, ()) for world in ("offline", "online"))
+    if min(len(offline), len(online)) < 2:
+        return ""
+    low, high = difference_bounds(offline, online, (1 - CONFIDENCE) / 2)
+    effect = effect_size(offline, online)
+    size = "" if math.isnan(effect) else f"; {abs(effect):.2g} standard deviations"
+    return f"{CONFIDENCE:.0%} confidence {amount(low)} to {amount(high)}{size}"
 
 
 def _capital(text: str) -> str:

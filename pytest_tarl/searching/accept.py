@@ -9,16 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from math import ceil, log, log1p, sqrt, tan
-from statistics import NormalDist, fmean, variance
+from math import ceil, log, log1p
+from statistics import fmean
 
-import numpy as np
-
+from pytest_tarl.learning.intervals import difference_bounds
 from pytest_tarl.model import Reason
 
 LOOKS = (8, 12, 17, 24, 32, 40)  # episodes after which the bound is looked at
 PASS_RATE_LOSS = 0.05
-FEW_DEGREES = 20  # of freedom
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +101,7 @@ def _holds(
         while len(seen) < look:
             seen.append(next(outcomes))
         totals = [outcome.total for outcome in seen]
-        lower, upper = interval(totals, reference.totals, risk)
+        lower, upper = difference_bounds(totals, reference.totals, risk)
         failed = sum(not outcome.passed for outcome in seen)
         allowed = 1 - reference.pass_rate + PASS_RATE_LOSS
         if upper < -reference.margin or failed > allowed * LOOKS[-1]:
@@ -111,38 +109,3 @@ def _holds(
         if look >= first and lower >= -reference.margin and failed <= allowed * look:
             return True, tuple(seen)
     return False, tuple(seen)
-
-
-def interval(repaired: Sequence[float], offline: Sequence[float], risk: float) -> tuple[float, float]:
-    """Return the one-sided lower and upper bounds of mean(repaired) - mean(offline), each at `risk` (Welch)."""
-    parts = [_spread(repaired), _spread(offline)]
-    spread = sqrt(sum(parts))
-    freedom = [
-        part**2 / max(len(group) - 1, 1) for part, group in zip(parts, (repaired, offline), strict=True)
-    ]
-    degrees = sum(parts) ** 2 / sum(freedom) if sum(freedom) > 0 else 1e9
-    reach = student_quantile(1 - risk, degrees) * spread
-    difference = fmean(repaired) - fmean(offline)
-    return difference - reach, difference + reach
-
-
-def student_quantile(probability: float, degrees: float) -> float:
-    """Return a quantile of Student's t above the median; for many degrees by Abramowitz & Stegun 26.7.5.
-
-    For few, where that expansion is far too low, by adding up the density over θ = atan(t / √degrees): cosᵈ⁻¹θ.
-    """
-    if degrees < FEW_DEGREES:
-        angle = np.linspace(0.0, np.pi / 2, 20_001)
-        density = np.cos(angle) ** (degrees - 1)
-        below = np.append(0.0, np.cumsum(density[1:] + density[:-1]))
-        reached = float(np.interp((2 * probability - 1) * below[-1], below, angle))
-        return tan(reached) * sqrt(degrees)
-    z = NormalDist().inv_cdf(probability)
-    first = (z**3 + z) / 4
-    second = (5 * z**5 + 16 * z**3 + 3 * z) / 96
-    third = (3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z) / 384
-    return z + first / degrees + second / degrees**2 + third / degrees**3
-
-
-def _spread(values: Sequence[float]) -> float:
-    return variance(values) / len(values) if len(values) > 1 else 0.0

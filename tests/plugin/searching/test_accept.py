@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 
 import numpy as np
 import pytest
@@ -15,8 +14,6 @@ from pytest_tarl.searching.accept import (
     World,
     accept,
     episodes_to_see,
-    interval,
-    student_quantile,
 )
 
 
@@ -64,40 +61,6 @@ def test_a_repair_just_below_the_margin_is_rarely_accepted() -> None:
     borderline = REFERENCE.mean - REFERENCE.margin
     accepted = [accept(world(borderline, seed=s), None, SEEDS, REFERENCE, 0.05).accepted for s in range(200)]
     assert sum(accepted) <= 15
-
-
-@pytest.mark.parametrize(
-    ("probability", "degrees", "expected"),
-    [
-        (0.995, 1, 63.657),
-        (0.9995, 2, 31.599),
-        (0.9995, 7, 5.4079),
-        (0.95, 7, 1.8946),
-        (0.975, 10, 2.2281),
-        (0.99, 20, 2.5280),
-        (0.995, 8, 3.3554),
-        (0.95, 1e6, 1.6449),
-    ],
-)
-def test_students_quantile_agrees_with_the_tables(
-    probability: float, degrees: float, expected: float
-) -> None:
-    assert student_quantile(probability, degrees) == pytest.approx(expected, rel=2e-3)
-
-
-def test_the_interval_covers_the_true_difference_as_often_as_it_says() -> None:
-    covered = 0
-    for seed in range(400):
-        draws = np.random.default_rng(seed)
-        lower, upper = interval(draws.normal(1, 2, 8).tolist(), draws.normal(0, 1, 100).tolist(), 0.05)
-        covered += lower <= 1 <= upper
-    assert 0.86 <= covered / 400 <= 0.95
-
-
-def test_rewards_that_never_vary_give_a_point() -> None:
-    lower, upper = interval([3.0] * 8, [3.0] * 20, 0.01)
-    assert lower == upper == 0.0
-    assert not math.isnan(lower)
 
 
 def test_looks_are_increasing() -> None:
