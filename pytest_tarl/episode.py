@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from pytest_tarl import seeds
 from pytest_tarl.errors import RecordingError, SettingsError
-from pytest_tarl.sensors import Cell, Sensor, as_number, field_value
+from pytest_tarl.sensors import Cell, Sensor, as_number, reading
 
 if TYPE_CHECKING:
     import numpy as np
@@ -38,6 +38,7 @@ class Tarl:
         self.topics: dict[str, str] = {}
         self.drives_ros = False
         self._sensors = tuple(sensors)
+        self.values: dict[str, list[float]] = {}  # of sensors whose bins are yet to be learned
         self._bins: dict[str, int | None] = {}
         self._situated = False  # whether there ever was a cell
         self._folder = folder
@@ -128,7 +129,7 @@ class Tarl:
                 raise SettingsError(
                     f"tarl.observe: no sensor is named {name!r}; the marker declares {', '.join(declared)}."
                 )
-            self._bins[name] = declared[name].bin(value)
+            self._read(declared[name], value)
         self._latch_cell()
 
     def reward(self, total: float | None = None, /, **parts: float) -> None:
@@ -185,11 +186,16 @@ class Tarl:
         changed = False
         for sensor in self._sensors:
             if sensor.topic is not None and same_topic(sensor.topic, topic):
-                self._bins[sensor.name] = sensor.bin(_read(sensor, message))
+                self._read(sensor, _value(sensor, message))
                 self.topics[sensor.topic] = message_type_name(message)
                 changed = True
         if changed:
             self._latch_cell()
+
+    def _read(self, sensor: Sensor, value: Any) -> None:
+        self._bins[sensor.name] = sensor.bin(value)
+        if sensor.to_learn:
+            self.values.setdefault(sensor.name, []).append(float(value))
 
     def _latch_cell(self) -> None:
         bins = [self._bins.get(sensor.name) for sensor in self._sensors]
@@ -218,9 +224,11 @@ def message_type_name(message: Any) -> str:
     return f"{package}/msg/{kind.__name__}" if hasattr(kind, "__slots__") or hasattr(kind, "_type") else ""
 
 
-def _read(sensor: Sensor, message: Any) -> Any:
+def _value(sensor: Sensor, message: Any) -> Any:
+    if callable(sensor.field):
+        return sensor.field(message)
     try:
-        return field_value(message, sensor.field or "")
+        return reading(message, sensor.field or "")
     except (AttributeError, IndexError, KeyError, TypeError) as problem:
         raise SettingsError(
             f"Sensor {sensor.name!r}: a message on {sensor.topic} ({type(message).__name__}) has no "

@@ -14,18 +14,21 @@ from pytest_tarl.errors import AnalysisError, FixtureError, TarlError
 from pytest_tarl.files import write_atomically
 from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.learning import fixture as fixtures
+from pytest_tarl.learning.binning import learned_edges
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison
 from pytest_tarl.patching import patch
-from pytest_tarl.recording import Progress, record
+from pytest_tarl.recording import Progress, read_values, record
 from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repeating import Instruments
 from pytest_tarl.report import json_result, terminal, words
 from pytest_tarl.rollout import Rollout
+from pytest_tarl.sensors import Sensor, declared, with_edges
 from pytest_tarl.settings import Designation, Options
 from tarl_lint.api import Analysis, analyse
 
+RolloutWith = Callable[[Instruments, tuple[Sensor, ...]], Rollout]
 IGNORED = (
     "# Only the recorded utility is worth committing.\n*\n!.gitignore\n!utility/\n!utility/**\nutility/.*\n"
 )
@@ -54,16 +57,19 @@ class Mission:
     width: int
     progress: Progress
 
-    def run(self, rollout_with: Callable[[Instruments], Rollout]) -> Account:
+    def run(self, rollout_with: RolloutWith) -> Account:
         """Do the mode's work. Raises TarlError with a sentence where it cannot be done."""
         fixture = None if self.options.mode == "record" else self._fixture()
         analysis = self._analysis()
         sites = plan(analysis)
         positions = {self.root / path: at for path, at in sites.positions.items()}
-        rollout = rollout_with(Instruments(positions, sites.publishes))
+        sensors = self._sensors(rollout_with, fixture)
+        rollout = rollout_with(Instruments(positions, sites.publishes), sensors)
         self._ignore()
         if fixture is None:
-            return self._record(rollout, sites)
+            return replace(self, designation=replace(self.designation, sensors=sensors))._record(
+                rollout, sites
+            )
         return self._online(rollout, sites, analysis, fixture)
 
     @property
@@ -101,6 +107,16 @@ class Mission:
                 ", so there is nothing to instrument: run tarl-lint on it and name all files of the node."
             )
         return analysis
+
+    def _sensors(self, rollout_with: RolloutWith, fixture: Fixture | None) -> tuple[Sensor, ...]:
+        """Return the sensors with their bins: those of the fixture, or learned from episodes of their own."""
+        asked = self.designation.sensors
+        if fixture is not None:
+            return with_edges(asked, {one.name: one.edges for one in fixture.sensors if one.learned})
+        if not any(sensor.to_learn for sensor in asked):
+            return asked
+        read = read_values(rollout_with(Instruments(), asked), self.options.seed, self.progress)
+        return with_edges(asked, learned_edges(asked, read))
 
     def _record(self, rollout: Rollout, sites: Plan) -> Account:
         result = record(
@@ -157,7 +173,7 @@ class Mission:
             command = f"pytest {self.target} --tarl-record"
             raise NoFixtureError(f"{self.test} has no recorded utility yet: run `{command}` first.")
         fixture = fixtures.load(self.fixture_path)
-        if fixture.sensors != self.designation.sensors:
+        if [*map(declared, fixture.sensors)] != [*map(declared, self.designation.sensors)]:
             raise FixtureError(
                 f"The sensors of {self.test} are not those of its utility fixture: record it again with "
                 f"`pytest {self.test} --tarl-record`."

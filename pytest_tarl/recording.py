@@ -20,12 +20,14 @@ from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Floats, Sample
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
+from pytest_tarl.sensors import stored
 from pytest_tarl.settings import Designation, Options
 
 Progress = Callable[[int, int, str], None]
 Members = Sequence[Sequence[int]]
 
 ENOUGH_FAILURES = 5  # that settle a recording whose min_success can no longer be reached
+PILOTS = 20  # episodes that bins are learned from
 
 NOT_REPRODUCIBLE = (
     "not reproducible: two runs with the same seed differ. Draw all random numbers from tarl.rng(name) and read no "
@@ -90,7 +92,7 @@ def record(
     new = Fixture(
         test=test,
         seed=options.seed,
-        sensors=designation.sensors,
+        sensors=tuple(map(stored, designation.sensors)),
         lists=plan.lists,
         topics=recorded.topics,
         sample=recorded.sample,
@@ -99,6 +101,17 @@ def record(
     )
     fixtures.save(new, path)
     return RecordResult(_summary(new.sample, old), "", tuple(notes))
+
+
+def read_values(rollout: Rollout, seed: int, progress: Progress) -> dict[str, list[float]]:
+    """Return what the sensors read whose bins are to be learned, from episodes that nothing else is learned from."""
+    read: dict[str, list[float]] = {}
+    plans = [EpisodePlan(each) for each in episode_seeds(seed, "bins", PILOTS)]
+    for done, episode in enumerate(in_order(rollout, plans)):
+        progress(done, PILOTS, "bins")
+        for name, values in sound(episode.result()).values.items():
+            read.setdefault(name, []).extend(values)
+    return read
 
 
 def run_episodes(

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -52,6 +52,7 @@ class Episode:
     trace: Trace | None = None
     topics: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    values: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
 
 EPISODE = pytest.StashKey[Episode]()
@@ -97,7 +98,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
     finally:
         try:
             episode.trace = recorder.finish()
-            episode.topics = dict(tarl.topics)
+            episode.topics, episode.values = dict(tarl.topics), tarl.values
             episode.problem = tarl.problem()
         finally:
             tarl.close()
@@ -238,6 +239,7 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
         crashed=isinstance(episode.error, NodeError),
         stuck=isinstance(episode.error, StuckNodeError) or _timed_out(episode.error),
         notes=episode.notes,
+        values=episode.values,
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
@@ -28,7 +28,7 @@ class EpisodeRun:
     """What came of it. `failure` says why the test failed, one line; `topics` are message types by sensor topic.
 
     `crashed` tells that the node ended it before its time, `stuck` that it did so by never waiting. `notes` are
-    what else the user should hear.
+    what else the user should hear. `values` is what sensors read whose bins are yet to be learned.
 
     `broken` holds what is neither a pass nor a failed mission, such as an error in the test's own code, as text.
     """
@@ -42,6 +42,7 @@ class EpisodeRun:
     crashed: bool = False
     stuck: bool = False
     notes: tuple[str, ...] = ()
+    values: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
 
 class Pending(Protocol):

@@ -3,35 +3,47 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from bisect import bisect_right
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from numbers import Real
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
 
 Cell = tuple[int, ...]  # one bin per sensor
+CALLED = "()"  # ends the name of a function that reads a sensor from a message
 
 
 @dataclass(frozen=True)
 class Sensor:
     """A declared input and how it is binned.
 
-    With `topic` and `field` (dotted) it is read from the messages delivered to the node and can appear
-    in a guard; without them the test gives its value through `tarl.observe(name=value)` and it is
-    diagnostic only. `low`, `high` (units of the field) and `bins` make it numeric, with one more bin at
-    either end for values outside. `categories` lists the values of a text sensor. With neither it takes
-    booleans and small integers as they are.
+    With `topic` and `field` (dotted, or a function of the message) it is read from the messages delivered to the node;
+    with a dotted field it can appear in a guard. Without them the test gives its value through
+    `tarl.observe(name=value)` and it is diagnostic only.
+
+    `low`, `high` (units of the field) and `bins` make it numeric, with one more bin at either end for values outside;
+    `edges` do the same with bins of unequal width, and `bins` alone learns them from off-line episodes, so that each
+    holds about as many values. An `angle` wraps: its range, -π to π unless `low` and `high` tell another, is a circle.
+    `categories` lists the values of a text sensor. With none of these it takes booleans and small integers as they are.
+    With `tilings` its utility is not kept by bin but by that many overlapping grids of tiles, so that near values learn
+    from each other.
     """
 
     name: str
     topic: str | None = None
-    field: str | None = None
+    field: str | Callable[[Any], Any] | None = None
     low: float | None = None
     high: float | None = None
     bins: int | None = None
     categories: tuple[str, ...] = ()
     unit: str = ""
+    edges: tuple[float, ...] = ()
+    angle: bool = False
+    tilings: int = 0
+    learned: int = 0  # how many bins were asked for, where the edges were learned
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name.isidentifier():
@@ -43,32 +55,57 @@ class Sensor:
                 f"Sensor {self.name!r} has a topic or a field but not both: give both, or neither "
                 f"and report it with tarl.observe({self.name}=…)."
             )
-        for given, what in ((self.topic, "topic"), (self.field, "field")):
+        dotted = None if callable(self.field) else self.field
+        for given, what in ((self.topic, "topic"), (dotted, "field")):
             if given is not None and (not isinstance(given, str) or not given.strip("/.")):
                 raise SettingsError(
                     f"Sensor {self.name!r}: {what} must be a text such as topic='/odom', field='pose.pose.position.x', "
                     f"got {given!r}."
                 )
-        self._check_bins()
+        if self.edges:
+            self._take_edges()
+        if self.angle and self.low is None and self.high is None:
+            self._set(low=-math.pi, high=math.pi)
+        self._check_range()
         self._check_categories()
+        if self.categories and self.bins is not None:
+            raise SettingsError(
+                f"Sensor {self.name!r} is either numeric (low, high, bins) or has categories."
+            )
+        if self.tilings and (self.bins is None or self.tilings < 0):
+            raise SettingsError(f"Sensor {self.name!r}: tilings are for a sensor with bins, and at least 1.")
 
-    def _check_bins(self) -> None:
-        bounds = (self.low, self.high, self.bins)
-        if all(bound is None for bound in bounds):
-            return
-        if self.low is None or self.high is None or self.bins is None:
-            raise SettingsError(f"Sensor {self.name!r} needs low, high and bins together, or none of them.")
-        finite = all(math.isfinite(math.nan if end is None else end) for end in map(as_number, bounds[:2]))
-        whole = isinstance(self.bins, int) and not isinstance(self.bins, bool)
-        if not finite or not self.low < self.high or not whole or self.bins < 1:
+    def _take_edges(self) -> None:
+        edges = tuple(math.nan if (end := as_number(one)) is None else end for one in self.edges)
+        rising = all(a < b for a, b in pairwise(edges)) and all(map(math.isfinite, edges))
+        given = (self.low, self.high, self.bins)
+        if len(edges) < 2 or not rising or given not in ((None,) * 3, (edges[0], edges[-1], len(edges) - 1)):
+            raise SettingsError(
+                f"Sensor {self.name!r}: edges must be at least two rising, finite numbers, and stand in place of low, "
+                f"high and bins, got {self.edges}."
+            )
+        self._set(edges=edges, low=edges[0], high=edges[-1], bins=len(edges) - 1)
+
+    def _check_range(self) -> None:
+        ends = (self.low, self.high)
+        if (self.low is None) != (self.high is None) or (self.bins is None and ends != (None, None)):
+            raise SettingsError(
+                f"Sensor {self.name!r} needs low, high and bins together; or bins alone, to learn the edges."
+            )
+        whole = isinstance(self.bins, int) and not isinstance(self.bins, bool) and self.bins >= 1
+        low, high = (as_number(end) for end in ends)
+        finite = ends == (None, None) or (
+            low is not None and high is not None and -math.inf < low < high < math.inf
+        )
+        if self.bins is not None and not (whole and finite):
             raise SettingsError(
                 f"Sensor {self.name!r}: low must be below high, both finite, and bins at least 1 and whole, got "
                 f"low={self.low!r}, high={self.high!r}, bins={self.bins!r}."
             )
-        if self.categories:
-            raise SettingsError(
-                f"Sensor {self.name!r} is either numeric (low, high, bins) or has categories."
-            )
+
+    def _set(self, **values: Any) -> None:
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
 
     def _check_categories(self) -> None:
         given: Any = self.categories
@@ -89,21 +126,38 @@ class Sensor:
         return self.bins is not None
 
     @property
+    def to_learn(self) -> bool:
+        """Tell whether its bins are yet to be learned."""
+        return self.bins is not None and self.low is None
+
+    @property
     def guardable(self) -> bool:
         """Tell whether a node can read it, so that a guard may test it."""
-        return self.topic is not None
+        return self.topic is not None and isinstance(self.field, str) and not self.field.endswith(CALLED)
+
+    @property
+    def path(self) -> str:
+        """Return the dotted field; empty where there is none that a node could be asked for."""
+        return self.field if isinstance(self.field, str) and self.guardable else ""
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Return the ends of the bins, one more than there are bins; empty where there are none."""
+        if self.edges or self.bins is None or self.low is None or self.high is None:
+            return self.edges
+        width = (self.high - self.low) / self.bins
+        return tuple(self.low + i * width for i in range(self.bins + 1))
+
+    @property
+    def resolution(self) -> float:
+        """Return the width of the narrowest bin of a numeric sensor."""
+        return min((b - a for a, b in pairwise(self.ends)), default=1.0)
 
     def bin(self, value: Any) -> int | None:
         """Return the bin of `value`: 0 to bins-1, -1 and `bins` outside; None for NaN, which tells nothing."""
-        if self.bins is not None and self.low is not None and self.high is not None:
+        if self.bins is not None:
             number = self._measurement(value)
-            if math.isnan(number):
-                return None
-            place = (number - self.low) / (self.high - self.low) * self.bins
-            index = math.floor(max(-1.0, min(float(self.bins), place)))
-            return (
-                index if number > self.high else min(index, self.bins - 1)
-            )  # the upper end is of the last bin
+            return None if math.isnan(number) else self._place(number)
         if self.categories:
             if value not in self.categories:
                 raise SettingsError(
@@ -128,14 +182,36 @@ class Sensor:
             )
         return number
 
+    def _place(self, number: float) -> int | None:
+        if self.bins is None or self.low is None or self.high is None:
+            return 0  # nothing is learned yet, as in a plain run of the test
+        if self.angle:
+            if math.isinf(number):
+                return None
+            number = self.low + (number - self.low) % (self.high - self.low)
+        if number > self.high:
+            return self.bins
+        if self.edges:
+            index = bisect_right(self.edges, number) - 1
+        else:
+            index = math.floor(max(-1.0, (number - self.low) / (self.high - self.low) * self.bins))
+        return min(index, self.bins - 1)  # the upper end is of the last bin
+
     def interval(self, first: int, last: int) -> tuple[float, float]:
-        """Return the values that bins `first` to `last` cover; infinite beyond the outer bins."""
+        """Return the values that bins `first` to `last` cover; infinite beyond the outer bins.
+
+        Of an angle, `last` may be beyond the last bin: the interval then begins above where it ends.
+        """
         if self.bins is None or self.low is None or self.high is None:
             return float(first), float(last)
-        width = (self.high - self.low) / self.bins
-        low = -math.inf if first < 0 else self.low + first * width
-        high = math.inf if last >= self.bins else self.low + (last + 1) * width
-        return low, high
+        ends = self.ends
+        if self.angle:
+            whole = last - first + 1 >= self.bins
+            return (-math.inf, math.inf) if whole else (ends[first % self.bins], ends[last % self.bins + 1])
+        return (
+            -math.inf if first < 0 else ends[first],
+            math.inf if last >= self.bins else ends[last + 1],
+        )
 
     def label(self, index: int) -> str:
         """Name a bin for people: `4.0-4.4`, `true`, a category."""
@@ -169,3 +245,37 @@ def field_value(message: Any, field: str) -> Any:
         else:
             message = getattr(message, part)
     return message
+
+
+def reading(message: Any, field: str | Callable[[Any], Any]) -> Any:
+    """Return what a sensor reads of a message."""
+    return field(message) if callable(field) else field_value(message, field)
+
+
+def stored(sensor: Sensor) -> Sensor:
+    """Return the sensor as it can be written down: a function by its name."""
+    if not callable(sensor.field):
+        return sensor
+    return replace(
+        sensor, field=f"{getattr(sensor.field, '__qualname__', type(sensor.field).__name__)}{CALLED}"
+    )
+
+
+def declared(sensor: Sensor) -> Sensor:
+    """Return the sensor as the marker has it, before its bins were learned."""
+    plain = stored(sensor)
+    return (
+        replace(plain, edges=(), low=None, high=None, bins=plain.learned, learned=0)
+        if plain.learned
+        else plain
+    )
+
+
+def with_edges(sensors: Iterable[Sensor], learned: Mapping[str, tuple[float, ...]]) -> tuple[Sensor, ...]:
+    """Give the sensors that have something to learn what was learned, by name."""
+    return tuple(
+        replace(sensor, bins=None, edges=learned[sensor.name], learned=sensor.bins or 0)
+        if sensor.to_learn and sensor.name in learned
+        else sensor
+        for sensor in sensors
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -11,6 +12,7 @@ import pytest
 
 from pytest_tarl.errors import FixtureError, SettingsError, TarlError
 from pytest_tarl.repeating import INTERRUPTS, Instruments, ItemRollout, defer_limit, designated, finish
+from pytest_tarl.sensors import Sensor
 from pytest_tarl.settings import Options
 
 if TYPE_CHECKING:
@@ -151,12 +153,12 @@ class TarlSession:
         try:
             with ExitStack() as crews:
 
-                def rollout_with(instruments: Instruments) -> Rollout:
+                def rollout_with(instruments: Instruments, sensors: tuple[Sensor, ...]) -> Rollout:
                     if self.options.workers == 1 and self.options.cluster is None:
-                        return ItemRollout(item, marked, instruments)
+                        return ItemRollout(item, replace(marked, sensors=sensors), instruments)
                     from pytest_tarl.working.crew import opened
 
-                    return crews.enter_context(opened(item, instruments, self.options))
+                    return crews.enter_context(opened(item, instruments, sensors, self.options))
 
                 return mission.run(rollout_with)
         except NoFixtureError as missing:

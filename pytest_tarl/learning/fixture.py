@@ -39,6 +39,7 @@ from pytest_tarl.sensors import Sensor
 
 FORMAT_VERSION = 2
 HEADER = "header"
+TUPLES = ("categories", "edges")  # fields of a sensor that JSON makes lists of
 
 
 @dataclass(frozen=True)
@@ -148,7 +149,9 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
         TaintList(one["source"], one["sink"], tuple(SitePlace(**site) for site in one["sites"]))
         for one in header["lists"]
     )
-    sensors = tuple(Sensor(**one | {"categories": tuple(one["categories"])}) for one in header["sensors"])
+    sensors = tuple(
+        Sensor(**one | {name: tuple(one.get(name, ())) for name in TUPLES}) for one in header["sensors"]
+    )
     return Fixture(
         test=header["test"],
         seed=header["seed"],

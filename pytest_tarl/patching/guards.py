@@ -67,7 +67,7 @@ def bound(sensor: Sensor, value: float) -> str:
     """Write a limit, rounded to about a hundredth of a bin."""
     if sensor.bins is None or sensor.low is None or sensor.high is None:
         return repr(int(value) if float(value).is_integer() else rounded(value))
-    width = (sensor.high - sensor.low) / sensor.bins
+    width = sensor.resolution
     return repr(round(float(value), 2 - math.floor(math.log10(width))) + 0.0)
 
 
@@ -82,7 +82,12 @@ def _starts_true(source: Document, place: ast.AST, chain: tuple[str, ...], conju
 def _satisfied(conjunct: Conjunct, value: Constant) -> bool:
     if isinstance(value, str) or conjunct.sensor.categories:
         return value in _chosen(conjunct)
-    return value is not None and conjunct.low <= float(value) <= conjunct.high
+    if value is None:
+        return False
+    number = float(value)
+    if conjunct.low > conjunct.high:  # an angle, across the ends of its range
+        return number >= conjunct.low or number <= conjunct.high
+    return conjunct.low <= number <= conjunct.high
 
 
 def _test(conjunct: Conjunct, code: str, is_boolean: bool) -> str:
@@ -98,7 +103,14 @@ def _test(conjunct: Conjunct, code: str, is_boolean: bool) -> str:
 
 
 def _interval(sensor: Sensor, low: float, high: float, code: str) -> str:
-    """Write the bins from low to high: closed below, open above, except for the last bin, which holds its end."""
+    """Write the bins from low to high: closed below, open above, except for the last bin, which holds its end.
+
+    Of an angle that runs across the ends of its range: how far it is turned from where the interval begins.
+    """
+    if low > high:
+        period = (sensor.high or 0.0) - (sensor.low or 0.0)
+        turned = f"({code} {'+' if low < 0 else '-'} {bound(sensor, abs(low))}) % {period!r}"
+        return f"{turned} < {bound(sensor, high - low + period)}"
     above = "<" if _is_top(sensor, low) else "<="
     below = "<" if sensor.numeric and not _is_top(sensor, high) else "<="
     if high == math.inf:

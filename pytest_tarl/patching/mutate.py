@@ -114,12 +114,12 @@ class Conditions:
 
     def _reading(self, conjunct: Conjunct, source: Document, site: SiteId, place: ast.AST) -> Reading:
         sensor = conjunct.sensor
-        if sensor.topic is None or sensor.field is None:
+        if sensor.topic is None or not sensor.path:
             raise RepairError(
-                f"Sensor {sensor.name!r} is only observed by the test, so that the node cannot read it: "
-                "give it topic and field, or leave it out of the guard."
+                f"Sensor {sensor.name!r} is only observed by the test, or read by a function of it, so that the node "
+                "cannot read it: give it topic and dotted field, or leave it out of the guard."
             )
-        expressions = self._analysis.holders(sensor.topic, sensor.field, site)
+        expressions = self._analysis.holders(sensor.topic, sensor.path, site)
         reading = held(source, place, expressions, conjunct)
         return reading or self.subscriptions.reading(sensor, site, source, place)
 

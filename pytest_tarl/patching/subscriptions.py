@@ -52,7 +52,7 @@ class Subscriptions:
     def reading(self, sensor: Sensor, site: SiteId, source: Document, place: ast.AST) -> Reading:
         """Return what will hold a sensor's value at a place. Raises RepairError when it cannot be brought there."""
         subscription = self._subscription(sensor.topic or "", site, source, place)
-        wanted = sensor.field or ""
+        wanted = sensor.path
         if wanted not in subscription.names:
             subscription.names[wanted] = self._fresh(subscription.store, sensor.name)
         subscription.store.places.append(place)

@@ -68,6 +68,21 @@ def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
     return tuple(kept)
 
 
+def closed(cover: Iterable[Box], dimension: int, bins: int) -> tuple[Box, ...]:
+    """Join boxes of an angle that meet at the ends of its range: the joined one runs past the last bin."""
+    kept = list(cover)
+    for ending in [box for box in kept if box[dimension][1] == bins - 1 and box[dimension][0] > 0]:
+        first = ending[dimension][0]
+        for beginning in kept:
+            last = beginning[dimension][1]
+            joined = (*beginning[:dimension], ending[dimension], *beginning[dimension + 1 :])
+            if beginning[dimension][0] == 0 and joined == ending and beginning is not ending:
+                kept = [box for box in kept if box not in (ending, beginning)]
+                kept.append((*ending[:dimension], (first, last + bins), *ending[dimension + 1 :]))
+                break
+    return tuple(kept)
+
+
 def _holds(box: Box, cell: Cell) -> bool:
     return all(first <= index <= last for (first, last), index in zip(box, cell, strict=True))
 
@@ -85,6 +100,9 @@ class Vocabulary:
         """Name a set of cells, at most `most` places of it; cells that nobody visited may lie in between."""
         chosen = frozenset(cells)
         cover = bridged(boxes(chosen), self.cells - chosen)
+        for dimension, sensor in enumerate(self.sensors):
+            if sensor.angle and sensor.bins is not None:
+                cover = closed(cover, dimension, sensor.bins)
         if not cover:
             return "nowhere"
         places: dict[tuple[str, ...], list[tuple[int, int]]] = defaultdict(list)
@@ -142,8 +160,7 @@ class Vocabulary:
 def _interval(sensor: Sensor, first: int, last: int) -> str:
     """Write what bins cover, as precise as a tenth of a bin or so is worth."""
     low, high = sensor.interval(first, last)
-    width = (sensor.high or 0.0) - (sensor.low or 0.0)
-    digits = max(0, -math.floor(math.log10(width / (sensor.bins or 1))))
+    digits = max(0, -math.floor(math.log10(sensor.resolution)))
     unit = sensor.unit and " " + sensor.unit
     if math.isinf(low) and math.isinf(high):
         return "anywhere"
@@ -151,5 +168,7 @@ def _interval(sensor: Sensor, first: int, last: int) -> str:
         return f"below {high:.{digits}f}{unit}"
     if math.isinf(high):
         return f"above {low:.{digits}f}{unit}"
+    if low > high:
+        return f"above {low:.{digits}f} or below {high:.{digits}f}{unit}"
     between = " to " if low < 0 else "-"
     return f"{low:.{digits}f}{between}{high:.{digits}f}{unit}"

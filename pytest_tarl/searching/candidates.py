@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,9 +48,10 @@ def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
     proposals = [
         ALWAYS,
         *_combined(
-            [_hull((*region.cells, *region.novel), i) for i in range(len(evidence.sensors))], evidence
+            [_hull((*region.cells, *region.novel), i, one) for i, one in enumerate(evidence.sensors)],
+            evidence,
         ),
-        *_combined([_hull(region.novel, i) for i in range(len(evidence.sensors))], evidence),
+        *_combined([_hull(region.novel, i, one) for i, one in enumerate(evidence.sensors)], evidence),
         *_combined([_steepest(evidence, i) for i in range(len(evidence.sensors))], evidence),
     ]
     proposals += [_widened(guard) for guard in proposals]
@@ -102,13 +103,21 @@ def _holding(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> NDArray[
 def _within(conjunct: Conjunct, index: int) -> bool:
     low, high = conjunct.sensor.interval(index, index)
     slack = 1e-9 * max(1.0, abs(low), abs(high)) if np.isfinite(high - low) else 0.0
+    if conjunct.low > conjunct.high:  # an angle, across the ends of its range
+        return conjunct.low <= low + slack or high - slack <= conjunct.high
     return conjunct.low <= low + slack and high - slack <= conjunct.high
 
 
-def _hull(cells: Sequence[Cell], i: int) -> Bins | None:
-    """Return the bins of a sensor that the cells span."""
-    chosen = [cell[i] for cell in cells]
-    return (min(chosen), max(chosen)) if chosen else None
+def _hull(cells: Sequence[Cell], i: int, sensor: Sensor) -> Bins | None:
+    """Return the bins of a sensor that the cells span; of an angle the shortest arc, which may pass the last bin."""
+    chosen = sorted({cell[i] for cell in cells})
+    if not chosen:
+        return None
+    if not sensor.angle or sensor.bins is None:
+        return chosen[0], chosen[-1]
+    gaps = [after - before for before, after in pairwise([*chosen, chosen[0] + sensor.bins])]
+    start = (gaps.index(max(gaps)) + 1) % len(chosen)
+    return chosen[start], chosen[start - 1] + (sensor.bins if start else 0)
 
 
 def _steepest(evidence: Evidence, i: int) -> Bins | None:
@@ -117,7 +126,13 @@ def _steepest(evidence: Evidence, i: int) -> Bins | None:
     for cell, value in evidence.shares().items():
         by_bin[cell[i]] = by_bin.get(cell[i], 0.0) + value
     best, best_sum, start, running = None, 0.0, None, 0.0
-    for index in sorted(by_bin):
+    sensor = evidence.sensors[i]
+    turn = sensor.bins if sensor.angle and sensor.bins else 0
+    order = sorted(by_bin)
+    by_bin |= {index + turn: by_bin[index] for index in order}
+    for index in [*order, *(index + turn for index in order if turn)]:
+        if turn and start is not None and index - start >= turn:
+            break
         if running <= 0.0:
             start, running = index, 0.0
         running += by_bin[index]
@@ -131,17 +146,23 @@ def _combined(intervals: Sequence[Bins | None], evidence: Evidence) -> Iterator[
     conjuncts = []
     for i, (sensor, bins) in enumerate(zip(evidence.sensors, intervals, strict=True)):
         seen = {cell[i] for world in (evidence.offline, evidence.online) for cell in world.cells}
-        everywhere = bins is None or (bins[0] <= min(seen) and bins[1] >= max(seen))
+        everywhere = bins is None or _spans(bins, seen, sensor)
         if bins is not None and sensor.guardable and not everywhere:
             conjuncts.append(_conjunct(sensor, bins, seen))
     for size in (1, 2):
         yield from map(Guard, combinations(conjuncts, size))
 
 
+def _spans(bins: Bins, seen: set[int], sensor: Sensor) -> bool:
+    """Tell whether bins hold all that was ever seen."""
+    turn = sensor.bins if sensor.angle and sensor.bins else 0
+    return all(bins[0] <= index <= bins[1] or bins[0] <= index + turn <= bins[1] for index in seen)
+
+
 def _conjunct(sensor: Sensor, bins: Bins, seen: set[int]) -> Conjunct:
     """Return the interval of the bins, left open at an end beyond which nothing was ever seen."""
     low, high = sensor.interval(*bins)
-    if sensor.numeric:
+    if sensor.numeric and not sensor.angle:
         low = -np.inf if bins[0] <= min(seen) else low
         high = np.inf if bins[1] >= max(seen) else high
     return Conjunct(sensor, float(low), float(high))
@@ -156,7 +177,9 @@ def _wider(conjunct: Conjunct) -> Conjunct:
     sensor = conjunct.sensor
     if sensor.bins is None or sensor.low is None or sensor.high is None:
         return conjunct
-    step = WIDER * (sensor.high - sensor.low) / sensor.bins
+    if sensor.angle:
+        return _wider_arc(conjunct, sensor.low, sensor.high - sensor.low)
+    step = WIDER * sensor.resolution
     low, high = conjunct.low - step, conjunct.high + step
     within = 1e-9 * step
     # What lies outside of the range is one bin on either side: it is in or out as a whole.
@@ -165,3 +188,12 @@ def _wider(conjunct: Conjunct) -> Conjunct:
         low if low >= sensor.low - within else -np.inf,
         high if high <= sensor.high + within else np.inf,
     )
+
+
+def _wider_arc(conjunct: Conjunct, low: float, period: float) -> Conjunct:
+    """Widen the arc of an angle; one that would come round to itself is every angle."""
+    step = WIDER * conjunct.sensor.resolution
+    if (conjunct.high - conjunct.low) % period + 2 * step >= period - 1e-9 * period or np.isinf(conjunct.low):
+        return Conjunct(conjunct.sensor, -np.inf, np.inf)
+    start, end = ((at - low) % period + low for at in (conjunct.low - step, conjunct.high + step))
+    return Conjunct(conjunct.sensor, start, end)

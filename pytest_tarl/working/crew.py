@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -16,6 +16,7 @@ import pytest
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.repeating import Instruments
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
+from pytest_tarl.sensors import Sensor
 from pytest_tarl.settings import Options
 from pytest_tarl.working import wire
 from pytest_tarl.working.pool import TRIES, Pool, Post, WorkerDiedError
@@ -92,9 +93,11 @@ class Answer:
 
 
 @contextmanager
-def opened(item: pytest.Function, instruments: Instruments, options: Options) -> Iterator[Crew]:
+def opened(
+    item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor], options: Options
+) -> Iterator[Crew]:
     """Open a crew for a test and end all its workers afterwards, whatever happens meanwhile."""
-    post = posted(item, instruments)
+    post = posted(item, instruments, sensors)
     if options.cluster is not None:
         from pytest_tarl.working.cluster import joined, serve_here
 
@@ -111,7 +114,7 @@ def opened(item: pytest.Function, instruments: Instruments, options: Options) ->
         executor.shutdown()
 
 
-def posted(item: pytest.Function, instruments: Instruments) -> Post:
+def posted(item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor]) -> Post:
     """Say what a worker needs in order to hold the item ready."""
     config = item.config
     plain = {name: value for name, value in vars(config.option).items() if _plain(value)}
@@ -127,6 +130,7 @@ def posted(item: pytest.Function, instruments: Instruments) -> Post:
     }
     first = {
         "nodeid": item.nodeid,
+        "edges": {sensor.name: sensor.edges for sensor in sensors if sensor.learned},
         "instruments": {
             "positions": {
                 str(path): [[line, column, number] for (line, column), number in places.items()]

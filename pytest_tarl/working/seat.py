@@ -7,6 +7,7 @@ import json
 import os
 import sys
 import traceback
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -16,6 +17,7 @@ from _pytest.config import Config
 from pytest_tarl.errors import TarlError
 from pytest_tarl.repeating import Instruments, ItemRollout, designated, finish
 from pytest_tarl.rollout import Rollout
+from pytest_tarl.sensors import with_edges
 from pytest_tarl.working import wire
 
 MEMORIES = ("lfplugin", "nfplugin", "stepwiseplugin")
@@ -80,7 +82,9 @@ class Server:
             self.refuse(f"{item.nodeid} has no marker")
             return True
         self.serving = True
-        rollout = ItemRollout(item, marked, instruments(self.post["instruments"]))
+        edges = {name: tuple(ends) for name, ends in self.post["edges"].items()}
+        told = replace(marked, sensors=with_edges(marked.sensors, edges))
+        rollout = ItemRollout(item, told, instruments(self.post["instruments"]))
         wire.write(self.answers, wire.READY)
         while request := wire.read(self.requests):  # an empty one says that there are no more
             wire.write(self.answers, answer(rollout, request))

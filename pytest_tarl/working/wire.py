@@ -16,6 +16,7 @@ from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 
 COLUMNS = ("site", "flow", "event_cell", "event_step", "step_cell", "reward")
+TOLD = ("passed", "failure", "broken", "topics", "crashed", "stuck", "values")
 LENGTH = struct.Struct("<Q")
 READY = b"ready"
 
@@ -66,6 +67,9 @@ def run_message(run: EpisodeRun) -> bytes:
         "broken": run.broken,
         "topics": dict(run.topics),
         "crashed": run.crashed,
+        "stuck": run.stuck,
+        "notes": run.notes,
+        "values": dict(run.values),
     }
     return _joined(head, arrays)
 
@@ -82,7 +86,7 @@ def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
         parts=parts,
         thread=arrays.get("thread"),
     )
-    told = {name: head[name] for name in ("passed", "failure", "broken", "topics", "crashed")}
+    told = {name: head[name] for name in TOLD} | {"notes": tuple(head["notes"])}
     return EpisodeRun(plan=plan, trace=trace, **told)
 
 

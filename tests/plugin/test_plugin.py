@@ -9,6 +9,7 @@ import sys
 import jsonschema
 import pytest
 
+from pytest_tarl.learning.fixture import load
 from pytest_tarl.report import json_result
 from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
 
@@ -253,3 +254,22 @@ def test_the_plugin_imports_nothing_heavy_until_it_is_needed(tank: pytest.Pytest
     )
     result = tank.run(sys.executable, "-c", code)
     result.stdout.fnmatch_lines(["[[]]"])
+
+
+def test_bins_that_are_learned_are_kept_in_the_fixture_and_used_on_line(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "low=0, high=1, bins=10", "bins=6")
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    (sensor,) = load(fixture_file(tank)).sensors
+    assert (sensor.learned, len(sensor.edges)) == (6, 7)
+    found = tank.runpytest(*ONLINE)
+    found.assert_outcomes(failed=1, deselected=1)
+    found.stdout.fnmatch_lines(["*degraded*"])
+    tank.runpytest().assert_outcomes(passed=2)
+    changed(tank, "test_tank", "bins=6", "bins=7")
+    tank.runpytest(*ONLINE).stdout.fnmatch_lines(["*sensors of * are not those of its utility fixture*"])
+
+
+def test_a_sensor_may_be_a_function_of_the_message(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", 'field="data", low', "field=lambda message: message.data, low")
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    tank.runpytest(*ONLINE).stdout.fnmatch_lines(["*degraded*"])

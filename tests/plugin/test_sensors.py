@@ -13,8 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pytest_tarl import Sensor
-from pytest_tarl.errors import SettingsError
-from pytest_tarl.sensors import field_value
+from pytest_tarl.errors import RecordingError, SettingsError
+from pytest_tarl.learning.binning import learned_edges
+from pytest_tarl.sensors import declared, field_value, reading, stored, with_edges
 
 X = Sensor("x", topic="/odom", field="pose.x", low=-1.0, high=3.0, bins=8, unit="m")
 
@@ -128,3 +129,54 @@ def test_bounds_that_cannot_be_divided_are_refused(bounds: tuple[float, float, i
 def test_a_field_indexes_arrays_of_any_kind() -> None:
     assert field_value({"ranges": np.array([1.0, 2.0])}, "ranges.1") == 2.0
     assert field_value({"ranges": array("d", [1.0, 2.0])}, "ranges.-1") == 2.0
+
+
+HEADING = Sensor("heading", topic="/pose", field="theta", bins=8, angle=True, unit="rad")
+
+
+@given(st.floats(-20, 20), st.integers(-3, 3))
+def test_an_angle_has_the_same_bin_however_often_it_was_turned_round(value: float, turns: int) -> None:
+    index = HEADING.bin(value)
+    assert index is not None
+    assert 0 <= index < 8
+    turned = HEADING.bin(value + turns * 2 * math.pi)
+    assert turned is not None
+    assert (index - turned) % 8 in (0, 1, 7)  # on an edge the last digit decides
+
+
+def test_an_interval_of_an_angle_may_run_across_the_end_of_its_range() -> None:
+    low, high = HEADING.interval(7, 8)
+    assert (low, high) == pytest.approx((0.75 * math.pi, -0.75 * math.pi))
+    assert HEADING.interval(3, 10) == (-math.inf, math.inf)
+
+
+def test_unequal_bins_hold_what_lies_between_their_edges() -> None:
+    sensor = Sensor("x", edges=(0.0, 1.0, 5.0, 6.0))
+    assert [sensor.bin(value) for value in (-1, 0, 0.5, 1, 4.9, 5, 6, 7)] == [-1, 0, 0, 1, 1, 2, 2, 3]
+    assert sensor.interval(1, 1) == (1.0, 5.0)
+    assert sensor.resolution == 1.0
+
+
+def test_learned_bins_hold_about_as_many_values_each_and_are_declared_without_them() -> None:
+    asked = Sensor("x", topic="/x", field="data", bins=4)
+    values = (np.random.default_rng(0).normal(size=4000) ** 3).tolist()
+    (found,) = with_edges((asked,), learned_edges((asked,), {"x": values}))
+    counts = np.bincount([index for value in values if 0 <= (index := found.bin(value) or 0) < 4])
+    assert counts == pytest.approx(1000, abs=80)
+    assert declared(found) == asked
+
+
+def test_bins_cannot_be_learned_from_one_value() -> None:
+    with pytest.raises(RecordingError, match="'x' read 2 all the time"):
+        learned_edges((Sensor("x", bins=4),), {"x": [2.0, 2.0, math.nan]})
+
+
+def test_a_function_reads_a_sensor_and_is_stored_by_its_name_and_never_in_a_guard() -> None:
+    def nearest(scan: SimpleNamespace) -> float:
+        return float(min(scan.ranges))
+
+    sensor = Sensor("near", topic="/scan", field=nearest, low=0, high=4, bins=8)
+    assert reading(SimpleNamespace(ranges=[3.0, 0.6]), nearest) == 0.6
+    assert str(stored(sensor).field).endswith("nearest()")
+    assert not sensor.guardable
+    assert not stored(sensor).guardable

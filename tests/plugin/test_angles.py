@@ -1,0 +1,54 @@
+"""An angle that drifts across the ends of its range: one region in words, one condition in the guard."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pytest_tarl import Sensor
+from pytest_tarl.model import Conjunct, Guard
+from pytest_tarl.patching.guards import Reading, condition
+from pytest_tarl.report.regions import Vocabulary
+from pytest_tarl.searching import candidates
+from pytest_tarl.searching.candidates import holds
+
+HEADING = Sensor("heading", topic="/pose", field="theta", bins=12, angle=True, unit="rad")
+ACROSS = Conjunct(HEADING, *HEADING.interval(10, 13))  # the last two bins and the first two
+
+
+def test_the_hull_of_cells_on_both_sides_is_the_short_way_round() -> None:
+    assert candidates._hull([(11,), (0,), (1,)], 0, HEADING) == (11, 13)
+    assert candidates._hull([(3,), (5,)], 0, HEADING) == (3, 5)
+    assert candidates._hull([(11,), (3,)], 0, HEADING) == (11, 15)
+
+
+@given(st.floats(-20, 20))
+def test_the_guard_holds_in_the_bins_of_the_arc_however_often_the_angle_was_turned_round(
+    value: float,
+) -> None:
+    code = condition(Guard((ACROSS,)), {"heading": Reading("theta")}, {})
+    assert " or " not in code
+    index = HEADING.bin(value)
+    low, high = ACROSS.low, ACROSS.high
+    if min(abs((value - edge + 1) % math.tau - 1) for edge in (low, high)) > 0.02:  # limits are rounded
+        assert eval(code, {"theta": value}) is (index in (10, 11, 0, 1))
+
+
+def test_a_cell_is_under_the_guard_that_spans_it() -> None:
+    assert [i for i in range(12) if holds(Guard((ACROSS,)), (i,), (HEADING,))] == [0, 1, 10, 11]
+
+
+def test_the_region_in_words_says_that_it_runs_across() -> None:
+    vocabulary = Vocabulary((HEADING,), [(i,) for i in range(12)])
+    assert vocabulary.words([(10,), (11,), (0,), (1,)]) == "heading above 2.1 or below -2.1 rad"
+    assert vocabulary.words([(0,), (5,)]).startswith("heading -3.1 to -2.6 or ")
+
+
+def test_a_wider_arc_stays_an_arc_or_becomes_the_whole_circle() -> None:
+    wider = candidates._wider(ACROSS)
+    assert [i for i in range(12) if holds(Guard((wider,)), (i,), (HEADING,))] == [0, 1, 2, 3, 8, 9, 10, 11]
+    whole = candidates._wider(wider)
+    assert whole.low == pytest.approx(-math.inf)
