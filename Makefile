@@ -1,5 +1,6 @@
 # make demo: install, then lint → record → on-line → repair on examples/shuttle
 # make test: install, then lint, types, import contracts, tests and the demo
+# make test-ros1, make test-ros2: the examples and the probes on a real ROS, in an environment of its own
 
 PYTHON ?= python3
 VENV ?= .venv
@@ -33,10 +34,44 @@ $(INSTALLED): pyproject.toml
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[dev]"
 	@touch $@
 
+# The same test bodies on a real ROS, each in an environment of its own; see docs/real-ros.md
+ROS1_PYTHON ?= /usr/bin/python3
+ROS1_VENV ?= .venv-ros1
+ROS1_PACKAGES := python3-rospy python3-rosmaster python3-std-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-rosgraph-msgs
+ROS2_VENV ?= .venv-ros2
+ROS2_WHEELS := 'ros-rclpy[fastrtps]==9.1.2' ros-geometry-msgs==5.5.1 ros-nav-msgs==5.5.1 ros-sensor-msgs==5.5.1
+ROS_TOOLS := --editable ".[ros,report]" pymunk hypothesis pytest-xdist
+PIP_INSTALL := -m pip install --quiet --disable-pip-version-check
+
+.PHONY: test-ros1 test-ros2 setup-ros1 setup-ros2
+
+setup-ros1: $(ROS1_VENV)/.installed
+
+setup-ros2: $(ROS2_VENV)/.installed
+
+test-ros1: setup-ros1
+	$(ROS1_VENV)/bin/python -m pytest -q tests/realros
+
+test-ros2: setup-ros2
+	$(ROS2_VENV)/bin/python -m pytest -q tests/realros
+
+$(ROS1_VENV)/.installed: pyproject.toml
+	@$(ROS1_PYTHON) -c 'import rospy, rosmaster, nav_msgs' || \
+		{ echo "$(ROS1_PYTHON) has no rospy; on Debian: apt-get install $(ROS1_PACKAGES)"; exit 1; }
+	@$(ROS1_PYTHON) -m venv --system-site-packages $(ROS1_VENV)
+	$(ROS1_VENV)/bin/python $(PIP_INSTALL) $(ROS_TOOLS)
+	@touch $@
+
+$(ROS2_VENV)/.installed: pyproject.toml
+	@$(PYTHON) -m venv $(ROS2_VENV)
+	$(ROS2_VENV)/bin/python $(PIP_INSTALL) $(ROS2_WHEELS)
+	$(ROS2_VENV)/bin/python $(PIP_INSTALL) $(ROS_TOOLS)
+	@touch $@
+
 bench-paper: setup
 	$(BIN)/python benchmarks/paper.py
 
 clean:
-	rm -rf $(VENV) .mypy_cache .pytest_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) $(ROS1_VENV) $(ROS2_VENV) .mypy_cache .pytest_cache .ruff_cache .import_linter_cache
 	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
 	rm -rf examples/*/.tarl

@@ -18,6 +18,7 @@ from pytest_tarl.learning.merging import aligned, merge
 from pytest_tarl.learning.permutation import permuted_loss
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.utility import batch
+from pytest_tarl.logged import read_log
 from pytest_tarl.model import Comparison, ListComparison, Region, SitePlace, TaintList, Verdict
 from pytest_tarl.recording import Progress, Recorded, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.rollout import Rollout
@@ -47,13 +48,19 @@ def run_online(
     drift: str | None,
     progress: Progress,
 ) -> Online:
-    """Run the on-line episodes of one scenario and compare them with the fixture."""
+    """Run the on-line episodes of one scenario, or read the missions of a log, and compare them with the fixture."""
     count = options.episodes or options.ONLINE_EPISODES
     members = current_members(fixture, plan)
     learner = _learner(fixture, options)
-    seed = episode_seeds(options.seed, "online", count)
-    watch = _Watch(fixture.sample, designation, options, planned(count, options.most_looks))
-    recorded = run_episodes(rollout, seed, drift, members, progress, learner, watch)
+    numbers: Sequence[int] = episode_seeds(options.seed, "online", count)
+    looks = options.most_looks
+    said: tuple[str, ...] = ()
+    if options.log is not None:
+        rollout = logged = read_log(options.log, fixture, plan, designation.judge)
+        count, looks, said = logged.count, 1, logged.notes
+        numbers = range(count)
+    watch = _Watch(fixture.sample, designation, options, planned(count, looks))
+    recorded = run_episodes(rollout, numbers, drift, members, progress, learner, watch)
     difference = concluded(watch.seen, options.alpha)
     offline, online = aligned(fixture.sample, recorded.sample)
     learned = sarsa_tables(recorded, mean_flows(fixture.sample))
@@ -82,6 +89,7 @@ def run_online(
         totals={"offline": tuple(offline.total.tolist()), "online": tuple(online.total.tolist())},
         culprits=localize.culprits(ranked, {}, (), difference.verdict.loss),
         notes=(
+            *said,
             *recorded.notes,
             *_early(recorded.sample, count),
             *lost_sites(fixture, plan),

@@ -23,6 +23,10 @@ class RecordingError(TarlError):
     """A test run cannot be recorded: no reward, silent sensor, node that fails to start."""
 
 
+class LogError(TarlError):
+    """A node cannot be observed, or the log of its missions cannot be read."""
+
+
 class NodeError(TarlError):
     """A node misbehaves towards the simulation: it never waits, or ends in an exception."""
 

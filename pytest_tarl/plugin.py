@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from pytest_tarl.settings import Options
 
 MARKER = (
-    "tarl(nodes, sensors, drifts={}, episodes=200, min_success=1.0, tolerance=None): "
+    "tarl(nodes, sensors, drifts={}, episodes=200, min_success=1.0, tolerance=None, judge=None): "
     "a simulation test that TARL records off-line and compares on-line."
 )
 
@@ -79,6 +79,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default="embedded",
         help="the ROS that nodes run on: embedded (default), real, or auto (real where it is installed)",
     )
+    flag(
+        "--tarl-log",
+        metavar="FILE",
+        help="with --tarl-online: compare the missions in this log of `python -m pytest_tarl observe`",
+    )
     flag("--tarl-strict", action="store_true", help="with --tarl-online: a test without fixture fails")
 
 
@@ -135,6 +140,7 @@ def _asked(config: pytest.Config) -> bool:
         "--tarl-drift",
         "--tarl-search",
         "--tarl-strict",
+        "--tarl-log",
     )
     return any(config.getoption(flag) for flag in flags)
 
@@ -163,6 +169,7 @@ def _options(config: pytest.Config) -> Options:
                     "cluster",
                     "strict",
                     "ros",
+                    "log",
                 )
             }
         )

@@ -5,8 +5,9 @@ from __future__ import annotations
 import difflib
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Literal
 
 from pytest_tarl.errors import SettingsError
@@ -16,7 +17,7 @@ Mode = Literal["plain", "record", "online", "repair"]
 SEARCHES = ("sweep", "epsilon-greedy")
 UTILITIES = ("batch", "sarsa", "expected-sarsa", "td-lambda")
 ROS_KINDS = ("embedded", "real", "auto")
-MARKER_ARGUMENTS = ("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance")
+MARKER_ARGUMENTS = ("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance", "judge")
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ class Options:
     cluster: str | None = None  # address of a Dask scheduler
     ros: str = "embedded"
     looks: int | None = None  # at the verdict, at most
+    log: Path | None = None  # missions of a robot, instead of on-line episodes
 
     ONLINE_EPISODES = 40
     LOOKS = 3
@@ -60,6 +62,7 @@ class Options:
             "--tarl-budget": (self.budget, 300),
             "--tarl-utility": (self.utility, "batch"),
             "--tarl-ros": (self.ros, "embedded"),
+            "--tarl-log": (self.log, None),
         }
         return tuple(
             text for flag, (value, usual) in chosen.items() if value != usual for text in (flag, str(value))
@@ -76,12 +79,15 @@ class Designation:
     episodes: int = 200
     min_success: float = 1.0
     tolerance: float | None = None
+    judge: Callable[[Mapping[str, Any], Mapping[str, Any]], float] | None = (
+        None  # of steps that a log has no reward of
+    )
 
 
 def options(given: Mapping[str, Any]) -> Options:
     """Check the flags of a run. Raises SettingsError with a sentence."""
     if not (given["record"] or given["online"] or given["repair"]):
-        stray = next((name for name in ("drift", "search", "strict") if given[name]), "drift")
+        stray = next((name for name in ("drift", "search", "strict", "log") if given[name]), "drift")
         raise SettingsError(f"--tarl-{stray} goes with --tarl-online, and does nothing without it.")
     if given["record"] and given["online"]:
         raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
@@ -113,6 +119,7 @@ def options(given: Mapping[str, Any]) -> Options:
         cluster=given["cluster"],
         ros=given["ros"],
         looks=given["looks"],
+        log=_log(given),
     )
 
 
@@ -150,7 +157,30 @@ def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, A
         episodes=_number(where, "episodes", arguments.get("episodes", 200), int, 2, 10**6),
         min_success=_number(where, "min_success", arguments.get("min_success", 1.0), float, 0, 1),
         tolerance=_tolerance(where, arguments.get("tolerance")),
+        judge=_judge(where, arguments.get("judge")),
     )
+
+
+def _log(given: Mapping[str, Any]) -> Path | None:
+    if given["log"] is None:
+        return None
+    if not given["online"]:
+        raise SettingsError("--tarl-log goes with --tarl-online: its missions are the on-line side.")
+    for other in ("repair", "drift", "episodes"):
+        if given[other]:
+            raise SettingsError(
+                f"--tarl-log and --tarl-{other} exclude each other: a log holds what happened, and nothing can be run "
+                "again in it. Model what it shows as a drift scenario of the marker, and repair that."
+            )
+    return Path(given["log"]).absolute()
+
+
+def _judge(where: str, value: Any) -> Any:
+    if value is not None and not callable(value):
+        raise SettingsError(
+            f"{where}: judge must be a function of two mappings of sensor values, got {value!r}."
+        )
+    return value
 
 
 def _nodes(where: str, nodes: Any) -> tuple[str, ...]:

@@ -42,7 +42,56 @@ def _parser() -> argparse.ArgumentParser:
         help="exit with 1 when the second one earns significantly less",
     )
     diff.set_defaults(run=_diff)
+    _add_observe(commands)
     return parser
+
+
+def _add_observe(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    observe = commands.add_parser(
+        "observe", help="run a node on a robot and log its missions for pytest --tarl-online --tarl-log"
+    )
+    flag = observe.add_argument
+    flag("node", type=Path, help="the node's script")
+    flag("argv", nargs="*", metavar="-- ARGUMENT", help="what the node itself is given, after --")
+    flag(
+        "--log", type=Path, default=Path(".tarl/missions.log"), help="default .tarl/missions.log; appended to"
+    )
+    flag(
+        "--fixture", type=Path, help="the utility fixture whose sensors are watched; found where there is one"
+    )
+    flag("--module", type=Path, action="append", default=[], help="a further file of the node; repeatable")
+    flag("--reward-topic", default="", metavar="TOPIC[:TYPE]", help="the monitor's reward (std_msgs/Float64)")
+    flag(
+        "--step", type=float, metavar="SECONDS", help="close a step this often; the marker's judge rewards it"
+    )
+    flag(
+        "--mission-topic",
+        default="",
+        metavar="TOPIC[:TYPE]",
+        help="begin, succeeded, failed (std_msgs/String)",
+    )
+    flag(
+        "--idle", type=float, metavar="SECONDS", help="a mission ends when nothing was published for so long"
+    )
+    observe.set_defaults(run=_observe)
+
+
+def _observe(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.observing.command import Order, observe
+
+    order = Order(
+        node=arguments.node,
+        argv=tuple(arguments.argv),
+        log=arguments.log,
+        fixture=arguments.fixture,
+        modules=tuple(arguments.module),
+        reward=arguments.reward_topic,
+        mission=arguments.mission_topic,
+        idle=arguments.idle,
+        step=arguments.step,
+    )
+    print(observe(order), file=sys.stderr)
+    return 0
 
 
 def _show(arguments: argparse.Namespace) -> int:

@@ -8,6 +8,7 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import FrameType
 from typing import Any
 
@@ -15,6 +16,7 @@ from pytest_tarl.ros import blame
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.scheduler import Scheduler, Task, running_task
 
+_OWN = str(Path(__file__).parents[1])  # a thread of ours that a node's program leads to stays one
 _PASSED_THROUGH = (threading.__file__, queue.__file__, __file__)  # what they make, they make for their caller
 
 
@@ -137,7 +139,8 @@ def _asked_by_node() -> bool:
     frame: FrameType | None = sys._getframe(2)
     while frame is not None and frame.f_code.co_filename in _PASSED_THROUGH:
         frame = frame.f_back
-    return frame is not None and not blame.is_library(frame.f_code.co_filename)
+    file = "<" if frame is None else frame.f_code.co_filename
+    return not (file.startswith(_OWN) or blame.is_library(file))
 
 
 def _start(real: Callable[[threading.Thread], None]) -> Callable[[threading.Thread], None]:

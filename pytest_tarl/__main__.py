@@ -1,0 +1,10 @@
+"""`python -m pytest_tarl` is the command `tarl`, for robots where it is not on the PATH."""
+
+from __future__ import annotations
+
+import sys
+
+from pytest_tarl.commands.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

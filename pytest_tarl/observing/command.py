@@ -1,0 +1,167 @@
+"""`python -m pytest_tarl observe node.py`: run a node where it is at home and write down its missions."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from pytest_tarl.errors import AnalysisError, LogError
+from pytest_tarl.instrumentation.importhook import NodeImports
+from pytest_tarl.instrumentation.sites import Plan, plan
+from pytest_tarl.learning.fixture import Fixture, load
+from pytest_tarl.observing.frames import LogFile
+from pytest_tarl.observing.observer import Observer
+from pytest_tarl.observing.watching import Topics, watched
+from pytest_tarl.realros.choice import libraries
+from tarl_lint.api import analyse
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is asked for on the command line."""
+
+    node: Path
+    argv: tuple[str, ...] = ()
+    log: Path = Path(".tarl/missions.log")
+    fixture: Path | None = None
+    modules: tuple[Path, ...] = ()  # further files of the node
+    reward: str = ""
+    mission: str = ""
+    idle: float | None = None
+    step: float | None = None
+
+
+def observe(order: Order) -> str:
+    """Run the node until it ends; return what is to be told. Raises LogError, and whatever the node ends in."""
+    _check(order)
+    fixture = load(order.fixture or _fixture_of(order.node))
+    sites = _sites(order)
+    library = next(iter(libraries([order.node, *order.modules])), None)
+    if library is None:
+        raise LogError(f"{order.node} imports neither rospy nor rclpy, so there is nothing to observe.")
+    about = {
+        "node": order.node.name,
+        "test": fixture.test,
+        "sensors": [sensor.name for sensor in fixture.sensors],
+        "sites": [place.id for place in sites.places],
+        "judged": order.step is not None,
+    }
+    _warn_of_mute_sensors(fixture)
+    observer = Observer(fixture.sensors, LogFile(order.log), about, idle=order.idle)
+    try:
+        with (
+            watched(library, observer, _topics(order, fixture), idle=order.idle is not None),
+            _steps(order, observer),
+        ):
+            _run(order, observer, sites)
+    finally:
+        observer.close()
+    return f"wrote {order.log}" + (f"; {observer.problem}" if observer.problem else "")
+
+
+def _run(order: Order, observer: Observer, sites: Plan) -> None:
+    positions = {Path.cwd() / path: at for path, at in sites.positions.items()}
+    stream = observer.stream
+    imports = NodeImports(Path.cwd(), positions, stream.hook, publishes=sites.publishes, bind=stream.bind)
+    if not order.mission and order.idle is None:
+        observer.begin()
+    with imports, _arguments([str(order.node), *order.argv]):
+        try:
+            imports.run_script(order.node.resolve())
+        except SystemExit as ended:
+            observer.end(passed=ended.code in (None, 0), failure=f"exit status {ended.code}")
+            raise
+        except KeyboardInterrupt:
+            observer.end(passed=True)
+        except BaseException as error:
+            observer.end(passed=False, failure=f"{type(error).__name__}: {error}")
+            raise
+        observer.end(passed=True)
+
+
+def _check(order: Order) -> None:
+    if not order.node.is_file():
+        raise LogError(f"There is no file {order.node}: name the node's script.")
+    if order.mission and order.idle is not None:
+        raise LogError("--mission-topic and --idle are two ways to tell missions apart: give one of them.")
+    if bool(order.reward) == (order.step is not None):
+        raise LogError(
+            "Give --reward-topic where the monitor publishes its reward, or --step SECONDS where the marker's `judge` "
+            "is to say it when the log is read; one of them."
+        )
+
+
+def _sites(order: Order) -> Plan:
+    analysis = analyse([path.resolve() for path in (order.node, *order.modules)], root=Path.cwd())
+    if not analysis.flows:
+        raise AnalysisError(f"No flow from a subscription to a publish call was found in {order.node}.")
+    return plan(analysis)
+
+
+def _fixture_of(node: Path) -> Path:
+    """Return the one utility fixture below the working directory whose taint lists name the node's file."""
+    found = [path for path in sorted(Path.cwd().glob("**/.tarl/utility/*.npz")) if _names(load(path), node)]
+    if len(found) != 1:
+        listed = ", ".join(str(path.relative_to(Path.cwd())) for path in found) or "none"
+        raise LogError(
+            f"The sensors come from the test's utility fixture; of those below {Path.cwd()} that name {node.name} "
+            f"there is {listed}: choose one with --fixture."
+        )
+    return found[0]
+
+
+def _names(fixture: Fixture, node: Path) -> bool:
+    return any(Path(site.path).name == node.name for one in fixture.lists for site in one.sites)
+
+
+def _topics(order: Order, fixture: Fixture) -> Topics:
+    given = dict(spec.split(":", 1) for spec in (order.reward, order.mission) if ":" in spec)
+    return Topics(
+        types=fixture.topics,
+        reward=order.reward.partition(":")[0],
+        mission=order.mission.partition(":")[0],
+        own=given,
+    )
+
+
+def _warn_of_mute_sensors(fixture: Fixture) -> None:
+    mute = [sensor.name for sensor in fixture.sensors if sensor.topic is None]
+    if mute:
+        raise LogError(
+            f"Sensor {mute[0]!r} has no topic: the test tells it with tarl.observe, on a robot nobody does. Give it "
+            "a topic and a field in the marker and record again."
+        )
+
+
+@contextmanager
+def _steps(order: Order, observer: Observer) -> Iterator[None]:
+    """Close a step every so often, where no topic does."""
+    over = threading.Event()
+
+    def tick() -> None:
+        while not over.wait(order.step):
+            observer.step(float("nan"))
+
+    thread = threading.Thread(target=tick, name="tarl-steps", daemon=True)
+    if order.step is not None:
+        thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        if thread.is_alive():
+            thread.join()
+
+
+@contextmanager
+def _arguments(argv: Sequence[str]) -> Iterator[None]:
+    before = sys.argv
+    sys.argv = list(argv)
+    try:
+        yield
+    finally:
+        sys.argv = before

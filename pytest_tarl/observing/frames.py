@@ -1,0 +1,128 @@
+"""The log: a line that names the format, then records, each with its length and a checksum, appended one by one.
+
+A record is `length, crc32` (two little-endian 32-bit numbers) and that many bytes of zlib-compressed JSON. Whatever
+ends the writer, everything before the last whole record can be read; what is torn is cut off when writing goes on.
+
+FORMAT history:
+1  Records start, mission, steps, end.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import struct
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from pytest_tarl.errors import LogError
+
+FORMAT = 1
+MAGIC = b"tarl log 1\n"
+_HEAD = struct.Struct("<II")
+_LARGEST = 1 << 26  # bytes of a record; a longer one is a damaged length
+
+Record = dict[str, Any]
+
+
+class LogFile:
+    """A log that is open for appending, by one process at a time."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._file: BinaryIO = path.open("a+b")
+        except OSError as problem:
+            raise LogError(
+                f"{path} cannot be written ({problem.strerror}): name another file with --log."
+            ) from None
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            self._file.close()
+            raise LogError(
+                f"{path} is being written by another observer: name another file with --log."
+            ) from None
+        try:
+            self._file.truncate(_whole(self._file, path))
+        except LogError:
+            self._file.close()
+            raise
+        self._file.seek(0, os.SEEK_END)
+        if not self._file.tell():
+            self._file.write(MAGIC)
+            self.sync()
+
+    def append(self, record: Record) -> None:
+        """Append a record; `sync` makes it last."""
+        self._file.write(encoded(record))
+
+    def sync(self) -> None:
+        """Have everything that was appended survive a power cut."""
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        """Sync, then close."""
+        self.sync()
+        self._file.close()
+
+
+def encoded(record: Record) -> bytes:
+    """Return a record as it stands in the file."""
+    payload = zlib.compress(json.dumps(record, separators=(",", ":")).encode(), 1)
+    return _HEAD.pack(len(payload), zlib.crc32(payload)) + payload
+
+
+def records(path: Path) -> Iterator[Record]:
+    """Yield the whole records of a log; what comes after the last one is passed over. Raises LogError."""
+    try:
+        file = path.open("rb")
+    except OSError as problem:
+        raise LogError(
+            f"{path} cannot be read ({problem.strerror}): look at the path after --tarl-log."
+        ) from None
+    with file:
+        _check_magic(file, path)
+        while (payload := _next(file)) is not None:
+            yield json.loads(zlib.decompress(payload))
+
+
+def _whole(file: BinaryIO, path: Path) -> int:
+    """Return where the last whole record ends."""
+    file.seek(0)
+    start = file.read(len(MAGIC))
+    if start != MAGIC:
+        if MAGIC.startswith(start):
+            return 0  # empty, or torn while it was begun
+        raise _foreign(path)
+    end = file.tell()
+    while _next(file) is not None:
+        end = file.tell()
+    return end
+
+
+def _check_magic(file: BinaryIO, path: Path) -> None:
+    if not MAGIC.startswith(start := file.read(len(MAGIC))) or (start and start != MAGIC and file.read(1)):
+        raise _foreign(path)
+
+
+def _next(file: BinaryIO) -> bytes | None:
+    head = file.read(_HEAD.size)
+    if len(head) < _HEAD.size:
+        return None
+    length, checksum = _HEAD.unpack(head)
+    if length > _LARGEST:
+        return None
+    payload = file.read(length)
+    return payload if len(payload) == length and zlib.crc32(payload) == checksum else None
+
+
+def _foreign(path: Path) -> LogError:
+    return LogError(
+        f"{path} is no log of `python -m pytest_tarl observe`, or one of another version: name such a log."
+    )

@@ -1,0 +1,131 @@
+"""Where an observer listens: beside the node, in its own process, on topics that the node need not know."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import Any
+
+from pytest_tarl.errors import LogError
+from pytest_tarl.observing.observer import Observer
+from pytest_tarl.sensors import Sensor
+
+Listener = Callable[[Any], None]
+NUMBER = "std_msgs/msg/Float64"
+WORD = "std_msgs/msg/String"
+
+
+@dataclass(frozen=True)
+class Topics:
+    """What is listened to: message types by topic, and who is told."""
+
+    types: Mapping[str, str]
+    reward: str = ""
+    mission: str = ""
+    own: Mapping[str, str] = field(default_factory=dict)  # types that the command line gave
+
+    def type_of(self, topic: str) -> str:
+        """Return the message type of a topic. Raises LogError where nobody has told it."""
+        usual = {self.reward: NUMBER, self.mission: WORD}
+        found = self.own.get(topic) or self.types.get(topic) or usual.get(topic)
+        if not found:
+            raise LogError(
+                f"The type of {topic} is not known: the fixture names none. Record it again, or write {topic}:TYPE."
+            )
+        return found
+
+
+@contextmanager
+def watched(library: str, observer: Observer, topics: Topics, *, idle: bool) -> Iterator[None]:
+    """Have the observer told while a node of this client library runs."""
+    import_module(library)  # before any message: it settles of which generation they are
+    listeners = _listeners(observer, topics)
+    undo = _watch_rospy(listeners) if library == "rospy" else _watch_rclpy(listeners)
+    resume = _watch_publishing(library, observer) if idle else None
+    try:
+        yield
+    finally:
+        undo()
+        if resume is not None:
+            resume()
+
+
+def _listeners(observer: Observer, topics: Topics) -> list[tuple[str, type[Any], Listener]]:
+    found: list[tuple[str, type[Any], Listener]] = [
+        (sensor.topic, _class(topics.type_of(sensor.topic)), _telling(observer, sensor))
+        for sensor in observer.sensors
+        if sensor.topic is not None
+    ]
+    orders: dict[str, Listener] = {
+        topics.reward: lambda message: observer.step(float(message.data)),
+        topics.mission: lambda message: observer.order(str(message.data)),
+    }
+    found += [(topic, _class(topics.type_of(topic)), tell) for topic, tell in orders.items() if topic]
+    return found
+
+
+def _telling(observer: Observer, sensor: Sensor) -> Listener:
+    return lambda message: observer.told(sensor, message)
+
+
+def _class(name: str) -> type[Any]:
+    package, _, short = name.replace("/msg/", "/").partition("/")
+    found: type[Any] = getattr(import_module(f"{package}.msg"), short)
+    return found
+
+
+def _watch_rospy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[], None]:
+    """Subscribe as soon as the node is registered: before its own subscriptions, so that it is told after us."""
+    rospy = import_module("rospy")
+    begin = rospy.init_node
+
+    def init_node(*args: Any, **kwargs: Any) -> None:
+        begin(*args, **kwargs)
+        for topic, kind, listener in listeners:
+            rospy.Subscriber(topic, kind, listener)
+
+    rospy.init_node = init_node  # type: ignore[attr-defined]
+
+    def undo() -> None:
+        rospy.init_node = begin  # type: ignore[attr-defined]
+
+    return undo
+
+
+def _watch_rclpy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[], None]:
+    """Subscribe on the first node that the program makes."""
+    node_class = import_module("rclpy.node").Node
+    profile = import_module("rclpy.qos").qos_profile_sensor_data  # which any publisher can serve
+    make, pending = node_class.__init__, list(listeners)
+
+    def init(self: Any, *args: Any, **kwargs: Any) -> None:
+        make(self, *args, **kwargs)
+        while pending:
+            topic, kind, listener = pending.pop(0)
+            self.create_subscription(kind, topic, listener, profile)
+
+    node_class.__init__ = init
+
+    def undo() -> None:
+        node_class.__init__ = make
+
+    return undo
+
+
+def _watch_publishing(library: str, observer: Observer) -> Callable[[], None]:
+    home = import_module("rospy" if library == "rospy" else "rclpy.publisher")
+    publisher = home.Publisher
+    publish = publisher.publish
+
+    def tell(self: Any, *args: Any, **kwargs: Any) -> Any:
+        observer.active()
+        return publish(self, *args, **kwargs)
+
+    publisher.publish = tell
+
+    def undo() -> None:
+        publisher.publish = publish
+
+    return undo

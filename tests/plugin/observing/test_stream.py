@@ -1,0 +1,83 @@
+"""A recorder that is emptied now and then loses nothing and mixes nothing."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+
+from pytest_tarl.instrumentation.recorder import Recorder
+from pytest_tarl.observing import stream
+from pytest_tarl.observing.stream import Stream
+
+
+def drive(recorder: Recorder, begin: int, end: int) -> None:
+    for number in range(begin, end):
+        recorder.hook(number % 5, float(number))
+        if number % 3 == 0:
+            recorder.latch((number % 4,))
+        if number % 2 == 0:
+            recorder.reward(number / 10)
+
+
+def test_emptied_in_pieces_it_records_what_it_records_in_one() -> None:
+    whole = Recorder(threads=True)
+    drive(whole, 0, 60)
+    trace = whole.finish()
+    pieces = Stream()
+    chunks, done = [], 0
+    for end in (1, 2, 17, 30, 31, 59, 60):
+        drive(pieces, done, end)
+        chunks.append(pieces.drain())
+        done = end
+    steps = np.cumsum([0, *(chunk.reward.size for chunk in chunks[:-1])])
+    assert chunks[-1].cells == trace.cells
+    for name, column in (("site", trace.site), ("flow", trace.flow), ("cell", trace.event_cell)):
+        np.testing.assert_array_equal(np.concatenate([getattr(chunk, name) for chunk in chunks]), column)
+    joined = np.concatenate([chunk.step + before for chunk, before in zip(chunks, steps, strict=True)])
+    np.testing.assert_array_equal(np.minimum(joined, trace.steps - 1), trace.event_step)
+    np.testing.assert_array_equal(np.concatenate([chunk.step_cell for chunk in chunks]), trace.step_cell)
+    np.testing.assert_array_equal(np.concatenate([chunk.reward for chunk in chunks]), trace.reward)
+
+
+def test_a_site_whose_value_is_still_to_come_waits_for_it() -> None:
+    recorder = Stream()
+    entries = recorder._entries()
+    entries.append(3)
+    assert recorder.drain().empty
+    entries.append(1.5)
+    chunk = recorder.drain()
+    assert (chunk.site.tolist(), chunk.flow.tolist()) == ([3], [1.5])
+
+
+def test_threads_that_record_while_it_is_emptied_lose_nothing() -> None:
+    recorder = Stream()
+    count, over = 20_000, threading.Event()
+
+    def work(site: int) -> None:
+        for number in range(count):
+            recorder.hook(site, float(number))
+
+    threads = [threading.Thread(target=work, args=(site,)) for site in range(3)]
+    for thread in threads:
+        thread.start()
+    chunks = []
+    while any(thread.is_alive() for thread in threads):
+        chunks.append(recorder.drain())
+        over.wait(0.001)
+    chunks.append(recorder.drain())
+    site = np.concatenate([chunk.site for chunk in chunks])
+    flow = np.concatenate([chunk.flow for chunk in chunks])
+    for number in range(3):
+        assert flow[site == number].tolist() == list(range(count))
+
+
+def test_memory_is_bounded_when_the_disk_stands_still(monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr(stream, "MOST_ENTRIES", 100)
+    recorder = Stream()
+    for _ in range(10):
+        drive(recorder, 0, 60)
+        recorder.relieve()
+    assert sum(len(buffer.entries) for buffer in recorder._buffers) <= 220
+    assert recorder.dropped > 0
+    recorder.drain()
