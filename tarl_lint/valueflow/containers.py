@@ -28,6 +28,7 @@ QUEUES = frozenset(
     for module in ("queue", "Queue", "asyncio", "multiprocessing")
     for name in ("Queue", "LifoQueue", "PriorityQueue", "SimpleQueue", "JoinableQueue")
 )
+IN_ORDER = frozenset(["list", "tuple", "deque", "iter", "reversed"])  # keep their argument's elements apart
 CONTAINERS = frozenset(["list", "tuple", "set", "frozenset", "sorted", "reversed", "iter", "deque"])
 
 
@@ -139,7 +140,8 @@ class Containers(Calls):
 
     def _new_container(self, it: Invocation) -> Value:
         given = [v for v in it.arguments[0][:1] if v is not BOTTOM]
-        known = self.unpacked(given[0]) if given and it.name in ("list", "tuple", "deque") else None
+        known = self.unpacked(given[0]) if given and it.name in IN_ORDER else None
+        known = known[::-1] if known is not None and it.name == "reversed" else known
         element = self.ordered_by(join_all(self.elements(v) for v in given), it)
         length = self.length(given[0]) if given else NONE
         obj = self.allocate("sequence", it.frame, ("display", it.call.slot))

@@ -110,6 +110,7 @@ class Execution(Branches):
         if (index.deps or index.pts) and any(o.kind == "mapping" for o in base.pts):
             index = self.carry(index, self.node(frame, ("key", target.pos), "assign"))
         if isinstance(target.index, ir.Slice):
+            self.remove(base, target.index, frame)
             value = self.elements(value)
         value = Value(value.deps | self.use(index), value.pts, value.consts)
         if base.pts:

@@ -1,0 +1,3 @@
+from distutils.core import setup
+from catkin_pkg.python_setup import generate_distutils_setup
+setup(**generate_distutils_setup(packages=['nav'], package_dir={'': 'src'}))
