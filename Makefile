@@ -7,7 +7,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/.installed
 
-.PHONY: demo test check unit setup clean bench-paper
+.PHONY: demo test check unit setup clean bench-paper bench-drift
 
 demo: setup
 	@BIN="$(abspath $(BIN))" sh examples/demo.sh
@@ -70,6 +70,10 @@ $(ROS2_VENV)/.installed: pyproject.toml
 
 bench-paper: setup
 	$(BIN)/python benchmarks/paper.py
+
+bench-drift: setup
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check cma optuna
+	$(BIN)/python benchmarks/drift/run.py
 
 clean:
 	rm -rf $(VENV) $(ROS1_VENV) $(ROS2_VENV) .mypy_cache .pytest_cache .ruff_cache .import_linter_cache

@@ -97,7 +97,8 @@ def _trials(mutants: Mutants, method: str) -> Trials:
 def _strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Trials) -> Strategy:
     order = mutants.order
     if method == "sweep":
-        return Sweep(operands(order), mutants.mutate, guards, trials, order.goal)
+        generator = seeds.generator(order.options.seed, method)
+        return Sweep(operands(order), mutants.mutate, guards, trials, order.goal, generator)
     return EpsilonGreedy(
         operands(order),
         mutants.mutate,

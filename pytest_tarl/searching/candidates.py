@@ -14,6 +14,7 @@ from pytest_tarl.model import Conjunct, Guard, Region
 from pytest_tarl.sensors import Cell, Sensor
 
 ALWAYS = Guard()
+EVERYWHERE = 0.3  # the best guard tells less than this where the drift is everywhere
 WIDER = 2  # bins by which an interval is widened on either side, as a last proposal
 
 Bins = tuple[int, int]  # first and last
@@ -66,7 +67,8 @@ def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
 def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Guard, ...]:
     """Return the guards to search under: those that hold where much changed and seldom elsewhere, and none at all.
 
-    Ordered by the share of the change that falls under the guard less the share of steps that do (Youden's J).
+    Ordered by the share of the change that falls under the guard less the share of steps that do (Youden's J), with
+    none at all in the second place; in the first where the drift is everywhere, so that no guard tells much.
     """
     shares = evidence.shares()
 
@@ -75,7 +77,9 @@ def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Gua
 
     ranked = sorted((guard for guard in guards if guard.conjuncts), key=lambda guard: -merit(guard))
     best = [guard for guard in ranked if merit(guard) > 0][: most - 1]
-    return (*best, ALWAYS)
+    if not best or merit(best[0]) < EVERYWHERE:
+        return (ALWAYS, *best)
+    return (best[0], ALWAYS, *best[1:])
 
 
 def share(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> float:

@@ -1,70 +1,120 @@
 """Sweep and confirm, the default search: one factor over all operands, then the next.
 
-Each run is paired with the unmutated run of the same seed; whatever comes near the off-line reward is confirmed
-on further seeds. Between sweeps the most improving operand is refined on a log scale.
+Each run is paired with the unmutated run of the same seed; whatever comes near the off-line reward is confirmed on
+further seeds. What was found out on the way decides what is tried next: further out goes only what did not lose on
+the way there, the most gaining first. Where no operand suffices, those that gained are tried together.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import sqrt
+from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
-from pytest_tarl.searching.search import FACTORS, Candidate, Goal, Mutate, Trials, confirmed, operand_effect
+from pytest_tarl.searching.screening import screened, worth_screening
+from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confirmed, operand_effect
+from pytest_tarl.searching.together import Joint, Together
+from pytest_tarl.searching.units import NEAR, Unit, units
 from tarl_lint.model import Operand
+
+if TYPE_CHECKING:
+    import numpy as np
+
+FURTHER = ((5.0, 2.2), (0.15, 0.4))  # ... and those beyond, each behind the one that leads there
+OUTWARD = 2.3  # by how much the outermost factor is exceeded where it is the best
+BLOCK = 20  # units that are swept together after a screening
+FLIP = -1.0
+LAST = (1.5, 0.65, 10.0, 0.05)
+REFINEMENTS = 3  # of one operand in a row ...
+PROMISING = 0.4  # ... while it gains at least this share of the loss
+SLACK = 0.1  # share of the loss that may be lost on the way further out
 
 
 class Sweep:
-    """Sweep and confirm, operands in the given order, each mutated at its use under `guard`."""
+    """Sweep and confirm, operands in the given order, each mutated at its use under one of the guards.
+
+    The first guard is the one that tells most, the second is the second opinion; others are left for the end.
+    """
 
     def __init__(
-        self, operands: Sequence[Operand], mutate: Mutate, guards: Sequence[Guard], trials: Trials, goal: Goal
+        self,
+        operands: Sequence[Operand],
+        mutate: Mutate,
+        guards: Sequence[Guard],
+        trials: Trials,
+        goal: Goal,
+        generator: np.random.Generator | None = None,
     ) -> None:
-        self.operands = operands
+        self.units = units(operands)
         self.mutate = mutate
         self.guards = guards
         self.trials = trials
         self.goal = goal
-        self._gains: dict[tuple[Operand, Guard], dict[float, float]] = {}  # factor → gain in reward
+        self.generator = generator
+        self.goal_gain = max(goal.enough - goal.online, 0.0)
+        self.slack = SLACK * self.goal_gain
+        self._gains: dict[tuple[Unit, Guard], dict[float, float]] = {}  # factor → gain in reward
         self._tried: set[Candidate] = set()
+        self._turn = 0
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield candidates that hold on every seed they were tried on."""
-        for turn, factor in enumerate(FACTORS):
-            pair = turn % len(self.goal.pairs)
+        chief = self.guards[:2]
+        if self.generator is not None and worth_screening(self.units):
+            self.units = yield from screened(self._joining({}), self.guards[0], self.generator)
+        for block in _blocks(self.units):
+            for guard in chief:
+                for factor in NEAR:
+                    yield from self._all(factor, guard, block)
+        for factor, before in FURTHER:
+            for guard in chief:
+                yield from self._all(factor, guard, self._leading(before, guard))
+        yield from self._all(FLIP, self.guards[0], self.units)
+        yield from self._together()
+        for factor in (*LAST, *NEAR, *(factor for factor, _ in FURTHER), FLIP):
             for guard in self.guards:
-                for operand in self.operands:
-                    yield from self._try(operand, guard, factor, pair)
-            yield from self._refine(pair)
+                yield from self._all(factor, guard, self.units)
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, per site, what each operand's best value gained over the unmutated runs of the same seeds."""
         best: dict[Operand, OperandEffect] = {}
-        for (operand, _), gains in self._gains.items():
+        for (unit, _), gains in self._gains.items():
             factor = max(gains.keys() - {1.0}, key=lambda one: (gains[one], -one))
-            mutation = self.mutate(operand, factor)
-            if mutation is not None and (operand not in best or gains[factor] > best[operand].effect):
-                best[operand] = operand_effect(mutation, gains[factor])
+            for mutation in unit.mutations(self.mutate, factor):
+                operand = mutation.operand
+                if operand not in best or gains[factor] > best[operand].effect:
+                    best[operand] = operand_effect(mutation, gains[factor])
         found: dict[str, list[OperandEffect]] = {}
         for operand, effect in best.items():
             found.setdefault(str(operand.site), []).append(effect)
         return found
 
-    def _try(self, operand: Operand, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
-        mutation = self.mutate(operand, factor)
-        if mutation is None:
-            return
-        candidate = Candidate((mutation,), guard)
-        if candidate in self._tried:
+    def _all(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """Try one factor on several operands, then refine what gains most."""
+        pair = self._turn % len(self.goal.pairs)
+        self._turn += 1
+        for unit in among:
+            yield from self._try(unit, guard, factor, pair)
+        yield from self._refine(pair)
+
+    def _leading(self, before: float, guard: Guard) -> list[Unit]:
+        """Return what did not lose under a factor, the most gaining first."""
+        gains = {unit: self._gains.get((unit, guard), {}).get(before) for unit in self.units}
+        kept = [(gain, unit) for unit, gain in gains.items() if gain is not None and gain >= -self.slack]
+        return [unit for _, unit in sorted(kept, key=lambda one: -one[0])]
+
+    def _try(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
+        mutations = unit.mutations(self.mutate, factor)
+        candidate = Candidate(mutations, guard)
+        if not mutations or candidate in self._tried:
             return
         self._tried.add(candidate)
-        base = self.goal.pairs[pair]
-        try:
-            near = self.goal.reached(self.trials(candidate, base.seed))
-        except RepairError:
+        near = self._near(candidate, pair)
+        if near is None:
             return
-        gains = self._gains.setdefault((operand, guard), {1.0: 0.0})
+        gains = self._gains.setdefault((unit, guard), {1.0: 0.0})
         gains[factor] = self.trials.gain(candidate, self.goal.pairs)
         if near:
             holds = confirmed(candidate, self.trials, self.goal, pair)
@@ -72,16 +122,49 @@ class Sweep:
             if holds:
                 yield candidate
 
+    def _near(self, candidate: Candidate, pair: int) -> bool | None:
+        """Run a candidate once; None where it cannot be written into the source."""
+        try:
+            return self.goal.reached(self.trials(candidate, self.goal.pairs[pair].seed))
+        except RepairError:
+            return None
+
     def _refine(self, pair: int) -> Iterator[Candidate]:
-        """Try the most improving operand between its best factor and that factor's neighbours, on a log scale."""
-        best = max(self._gains, key=lambda tried: max(self._gains[tried].values()), default=None)
-        if best is None:
-            return
-        gains = self._gains[best]
+        """Refine the most improving operand, and go on as long as it comes closer to what is needed."""
+        for _ in range(REFINEMENTS):
+            best = max(self._gains, key=lambda tried: max(self._gains[tried].values()), default=None)
+            if best is None:
+                return
+            before = max(self._gains[best].values())
+            yield from self._between(best, pair)
+            if max(self._gains[best].values()) <= max(before, PROMISING * self.goal_gain):
+                return
+
+    def _between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
+        """Try an operand between its best factor and that factor's neighbours, on a log scale."""
+        gains = {factor: gain for factor, gain in self._gains[best].items() if factor > 0}
         factor = max(gains, key=gains.__getitem__)
         if factor == 1.0 or gains[factor] <= 0:
             return
-        ordered = sorted(gains)
+        ordered = [min(gains) / OUTWARD**2, *sorted(gains), max(gains) * OUTWARD**2]
         place = ordered.index(factor)
-        for neighbour in ordered[max(place - 1, 0) : place] + ordered[place + 1 : place + 2]:
+        for neighbour in (ordered[place - 1], ordered[place + 1]):
             yield from self._try(*best, round(sqrt(factor * neighbour), 3), pair)
+
+    def _together(self) -> Iterator[Candidate]:
+        """Add others to what gains most."""
+        every = [(gain, *key, factor) for key, gains in self._gains.items() for factor, gain in gains.items()]
+        gain, unit, guard, factor = max(every, key=lambda one: one[0], default=(0.0, None, None, 1.0))
+        if unit is None or guard is None or gain <= self.slack:
+            return
+        gains = {unit: gains for (unit, held), gains in self._gains.items() if held == guard}
+        yield from self._joining(gains).candidates(Joint(((unit, factor),), guard))
+
+    def _joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> Together:
+        return Together(self.units, self.mutate, self.trials, self.goal, gains, self.slack)
+
+
+def _blocks(units: Sequence[Unit]) -> list[Sequence[Unit]]:
+    """Cut what was screened into blocks, so that the best is refined before the rest is looked at."""
+    size = BLOCK if worth_screening(units) else max(len(units), 1)
+    return [units[start : start + size] for start in range(0, len(units), size)]

@@ -1,0 +1,58 @@
+"""Factorial screening, where operands are many: each run mutates a few at random, ridge regression finds main effects.
+
+The number of runs grows with the square root of the number of operands; the sweep then begins with those whose main
+effect is best. A run that happens to be near the off-line reward is a candidate at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from math import ceil, sqrt
+
+import numpy as np
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.search import Candidate
+from pytest_tarl.searching.together import Joint, Together
+from pytest_tarl.searching.units import NEAR, Unit
+
+MANY = 40  # units: fewer are swept one by one
+AT_ONCE = 4  # units that a run mutates
+RUNS = 6.0  # times the square root of the number of units
+RIDGE = 1.0
+
+
+def screened(
+    together: Together, guard: Guard, generator: np.random.Generator
+) -> Generator[Candidate, None, tuple[Unit, ...]]:
+    """Yield candidates that hold by chance; the generator's value is all units, those of the best effect first."""
+    units = together.units
+    design: list[np.ndarray] = []
+    gains: list[float] = []
+    for _ in range(ceil(RUNS * sqrt(len(units)))):
+        chosen = generator.choice(len(units), AT_ONCE, replace=False).tolist()
+        turns = generator.integers(len(NEAR), size=AT_ONCE).tolist()
+        joint = Joint(tuple((units[i], NEAR[turn]) for i, turn in zip(chosen, turns, strict=True)), guard)
+        gained = yield from together.gain(joint)
+        if gained is None:
+            continue
+        row = np.zeros(len(units) * len(NEAR))
+        row[[i * len(NEAR) + turn for i, turn in zip(chosen, turns, strict=True)]] = 1.0
+        design.append(row)
+        gains.append(gained)
+    if not design:
+        return tuple(units)
+    effects = main_effects(np.array(design), np.array(gains)).reshape(len(units), len(NEAR)).max(axis=1)
+    return tuple(units[i] for i in np.argsort(-effects, kind="stable").tolist())
+
+
+def main_effects(design: np.ndarray, gains: np.ndarray) -> np.ndarray:
+    """Return what each column contributes to the gains, by ridge regression; the design has shape (runs, columns)."""
+    size = design.shape[1]
+    effects: np.ndarray = np.linalg.solve(design.T @ design + RIDGE * np.eye(size), design.T @ gains)
+    return effects
+
+
+def worth_screening(units: Sequence[Unit]) -> bool:
+    """Tell whether a sweep over all units would take longer than screening them first."""
+    return len(units) > MANY

@@ -1,0 +1,119 @@
+"""Several culprits: add the best of all others to what gains most, and again, until it suffices.
+
+A greedy choice by main effects, as in matching pursuit, with the parts balanced against each other after each step;
+what turns out not to be needed is dropped before the candidate is handed on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confirmed
+from pytest_tarl.searching.units import NEAR, Unit
+
+MOST = 3  # parts of a joint repair
+STEPS = (1.5, 0.65)  # by which the parts are moved
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """Units with their factors, under one guard."""
+
+    parts: tuple[tuple[Unit, float], ...]
+    guard: Guard
+
+    def candidate(self, mutate: Mutate) -> Candidate:
+        """Return the mutations of all parts."""
+        return Candidate(
+            tuple(m for unit, factor in self.parts for m in unit.mutations(mutate, factor)), self.guard
+        )
+
+    def with_part(self, unit: Unit, factor: float) -> Joint:
+        """Return it with a part added or replaced."""
+        kept = tuple(part for part in self.parts if part[0] != unit)
+        return Joint((*kept, (unit, factor)), self.guard)
+
+    def without(self, unit: Unit) -> Joint:
+        """Return it with a part left out."""
+        return Joint(tuple(part for part in self.parts if part[0] != unit), self.guard)
+
+
+class Together:
+    """Joins units; `gains` are those of the single ones by factor, `slack` is the gain that makes a difference."""
+
+    def __init__(
+        self,
+        units: Sequence[Unit],
+        mutate: Mutate,
+        trials: Trials,
+        goal: Goal,
+        gains: Mapping[Unit, Mapping[float, float]],
+        slack: float,
+    ) -> None:
+        self.units = units
+        self.mutate = mutate
+        self.trials = trials
+        self.goal = goal
+        self.gains = gains
+        self.slack = slack
+        self._tried: set[Candidate] = set()
+
+    def candidates(self, base: Joint) -> Iterator[Candidate]:
+        """Yield joint candidates that hold on every seed they were tried on."""
+        gain = yield from self.gain(base)
+        while gain is not None and len(base.parts) < MOST:
+            better, most = base, gain
+            for wider in self._with_another(base):
+                gained = yield from self.gain(wider)
+                if gained is not None and gained > most:
+                    better, most = wider, gained
+            if most <= gain + self.slack:
+                return
+            base, gain = yield from self._balanced(better, most)
+
+    def gain(self, joint: Joint) -> Generator[Candidate, None, float | None]:
+        """Run a joint candidate once and return its gain, None where it cannot run; hand it on when it holds."""
+        candidate = joint.candidate(self.mutate)
+        try:
+            near = self.goal.reached(self.trials(candidate, self.goal.pairs[0].seed))
+        except RepairError:
+            return None
+        if near and candidate not in self._tried:
+            self._tried.add(candidate)
+            if confirmed(candidate, self.trials, self.goal, 0):
+                yield self._least(joint).candidate(self.mutate)
+        return self.trials.gain(candidate, self.goal.pairs)
+
+    def _with_another(self, base: Joint) -> Iterator[Joint]:
+        """Yield joints with one part more, first as each was best alone, then the other way."""
+        taken = {unit for unit, _ in base.parts}
+        for turn in range(len(NEAR)):
+            for unit in self.units:
+                gains = self.gains.get(unit, {})
+                ranked = sorted(NEAR, key=lambda factor: -gains.get(factor, 0.0))
+                if unit not in taken and unit.mutations(self.mutate, ranked[turn]):
+                    yield base.with_part(unit, ranked[turn])
+
+    def _balanced(self, base: Joint, gain: float) -> Generator[Candidate, None, tuple[Joint, float]]:
+        """Move the parts one by one, as long as that gains."""
+        for unit, factor in base.parts:
+            for step in STEPS:
+                moved = base.with_part(unit, round(factor * step, 3))
+                gained = yield from self.gain(moved)
+                if gained is not None and gained > gain:
+                    base, gain = moved, gained
+                    break
+        return base, gain
+
+    def _least(self, joint: Joint) -> Joint:
+        """Leave out what is not needed on the first seed."""
+        for unit, _ in joint.parts:
+            fewer = joint.without(unit)
+            if fewer.parts and self.goal.reached(
+                self.trials(fewer.candidate(self.mutate), self.goal.pairs[0].seed)
+            ):
+                joint = fewer
+        return joint

@@ -1,0 +1,45 @@
+"""What a search moves at once: an operand, or the uses of one constant within a statement."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.searching.search import Mutate
+from tarl_lint.model import Operand
+
+NEAR = (2.2, 0.4)  # factors that everything is tried with first
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """Operands of one site that are mutated together: `max(-LIMIT, min(LIMIT, x))` has one limit, used twice."""
+
+    operands: tuple[Operand, ...]
+
+    def mutations(self, mutate: Mutate, factor: float) -> tuple[Mutation, ...]:
+        """Return one mutation for every operand that the factor changes."""
+        tried = (mutate(operand, factor) for operand in self.operands)
+        return tuple(mutation for mutation in tried if mutation is not None)
+
+
+def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
+    """Group uses of one constant, and limits that lie symmetrically about zero; order is kept."""
+    groups: list[list[Operand]] = []
+    for operand in operands:
+        alike = next((group for group in groups if _alike(group[0], operand)), None)
+        if alike is None:
+            groups.append([operand])
+        else:
+            alike.append(operand)
+    return tuple(Unit(tuple(group)) for group in groups)
+
+
+def _alike(one: Operand, other: Operand) -> bool:
+    if one.site != other.site or isinstance(one.value, bool):
+        return False
+    if one.literal or other.literal:
+        opposite = one.value is not None and other.value is not None and one.value == -other.value != 0
+        return one.literal and other.literal and opposite
+    return one.code == other.code and one.definition == other.definition

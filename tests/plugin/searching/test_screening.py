@@ -1,0 +1,65 @@
+"""Screening: few runs over many operands tell which of them matter."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from pytest_tarl.patching.mutate import mutations
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.screening import main_effects, screened, worth_screening
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.sweep import Sweep
+from pytest_tarl.searching.together import Together
+from pytest_tarl.searching.units import units
+from pytest_tarl.seeds import generator
+from tests.plugin.searching.test_together import operand
+
+GOAL = Goal(tuple(Pair(seed, 0.0) for seed in range(6)), near=9.0, enough=9.0, online=0.0)
+
+
+def test_main_effects_are_told_apart_though_several_are_moved_at_once() -> None:
+    draws = np.random.default_rng(3)
+    design = (draws.random((60, 20)) < 0.2).astype(float)
+    effects = main_effects(design, design @ np.eye(20)[7] * 5.0)
+    assert int(effects.argmax()) == 7
+
+
+@pytest.mark.parametrize(("many", "most"), [(60, 140), (160, 300)])
+def test_the_search_among_many_operands_grows_slower_than_their_number(many: int, most: int) -> None:
+    gains = [operand(line, "1.0", 1.0) for line in range(many)]
+    right = gains[many * 3 // 4]
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        factors = {m.operand: float(m.value) for m in candidate.mutations}
+        total = 10.0 - 6.0 * abs(math.log(3.0 / factors.get(right, 1.0)))
+        total -= sum(0.5 for operand in factors if operand is not right)
+        return Outcome(total, total > 8.0)
+
+    goal = Goal(
+        tuple(Pair(seed, run(Candidate((), ALWAYS), seed).total) for seed in range(6)),
+        near=9.0,
+        enough=9.0,
+        online=3.4,
+    )
+    trials = Trials(run, 1000)
+    search = Sweep(gains, mutations, (ALWAYS,), trials, goal, generator(0, "sweep"))
+    found = next(search.candidates())
+    assert [m.operand for m in found.mutations] == [right]
+    assert trials.spent < most
+
+
+def test_a_run_that_holds_by_chance_is_handed_on_without_what_it_does_not_need() -> None:
+    gains = [operand(line, "1.0", 1.0) for line in range(50)]
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        good = any(m.operand == gains[20] and m.value > 1 for m in candidate.mutations)
+        return Outcome(10.0 if good else 0.0, good)
+
+    together = Together(units(gains), mutations, Trials(run, 500), GOAL, {}, 0.1)
+    found = list(screened(together, ALWAYS, generator(1, "sweep")))
+    assert worth_screening(together.units)
+    assert {m.operand for candidate in found for m in candidate.mutations} <= {gains[20]}
