@@ -14,6 +14,9 @@ from pytest_tarl.model import Conjunct, Guard, Region
 from pytest_tarl.sensors import Cell, Sensor
 
 ALWAYS = Guard()
+COVERED = 0.95  # share of the on-line steps
+HARMLESS = 0.25  # what it is worth that a guard never holds off-line ...
+CONDITION = 0.1  # ... and what a second condition costs, both as shares of the change
 EVERYWHERE = 0.3  # the best guard tells less than this where the drift is everywhere
 WIDER = 2  # bins by which an interval is widened on either side, as a last proposal
 
@@ -31,16 +34,18 @@ class Evidence:
     changes: Mapping[Cell, float]
 
     def shares(self) -> dict[Cell, float]:
-        """Return, per cell, the share of the whole change less the share of the on-line steps that fall there."""
-        counts = np.bincount(
-            self.online.chain.cell, self.online.chain.count, minlength=len(self.online.cells)
-        )
-        steps = max(float(counts.sum()), 1.0)
-        whole = sum(self.changes.values()) or 1.0
-        merit = {cell: change / whole for cell, change in self.changes.items()}
-        for cell, count in zip(self.online.cells, counts.tolist(), strict=True):
-            merit[cell] = merit.get(cell, 0.0) - count / steps
-        return merit
+        """Return, per cell, the share of the whole change less the share of the off-line steps that fall there.
+
+        Where nothing was ever seen off-line, being there is the change: novel cells have their share of the on-line
+        steps, and the known cells that are visited on-line divide the rest as they changed.
+        """
+        visited, designed = _occupancy(self.online), _occupancy(self.offline)
+        novel = {cell: visited.get(cell, 0.0) for cell in self.region.novel}
+        known = {c: change for c, change in self.changes.items() if c in visited and c not in novel}
+        scale = (1.0 - sum(novel.values())) / (sum(known.values()) or 1.0)
+        changed = {cell: change * scale for cell, change in known.items()} | novel
+        cells = dict.fromkeys((*changed, *designed, *visited))
+        return {cell: changed.get(cell, 0.0) - designed.get(cell, 0.0) for cell in cells}
 
 
 def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
@@ -67,18 +72,23 @@ def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
 def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Guard, ...]:
     """Return the guards to search under: those that hold where much changed and seldom elsewhere, and none at all.
 
-    Ordered by the share of the change that falls under the guard less the share of steps that do (Youden's J), with
-    none at all in the second place; in the first where the drift is everywhere, so that no guard tells much.
+    Ordered by the share of the change that falls under the guard less the share of off-line steps that do (Youden's
+    J), better where it never holds off-line and so can do no harm there, worse with two conditions. None at all has
+    the second place; the first where the drift is everywhere, so that no guard tells much.
     """
-    shares = evidence.shares()
+    shares, designed = evidence.shares(), evidence.offline
 
     def merit(guard: Guard) -> float:
-        return sum(share for cell, share in shares.items() if holds(guard, cell, evidence.sensors))
+        told = sum(part for cell, part in shares.items() if holds(guard, cell, evidence.sensors))
+        harmless = HARMLESS if share(guard, designed, evidence.sensors) == 0.0 else 0.0
+        return told + harmless - CONDITION * (len(guard.conjuncts) - 1)
 
     ranked = sorted((guard for guard in guards if guard.conjuncts), key=lambda guard: -merit(guard))
     best = [guard for guard in ranked if merit(guard) > 0][: most - 1]
     if not best or merit(best[0]) < EVERYWHERE:
         return (ALWAYS, *best)
+    if share(best[0], evidence.online, evidence.sensors) >= COVERED:
+        return (best[0],)  # in the drifted world it is as good as none at all, and the other way round
     return (best[0], ALWAYS, *best[1:])
 
 
@@ -86,6 +96,13 @@ def share(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> float:
     """Return the share of steps with a known cell in which the guard holds."""
     steps = np.bincount(world.chain.cell, weights=world.chain.count, minlength=len(world.cells))
     return float(steps[_holding(guard, world, sensors)].sum() / max(steps.sum(), 1.0))
+
+
+def _occupancy(world: Sample) -> dict[Cell, float]:
+    """Return the share of a world's steps in every cell that was visited."""
+    counts = np.bincount(world.chain.cell, world.chain.count, minlength=len(world.cells))
+    steps = max(float(counts.sum()), 1.0)
+    return {cell: count / steps for cell, count in zip(world.cells, counts.tolist(), strict=True) if count}
 
 
 def firing_episodes(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> tuple[int, ...]:
@@ -125,7 +142,7 @@ def _hull(cells: Sequence[Cell], i: int, sensor: Sensor) -> Bins | None:
 
 
 def _steepest(evidence: Evidence, i: int) -> Bins | None:
-    """Return the interval of a sensor's bins that holds most of the change in fewest steps (Kadane's maximum sum)."""
+    """Return the interval of a sensor's bins that holds most change in fewest off-line steps (Kadane's maximum sum)."""
     by_bin: dict[int, float] = {}
     for cell, value in evidence.shares().items():
         by_bin[cell[i]] = by_bin.get(cell[i], 0.0) + value

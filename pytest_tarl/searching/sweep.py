@@ -17,7 +17,7 @@ from pytest_tarl.searching.screening import screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confirmed, operand_effect
 from pytest_tarl.searching.together import Joint, Together
 from pytest_tarl.searching.units import NEAR, Unit, units
-from tarl_lint.model import Operand
+from tarl_lint.model import Operand, SiteId
 
 if TYPE_CHECKING:
     import numpy as np
@@ -61,13 +61,14 @@ class Sweep:
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield candidates that hold on every seed they were tried on."""
-        chief = self.guards[:2]
+        chief = self.guards[: 1 if not self.guards[0].conjuncts else 2]
         if self.generator is not None and worth_screening(self.units):
             self.units = yield from screened(self._joining({}), self.guards[0], self.generator)
         for block in _blocks(self.units):
             for guard in chief:
                 for factor in NEAR:
                     yield from self._all(factor, guard, block)
+            yield from self._leaders_together()
         for factor, before in FURTHER:
             for guard in chief:
                 yield from self._all(factor, guard, self._leading(before, guard))
@@ -159,6 +160,19 @@ class Sweep:
             return
         gains = {unit: gains for (unit, held), gains in self._gains.items() if held == guard}
         yield from self._joining(gains).candidates(Joint(((unit, factor),), guard))
+
+    def _leaders_together(self) -> Iterator[Candidate]:
+        """Join what gained most at different places, each as it was best: main effects that add up."""
+        for guard in self.guards[:2]:
+            leaders: dict[SiteId, tuple[float, Unit, float]] = {}
+            for (unit, held), gains in self._gains.items():
+                gain, factor = max((gain, factor) for factor, gain in gains.items())
+                site = unit.operands[0].site
+                if held == guard and gain > self.slack and gain > leaders.get(site, (0.0,))[0]:
+                    leaders[site] = gain, unit, factor
+            ranked = sorted(leaders.values(), key=lambda leader: -leader[0])
+            parts = tuple((unit, factor) for _, unit, factor in ranked)
+            yield from self._joining({}).unions(parts, guard)
 
     def _joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> Together:
         return Together(self.units, self.mutate, self.trials, self.goal, gains, self.slack)

@@ -15,6 +15,7 @@ from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confir
 from pytest_tarl.searching.units import NEAR, Unit
 
 MOST = 3  # parts of a joint repair
+PROMISING = 0.5  # a union that gains this share of the loss is worth balancing
 STEPS = (1.5, 0.65)  # by which the parts are moved
 
 
@@ -73,6 +74,17 @@ class Together:
             if most <= gain + self.slack:
                 return
             base, gain = yield from self._balanced(better, most)
+
+    def unions(self, parts: Sequence[tuple[Unit, float]], guard: Guard) -> Iterator[Candidate]:
+        """Join the first two parts, then the first three, and balance what gains most."""
+        best: tuple[Joint, float] | None = None
+        for size in range(2, min(MOST, len(parts)) + 1):
+            joint = Joint(tuple(parts[:size]), guard)
+            gained = yield from self.gain(joint)
+            if gained is not None and (best is None or gained > best[1]):
+                best = joint, gained
+        if best is not None and best[1] > PROMISING * max(self.goal.enough - self.goal.online, 0.0):
+            yield from self._balanced(*best)
 
     def gain(self, joint: Joint) -> Generator[Candidate, None, float | None]:
         """Run a joint candidate once and return its gain, None where it cannot run; hand it on when it holds."""
