@@ -35,7 +35,7 @@ def examine(
     """
     failures: dict[str, Exception] | None = {} if isolate else None
     with without_collection(), deep_recursion():
-        machine = Linker(modules, config, failures)
+        machine = Linker(modules, config, failures, thorough=False)
         machine.link()
         flows = Tracer(machine).flows()
         found = (*findings(flows), *hazards(machine, flows, config))
@@ -44,13 +44,15 @@ def examine(
 
 def analyse(modules: Sequence[Module], config: Config) -> tuple[Flow, ...]:
     """Return every flow, sorted by publish call and subscription."""
-    return trace(modules, config)[1]
+    return trace(modules, config, thorough=False)[1]
 
 
-def trace(modules: Sequence[Module], config: Config) -> tuple[Linker, tuple[Flow, ...]]:
-    """Return the flows and the machine that found them, which can be asked more."""
+def trace(
+    modules: Sequence[Module], config: Config, *, thorough: bool = True
+) -> tuple[Linker, tuple[Flow, ...]]:
+    """Return the flows and the machine that found them, which can be asked more when it was thorough."""
     with without_collection(), deep_recursion():
-        machine = Linker(relevant(modules, config), config)
+        machine = Linker(relevant(modules, config), config, thorough=thorough)
         machine.link()
         flows = Tracer(machine).flows()
     return machine, flows

@@ -8,7 +8,7 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.allocation import BORN
 from tarl_lint.valueflow.evaluate import Evaluation
 from tarl_lint.valueflow.heap import item_field
-from tarl_lint.valueflow.machine import MAX_CALLS, MAX_FRAMES, MAX_STATEMENTS, Arguments
+from tarl_lint.valueflow.machine import MANY, MAX_CALLS, MAX_FRAMES, OFTEN, Arguments
 from tarl_lint.valueflow.store import Delta
 from tarl_lint.valueflow.values import (
     BOTTOM,
@@ -45,8 +45,10 @@ class Activations(Evaluation):
         if not isinstance(closure.info, tuple):
             return None
         function, outer, program, cls = closure.info
+        runs = self.activations[function] = self.activations.get(function, 0) + 1
         if (
-            self.spent > MAX_STATEMENTS
+            self.spent > self.limit
+            or (self.spent > MANY and runs > OFTEN)
             or len(self.stack) > MAX_CALLS
             or sum(f.function is function for f in self.stack) > 1
         ):

@@ -197,7 +197,7 @@ class Containers(Calls):
             ours += [o for o in value.pts if o.kind in ("sequence", "mapping")]
         node = self.node(it.frame, ("length", it.call.slot), "call")
         self.graph.choice(self.deep(frozenset(ours)), node)
-        return Value(deps | {node})
+        return Value(deps | self.kept(node))
 
     def _read_length(self, it: Invocation) -> Value:
         """Return what a queue says about how much is in it."""

@@ -6,6 +6,8 @@ from tarl_lint.valueflow.allocation import MAX_NESTING
 from tarl_lint.valueflow.heap import HOLLOW, Heap
 from tarl_lint.valueflow.values import NONE, ClassInfo, Frame, Nodes, Obj, Value
 
+LOOKS = 20  # looks into objects that take as long as a statement
+
 
 class Contents(Heap):
     """Collects the data inside objects."""
@@ -15,15 +17,24 @@ class Contents(Heap):
         known: dict[Obj, Nodes] = {}
         if len(objects) == 1:
             (obj,) = objects
-            return self._deep(obj, known, 0)
+            if not obj.laden:
+                self.store.doubt(obj)
+                return NONE
+            inside = self._deep(obj, known, 0)
+            self.spent += len(known) // LOOKS
+            return inside
         found = NONE
         for obj in in_order(objects):
             found |= self._deep(obj, known, 0)
+        self.spent += len(known) // LOOKS
         return found
 
     def _deep(self, obj: Obj, known: dict[Obj, Nodes], depth: int) -> Nodes:
         """Return what is inside one object. What holds itself is left out at the second time."""
         if obj.kind in HOLLOW or depth > MAX_NESTING:
+            return NONE
+        if not obj.laden:
+            self.store.doubt(obj)
             return NONE
         inside = known.get(obj)
         if inside is not None:

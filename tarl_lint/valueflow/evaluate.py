@@ -152,9 +152,10 @@ class Evaluation(Displays):
         then = self.under_guard(expr.then, (guard, "then"), frame)
         other = self.under_guard(expr.other, (guard, "other"), frame)
         node = self.node(frame, ("choice", expr.slot), "condition")
-        self.graph.control[node].add(guard)
+        if self.kept(guard):
+            self.graph.control[node].add(guard)
         both = join(then, other)
-        return Value(both.deps | {node}, both.pts, both.consts)
+        return Value(both.deps | self.kept(node), both.pts, both.consts)
 
     def under_guard(self, expr: ir.Expr, guard: tuple[int, str], frame: Frame) -> Value:
         """Evaluate an expression to which a decision leads."""

@@ -14,6 +14,8 @@ from tarl_lint.valueflow.values import (
     join,
 )
 
+JOINS = 40  # values joined in the time of a statement
+
 
 class Joining(Contents):
     """Joins continuations of a state."""
@@ -30,6 +32,7 @@ class Joining(Contents):
         keys: dict[tuple[Obj, str], None] = {}
         for delta in deltas:
             keys.update(dict.fromkeys(delta))
+        self.spent += len(keys) // JOINS
         result: Delta = {}
         for key in keys:
             value: Value | None = None

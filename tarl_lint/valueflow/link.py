@@ -12,10 +12,12 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import ROOT_CALL
 from tarl_lint.valueflow.execute import Execution
 from tarl_lint.valueflow.lower import lower_module
+from tarl_lint.valueflow.machine import HASTE, MAX_STATEMENTS
 from tarl_lint.valueflow.store import Root, Store
 from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, ClassInfo, Frame, Obj, Value, lineage, pointer
 
 MAX_ROUNDS = 12
+EXCHANGED = 40  # values that a root shares while it waits, in the time of a statement
 STARTS = frozenset(["init_node", "init", "create_node", "spin", "Subscriber", "create_subscription"])
 
 
@@ -23,11 +25,21 @@ class Linker(Execution):
     """Runs modules, then callbacks, timers, threads and main functions, until the shared memory is stable."""
 
     def __init__(
-        self, modules: Sequence[Module], config: Config, failures: dict[str, Exception] | None = None
+        self,
+        modules: Sequence[Module],
+        config: Config,
+        failures: dict[str, Exception] | None = None,
+        *,
+        thorough: bool = True,
     ) -> None:
-        """With `failures`, what goes wrong is noted there by file, and the rest goes on."""
+        """With `failures`, what goes wrong is noted there by file, and the rest goes on.
+
+        Unless `thorough`, values that come from no source are not followed: flows need no more.
+        """
         super().__init__(modules, config)
+        self.thorough = thorough
         self.pending: dict[Root, None] = {}
+        self.finished: set[Root] = set()
         self.failures = failures
         for module in modules:
             program = self._lowered(module)
@@ -85,21 +97,32 @@ class Linker(Execution):
 
     def _settle(self) -> None:
         for _ in range(MAX_ROUNDS):
+            self._reconsider()
             batch = sorted(self.pending, key=lambda r: r.kind != "module")
             if not batch:
                 return
             self.pending.clear()
             for root in batch:
+                if self.hurried and root in self.finished:
+                    continue
                 self._run(root, self.roots[root.key][1])
                 for news in self.shared.dirty:
                     self.pending[news] = None
                 self.shared.dirty.clear()
+
+    def _reconsider(self) -> None:
+        """Have those run again who went by a decision to which something leads by now."""
+        graph = self.graph
+        for branch in [b for b in self.doubts if graph.data[b] or graph.control[b]]:
+            self.pending.update(self.doubts.pop(branch))
 
     def _run(self, root: Root, run: Callable[[Root], None]) -> None:
         self.pending.pop(root, None)
         self.store = Store(self.shared, root)
         self.stack = []
         self.spent = 0
+        self.limit = HASTE if self.hurried else MAX_STATEMENTS
+        self.activations.clear()
         self.delivered = frozenset()
         try:
             run(root)
@@ -107,6 +130,9 @@ class Linker(Execution):
             where = self.stack[-1].program if self.stack else next(iter(self.programs.values()))
             self._failed(where.path, error)
             return
+        finally:
+            self.total += self.spent
+            self.finished.add(root)
         for key in self.store.own():
             value = self._at_end(key)
             value = self.store.mine(key, value) if value is not None else None
@@ -122,8 +148,9 @@ class Linker(Execution):
 
     def wait(self, frame: Frame) -> None:  # noqa: ARG002 - who waits may matter to a lock
         """Let other roots see what was stored, and store what they may."""
-        root = self.store.root
-        for key in list(self.store.own()):
+        root, own = self.store.root, list(self.store.own())
+        self.spent += len(own) // EXCHANGED
+        for key in own:
             value = self.store.get(key)
             before, version = self.store.exchanged.get(key, (BOTTOM, -1))
             if version == self.shared.version and before is value:

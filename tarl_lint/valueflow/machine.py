@@ -22,6 +22,10 @@ Kind = Literal["topic", "service", "action", "transform"]
 MAX_CALLS = 24  # nested calls that are told apart; deeper ones are taken for library calls
 MAX_FRAMES = 20_000  # activations in all
 MAX_STATEMENTS = 20_000  # executed in one run of a root; then calls are taken for library calls
+MANY = 2_000  # statements in one run of a root, after which no function runs often
+OFTEN = 6  # runs of one function in one run of a root that is as long as that
+PATIENCE = 40_000  # statements in all; then every root runs to its end, but not again
+HASTE = 400  # statements in one run of a root after that
 
 
 @dataclass(slots=True, eq=False)
@@ -112,6 +116,7 @@ class Machine:
 
     def __init__(self, modules: Sequence[Module], config: Config) -> None:
         self.config = config
+        self.thorough = True  # follow every value, not only what comes from a source
         self.modules = {m.path: m for m in modules}
         self.index = Index(modules)
         self.programs: dict[str, ir.Program] = {}
@@ -129,8 +134,14 @@ class Machine:
         self.doubtful: set[ir.Call] = set()  # calls that give such
         self.patient = True  # what is not known yet may be stored by a root that runs later
         self.waiting: dict[Root, None] = {}  # roots that met such a thing
+        self.doubts: dict[
+            int, dict[Root, None]
+        ] = {}  # decision that nothing led to → roots that went by that
         self.guards: list[tuple[int, str]] = []  # decisions inside the expression that is being evaluated
-        self.spent = 0  # statements executed in this run of a root
+        self.spent = 0  # statements executed in this run of a root, and looks into objects for so many
+        self.total = 0  # the same in all runs before
+        self.limit = MAX_STATEMENTS
+        self.activations: dict[ir.Function, int] = {}  # how often each function ran in this run of a root
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.passed: dict[Hashable, list[Value]] = {}  # what each root is called with
         self.sources: dict[tuple[str, ir.Pos], SourceRecord] = {}
@@ -139,6 +150,11 @@ class Machine:
         self.made: set[Hashable] = set()  # classes that something instantiates
         self.probe: Probe | None = None
         self.watch: Callable[[Frame, ir.Stmt], None] | None = None
+
+    @property
+    def hurried(self) -> bool:
+        """Tell whether there was too much to follow everything to its end."""
+        return self.total > PATIENCE
 
     # --- places -----------------------------------------------------------------------------------------
 
@@ -196,10 +212,27 @@ class Machine:
 
     def carry(self, value: Value, node: int) -> Value:
         """Return the value as passed on by a statement's node."""
-        self.graph.flow(value.deps, node)
-        if value.pts:
-            self.graph.hold(node, self.deep(value.pts))
+        content = self.deep(value.pts) if value.pts else NONE
+        if value.deps:
+            self.graph.flow(value.deps, node)
+        elif not content and not self.kept(node):
+            return value
+        if content:
+            self.graph.hold(node, content)
         return Value(frozenset([node]), value.pts, value.consts)
+
+    def kept(self, node: int) -> Nodes:
+        """Return a node as what a value is made from: unless thorough, only if a source or its decisions led here."""
+        graph = self.graph
+        if self.thorough or graph.data[node] or graph.control[node]:
+            return frozenset([node])
+        branches = graph.branches[node]
+        for branch, _ in branches:
+            if graph.data[branch] or graph.control[branch]:
+                return frozenset([node])
+        for branch, _ in branches:
+            self.doubts.setdefault(branch, {})[self.store.root] = None
+        return NONE
 
     def use(self, value: Value) -> Nodes:
         """Return the nodes whose data is used when the whole value is."""

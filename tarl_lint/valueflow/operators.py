@@ -99,7 +99,7 @@ class Operators(Presence):
         if ours:
             node = self.node(frame, ("truth", slot), "condition")
             self.graph.choice(self.deep(ours), node)
-            deps |= {node}
+            deps |= self.kept(node)
         return deps
 
     def _always_true(self, obj: Obj) -> bool:

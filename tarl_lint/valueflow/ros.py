@@ -60,7 +60,7 @@ class Ros(Serving):
             node = self.node(it.frame, ("parameter", it.call.slot), "assign")
             self.graph.parameters.add(node)
             self.graph.literals[node] = (None, it.call.pos, it.frame.program.path)
-            return Value(frozenset([node]))
+            return Value(self.kept(node))
         expr = _default(it)
         return self._default_of(default, expr, it.frame, ("parameter", it.call.slot))
 
@@ -70,7 +70,7 @@ class Ros(Serving):
         if expr is not None:
             self.mark(node, expr, default, frame)
         self.graph.flow(default.deps, node)
-        return Value(frozenset([node]))
+        return Value(self.kept(node))
 
     def declare(self, it: Invocation) -> Value:
         """Remember a declared parameter's default under the node and its name."""

@@ -28,6 +28,7 @@ class Shared:
     pauses: dict[Key, dict[Root, Value]] = field(default_factory=dict)
     readers: dict[Key, set[Root]] = field(default_factory=dict)
     watchers: dict[Obj, set[Root]] = field(default_factory=dict)
+    doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # roots that found no data inside an object
     dirty: set[Root] = field(default_factory=set)
     version: int = 0  # grows with every news
 
@@ -56,6 +57,20 @@ class Shared:
     def look(self, obj: Obj, root: Root) -> None:
         """Remember that a root has seen which fields an object has."""
         self.watchers.setdefault(obj, set()).add(root)
+
+    def load(self, obj: Obj, root: Root) -> None:
+        """Note that data was stored in an object, so that it is inside all that hold it, too."""
+        pending = [obj]
+        while pending:
+            current = pending.pop()
+            if current.laden:
+                continue
+            current.laden = True
+            self.dirty |= self.doubters.pop(current, set()) - ({root} if root.once else set())
+            pending += current.inside
+            pending += current.subs.values()
+            pending += [current.parent] if current.parent is not None else []
+            current.inside.clear()
 
     def _appeared(self, obj: Obj) -> None:
         """Let those run again who have seen an object, or what it is inside, without this field."""
@@ -124,9 +139,20 @@ class Store:
         layer[key] = self.now[key] = value
         owner, name = key
         owner.fields[name] = None
+        laden = bool(value.deps)
         for obj in value.pts:
             if obj.kind == "lib":
                 obj.holders[key] = None
+            if obj.laden:
+                laden = True
+            elif not owner.laden:
+                obj.inside[owner] = None
+        if laden and not owner.laden:
+            self.shared.load(owner, self.root)
+
+    def doubt(self, obj: Obj) -> None:
+        """Remember that this run found no data inside an object."""
+        self.shared.doubters.setdefault(obj, set()).add(self.root)
 
     def look(self, obj: Obj) -> None:
         """Remember that this run depends on which fields an object has."""

@@ -19,6 +19,7 @@ PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enu
 NUMBERS = count()  # of objects in the order in which they are made
 MAX_CONSTS = 4
 MAX_DEPTH = 6  # of objects embedded in objects
+MESSAGES = frozenset(["message", "goal"])  # objects that bring data with them
 
 
 class Obj:
@@ -29,8 +30,10 @@ class Obj:
         "fields",
         "holders",
         "info",
+        "inside",
         "key",
         "kind",
+        "laden",
         "many",
         "name",
         "number",
@@ -50,6 +53,10 @@ class Obj:
         self.subs: dict[str, Obj] = {}
         self.holders: dict[tuple[Obj, str], None] = {}  # where pointers to it were stored
         self.info: object = None
+        self.laden: bool = (
+            parent.laden if parent is not None else kind in MESSAGES
+        )  # data may be in it, at any depth
+        self.inside: dict[Obj, None] = {}  # objects that a pointer to it was stored in while it was not laden
 
     def sub(self, name: str) -> Obj:
         """Return the object embedded under a field; deep nesting folds into one."""
