@@ -103,9 +103,11 @@ class Tracer:
                 written[id(item)] = item
                 dependence[id(item)] = "context"
         registration = self.surroundings.registration(origin)
-        edges += outer + [(id(registration), a) for a in self.arrivals(origin)]
+        arrivals = self.arrivals(origin)
+        edges += outer + [(id(registration), a) for a in arrivals]
         spans = {key: w.text.span(w) for key, w in written.items()}
-        order = in_order(spans, edges)
+        first = {*arrivals, *(key for key, kind in dependence.items() if kind == "context")}
+        order = in_order(spans, edges, first)
         sinks = {id(w) for n in record.nodes if (w := self.statement(self.graph.places[n])) is not None}
         return tuple(
             self.step(written[k], spans[k], dependence[k], k in sinks, registration is written[k], origin)
