@@ -83,6 +83,9 @@ class Evaluation(Displays):
             if obj.kind == "bound" and self.is_property(obj):
                 call = ir.Call(expr, (), (), expr.pos, -expr.slot)
                 return self.call_value(value, ([], {}), frame, call)
+        if value.consts == BOTTOM.consts and not value.pts:
+            said = self.special(base, "__getattr__", [const(expr.name)], frame, expr.pos)
+            return value if said is None else said
         return value
 
     def is_property(self, method: Obj) -> bool:

@@ -108,7 +108,15 @@ class Heap(Allocation):
         if isinstance(cls.info, ClassInfo) and cls.info.opaque and not name.startswith("["):
             holder = self.intern("lib", ("inherited", obj.key, name), name)
             return pointer(holder)
-        return self.content(obj)  # elements, and attributes whose names are made at run time
+        result = self.content(obj)  # elements, and attributes whose names are made at run time
+        for attributes in self.replaced_attributes(obj):
+            result = join(result, self.read_field(attributes, item_field(name)))
+        return result
+
+    def replaced_attributes(self, obj: Obj) -> frozenset[Obj]:
+        """Return the mappings that were stored as an object's `__dict__`, which others may share."""
+        held = self.store.get((obj, "__dict__")) if "__dict__" in obj.fields else None
+        return held.pts - {obj} if held is not None else frozenset()
 
     def bind(self, value: Value, receiver: Obj, owner: Obj) -> Value:
         """Return a value with its functions bound to a receiver."""
@@ -227,6 +235,8 @@ class Heap(Allocation):
         for obj in base.pts:
             if obj.kind in ("closure", "bound", "ext", "method"):
                 continue
+            for attributes in self.replaced_attributes(obj):
+                self.weaken(attributes, item_field(name), value)
             if certain and not obj.many:
                 self.store.put((obj, name), value)
             else:
