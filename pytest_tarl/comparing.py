@@ -17,14 +17,14 @@ from pytest_tarl.learning.looks import Look, certain, concluded, planned
 from pytest_tarl.learning.merging import aligned, merge
 from pytest_tarl.learning.permutation import permuted_loss
 from pytest_tarl.learning.tables import Floats, Ints, Sample
-from pytest_tarl.learning.utility import batch
+from pytest_tarl.learning.tiles import tiled, tiled_batch
 from pytest_tarl.logged import read_log
 from pytest_tarl.model import Comparison, ListComparison, Region, SitePlace, TaintList, Verdict
 from pytest_tarl.recording import Progress, Recorded, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.searching.accept import PASS_RATE_LOSS
 from pytest_tarl.seeds import episode_seeds
-from pytest_tarl.sensors import Cell
+from pytest_tarl.sensors import Cell, Sensor
 from pytest_tarl.settings import Designation, Options
 
 MOST_NAMED = 3  # lost sites that a note names
@@ -67,7 +67,7 @@ def run_online(
     if options.learner:
         tables = _learned_tables(fixture, recorded, learned, offline.cells)
     else:
-        tables = _solved_tables(offline, online)
+        tables = _solved_tables(offline, online, fixture.sensors)
     near_half = _paper_cells(tables, offline.cells)
     chosen = _rows(difference.region, near_half, offline.cells)
     lists = tuple(
@@ -130,6 +130,7 @@ class _Watch:
             merge(samples),
             alpha=self.options.alpha * look.share,
             tolerance=self.designation.tolerance,
+            sensors=self.designation.sensors,
             generator=seeds.generator(self.options.seed, "compare"),
         )
         self.seen.append((look, difference))
@@ -194,11 +195,11 @@ def _current(fixture: Fixture, plan: Plan) -> list[TaintList]:
     ]
 
 
-def _solved_tables(offline: Sample, online: Sample) -> list[tuple[Floats, Floats]]:
+def _solved_tables(offline: Sample, online: Sample, sensors: Sequence[Sensor]) -> list[tuple[Floats, Floats]]:
     """Return the batch solution off-line and on-line per list, shape (cells, sites); both samples share their cells."""
-    cells = len(offline.cells)
+    cells, tiles = len(offline.cells), tiled(offline.cells, sensors)
     return [
-        (batch(before, cells, scale), batch(after, cells, scale))
+        (tiled_batch(before, cells, scale, tiles), tiled_batch(after, cells, scale, tiles))
         for before, after, scale in zip(offline.lists, online.lists, mean_flows(offline), strict=True)
     ]
 

@@ -6,7 +6,7 @@ corrected over all columns by the largest statistic.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import comb, inf
 from statistics import NormalDist
@@ -19,7 +19,7 @@ from pytest_tarl.learning.merging import aligned
 from pytest_tarl.learning.permutation import max_statistic, permuted_loss
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.model import Region, Result, Verdict
-from pytest_tarl.sensors import Cell
+from pytest_tarl.sensors import Cell, Sensor
 
 POWER = 0.8  # of the smallest loss that is called detectable
 MATERIAL = 0.1  # a cell belongs to the region from this share of the largest significant difference
@@ -39,14 +39,23 @@ class Difference:
 
 
 def compare(
-    offline: Sample, online: Sample, *, alpha: float, tolerance: float | None, generator: np.random.Generator
+    offline: Sample,
+    online: Sample,
+    *,
+    alpha: float,
+    tolerance: float | None,
+    generator: np.random.Generator,
+    sensors: Sequence[Sensor] = (),
 ) -> Difference:
-    """Judge the on-line world against the off-line one; `tolerance` is the loss per episode that nobody minds."""
+    """Judge the on-line world against the off-line one; `tolerance` is the loss per episode that nobody minds.
+
+    `sensors` tell which of them are tiled; without them utility is a table.
+    """
     offline, online = aligned(offline, online)
     margin = max(0.05 * abs(float(offline.total.mean())), tolerance or 0.0)
     p_loss = permuted_loss(offline.total, online.total, generator)
     loss = float(offline.total.mean() - online.total.mean())
-    p_drift, region, changes = _drift(offline, online, alpha, generator)
+    p_drift, region, changes = _drift(offline, online, alpha, generator, sensors)
     detectable = max(margin, smallest_detectable_loss(offline.total, online.total, alpha))
     verdict = judged(Verdict("no difference", p_drift, p_loss, loss, detectable, margin), alpha)
     found = region if verdict.result != "no difference" else Region()
@@ -76,10 +85,10 @@ def smallest_detectable_loss(offline: Floats, online: Floats, alpha: float) -> f
 
 
 def _drift(
-    offline: Sample, online: Sample, alpha: float, generator: np.random.Generator
+    offline: Sample, online: Sample, alpha: float, generator: np.random.Generator, sensors: Sequence[Sensor]
 ) -> tuple[float, Region, dict[Cell, float]]:
     """Return p_drift, the region and the change by cell; both samples share their cells."""
-    evidence = gathered(offline, online)
+    evidence = gathered(offline, online, sensors)
     blocks = evidence.columns()
     p_values = max_statistic(np.concatenate(blocks, axis=1), online.episodes, generator)
     ends = np.cumsum([block.shape[1] for block in blocks])

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from pytest_tarl.learning.residuals import fitted, in_fit, residuals
 from pytest_tarl.learning.tables import Floats, Ints, Sample
-from pytest_tarl.sensors import Cell
+from pytest_tarl.learning.tiles import tiled
+from pytest_tarl.sensors import Cell, Sensor
 
 NOVEL_VISITS = 3  # a cell unknown to the fit counts as novel from so many visits,
 NOVEL_EPISODES = 2  # in so many episodes
@@ -43,12 +44,12 @@ class Evidence:
         return chosen
 
 
-def gathered(offline: Sample, online: Sample) -> Evidence:
+def gathered(offline: Sample, online: Sample, sensors: Sequence[Sensor] = ()) -> Evidence:
     """Fit on the one half of the off-line episodes, hold the other half against the on-line ones."""
     fit = np.array([in_fit(seed) for seed in offline.seeds])
     rows = fit[offline.chain.episode]
     known = type(offline.chain)(*(column[rows] for column in vars(offline.chain).values()))
-    model = fitted(known, len(offline.cells))
+    model = fitted(known, len(offline.cells), tiled(offline.cells, sensors))
     held_out, deployed = residuals(offline, model), residuals(online, model)
     move, reward, novel = (
         np.concatenate((getattr(deployed, part), getattr(held_out, part)[~fit]))

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from pytest_tarl.learning.tables import END, Chain, Floats, Sample, sum_by
-from pytest_tarl.learning.utility import GAMMA_STEP, chain_utility
+from pytest_tarl.learning.tiles import Tiles, expected, tiled_chain
+from pytest_tarl.learning.utility import GAMMA_STEP
 
 
 @dataclass(frozen=True)
@@ -38,15 +39,13 @@ class Model:
     reward: Floats
 
 
-def fitted(chain: Chain, cells: int) -> Model:
+def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:
     """Fit the model to off-line transitions."""
-    utility = chain_utility(chain, cells)
+    utility = tiled_chain(chain, cells, tiles)
     inside = chain.next_cell != END
-    moves = sum_by(chain.cell, _gain(chain, utility) * chain.count, cells)
-    rewards = sum_by(chain.cell, chain.reward, cells)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        move = moves / sum_by(chain.cell, chain.count * inside, cells)
-        reward = rewards / sum_by(chain.cell, chain.count, cells)
+    gained = _gain(chain, utility) * chain.count
+    move = expected(chain.cell[inside], chain.count[inside], gained[inside], cells, tiles)
+    reward = expected(chain.cell, chain.count, chain.reward, cells, tiles)
     return Model(utility, move, reward)
 
 

@@ -63,7 +63,7 @@ def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
     def ahead(values: Floats) -> Floats:
         return sum_by(start, weight * values[end], mean.size)
 
-    utility = _gradients(lambda values: values - ahead(values), mean)
+    utility = gradients(lambda values: values - ahead(values), mean)
     change = np.inf
     while change > PRECISE * np.abs(utility).max():
         swept: Floats = mean + ahead(utility)
@@ -71,7 +71,7 @@ def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
     return utility
 
 
-def _gradients(system: Callable[[Floats], Floats], right: Floats) -> Floats:
+def gradients(system: Callable[[Floats], Floats], right: Floats) -> Floats:
     """Return the x nearest to a solution of system(x) = right that biconjugate gradients reach, from x = right."""
     best = solution = right.copy()
     shadow = residual = right - system(solution)

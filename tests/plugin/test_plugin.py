@@ -11,7 +11,7 @@ import pytest
 
 from pytest_tarl.learning.fixture import load
 from pytest_tarl.report import json_result
-from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
+from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file, result
 
 
 @pytest.fixture(scope="module")
@@ -273,3 +273,14 @@ def test_a_sensor_may_be_a_function_of_the_message(tank: pytest.Pytester) -> Non
     changed(tank, "test_tank", 'field="data", low', "field=lambda message: message.data, low")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     tank.runpytest(*ONLINE).stdout.fnmatch_lines(["*degraded*"])
+
+
+def test_tiles_find_what_the_table_finds(tank: pytest.Pytester) -> None:
+    regions = []
+    for bins in ("bins=10", "bins=10, tilings=2"):
+        changed(tank, "test_tank", "bins=10", bins)
+        tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+        tank.runpytest(*ONLINE).assert_outcomes(failed=1, deselected=1)
+        found = result(tank)
+        regions.append((found["region"], found["culprits"][0]["line"]))
+    assert regions[0] == regions[1]

@@ -1,0 +1,113 @@
+"""The parametric utility: tile coding (Sutton & Barto 2018, §9.5.4), solved by least squares (Bradtke & Barto 1996).
+
+A sensor with `tilings=T` is covered by T grids of tiles, each T bins wide and shifted by one bin against the next. A
+cell's utility is the sum of the weights of the T tiles that it lies in, one a grid, so near cells share what they
+learn. Sensors without tilings are taken as they are. It is fitted to the same counts as the table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from pytest_tarl.learning.tables import END, START, Chain, Floats, Ints, ListSample, sum_by
+from pytest_tarl.learning.utility import GAMMA_EVENT, GAMMA_STEP, batch, chain_utility, gradients
+from pytest_tarl.sensors import Cell, Sensor
+
+RIDGE = 1e-6  # of the mean number of visits, added to each weight's own: tilings alone do not tell all weights apart
+DENSE = 1500  # weights up to which the equations are solved at once
+
+
+@dataclass(frozen=True)
+class Tiles:
+    """The tiles of every cell, shape (cells, tilings), numbered from 0."""
+
+    of: Ints
+    count: int
+
+
+def tiled(cells: Sequence[Cell], sensors: Sequence[Sensor]) -> Tiles | None:
+    """Return the tiles of the cells, None where no sensor has tilings and a table it is."""
+    grids = max((sensor.tilings for sensor in sensors), default=0)
+    if not grids or not cells:
+        return None
+    table = np.array(cells, dtype=np.int64)
+    numbered = [_grid(table, sensors, grid) for grid in range(grids)]
+    firsts = np.cumsum([0, *(int(one.max()) + 1 for one in numbered)])
+    return Tiles(
+        np.stack([one + first for one, first in zip(numbered, firsts, strict=False)], axis=1), int(firsts[-1])
+    )
+
+
+def _grid(table: Ints, sensors: Sequence[Sensor], grid: int) -> Ints:
+    """Return the tile of each cell in one grid; dimensions are shifted by odd multiples, lest tiles line up."""
+    columns = []
+    for d, sensor in enumerate(sensors):
+        column = table[:, d]
+        if sensor.tilings:
+            shifted = column + grid * (2 * d + 1) % sensor.tilings
+            column = (shifted % sensor.bins if sensor.angle and sensor.bins else shifted) // sensor.tilings
+        columns.append(column)
+    return np.unique(np.stack(columns, axis=1), axis=0, return_inverse=True)[1].reshape(-1)
+
+
+def tiled_chain(chain: Chain, cells: int, tiles: Tiles | None, gamma: float = GAMMA_STEP) -> Floats:
+    """Return U(x) on the chain of sensor cells, shape (cells,); NaN where a tile was never visited."""
+    if tiles is None:
+        return chain_utility(chain, cells, gamma)
+    reward = sum_by(chain.cell, chain.reward, cells)
+    return _fitted(chain.cell, chain.next_cell, chain.count, reward, tiles.of, gamma)
+
+
+def tiled_batch(
+    recorded: ListSample, cells: int, scale: float, tiles: Tiles | None, gamma: float = GAMMA_EVENT
+) -> Floats:
+    """Return q(x, n), shape (cells, sites); each site has tiles of its own. NaN where never visited at all."""
+    if tiles is None:
+        return batch(recorded, cells, scale, gamma)
+    edges, visits, width = recorded.edges, recorded.visits, recorded.width
+    states = 1 + cells * width
+    reward = sum_by(visits.state, visits.reward + visits.scaled / scale, states)
+    site = np.arange(width) * tiles.count
+    of = 1 + (tiles.of[:, None, :] + site[None, :, None]).reshape(cells * width, -1)
+    of = np.concatenate((np.full((1, of.shape[1]), START), of))
+    solved = _fitted(edges.state, edges.next_state, edges.count, reward, of, gamma)
+    solved[sum_by(edges.state, edges.count, states) == 0] = np.nan  # a slice shows what was executed
+    return solved[START + 1 :].reshape(cells, width)
+
+
+def expected(cell: Ints, count: Ints, brought: Floats, cells: int, tiles: Tiles | None) -> Floats:
+    """Return what one visit brings on average in each cell, shape (cells,); `brought` is summed over the `count`."""
+    total, visits = sum_by(cell, brought, cells), sum_by(cell, count, cells)
+    if tiles is None:
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return total / visits
+    return _fitted(cell, np.full(cell.size, END), count, total, tiles.of, 0.0)
+
+
+def _fitted(state: Ints, next_state: Ints, count: Ints, reward: Floats, of: Ints, gamma: float) -> Floats:
+    """Solve Σφ(c)[φ(c) - γφ(c')]w = Σφ(c)ρ and return φw, NaN where a state has a tile that was never visited."""
+    size, grids = int(of.max()) + 1, of.shape[1]
+    visits = sum_by(state, count, reward.size)
+    ridge = RIDGE * float(visits[visits > 0].mean()) if visits.any() else 1.0
+    inside = next_state != END
+    start, end, weight = state[inside], next_state[inside], gamma * count[inside]
+
+    def spread(values: Floats) -> Floats:
+        """Add a number per state to all of its tiles."""
+        return sum_by(of.ravel(), np.repeat(values, grids), size)
+
+    def system(weights: Floats) -> Floats:
+        value = weights[of].sum(axis=1)
+        return spread(visits * value - sum_by(start, weight * value[end], reward.size)) + ridge * weights
+
+    right = spread(reward)
+    if size <= DENSE:
+        matrix = np.stack([system(unit) for unit in np.eye(size)], axis=1)
+        weights = np.linalg.solve(matrix, right)
+    else:
+        weights = gradients(system, right)
+    known = spread(visits)[of].min(axis=1) > 0
+    return np.where(known, weights[of].sum(axis=1), np.nan)
