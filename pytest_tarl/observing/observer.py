@@ -14,7 +14,7 @@ from pytest_tarl.errors import TarlError
 from pytest_tarl.instrumentation.trace import Floats, Ints
 from pytest_tarl.observing.frames import FORMAT, LogFile, Record
 from pytest_tarl.observing.stream import Chunk, Stream
-from pytest_tarl.sensors import Cell, Sensor, field_value
+from pytest_tarl.sensors import Cell, Sensor, reading
 
 PERIOD = (
     0.25  # seconds between two writings: what a power cut can cost at most is this and the writing itself
@@ -48,7 +48,7 @@ class Observer:
     def told(self, sensor: Sensor, message: Any) -> None:
         """Latch a sensor: its message is about to reach the node."""
         try:
-            self._latch(sensor, field_value(message, sensor.field or ""))
+            self._latch(sensor, reading(message, sensor.field or ""))
         except (TarlError, AttributeError, LookupError, TypeError, ValueError) as problem:
             self.problem = self.problem or f"Sensor {sensor.name!r}: {problem}"
         self.stream.relieve()
