@@ -41,6 +41,7 @@ class RclpyNetwork:
         self.clocks: list[Any] = []
         self.contexts: list[Any] = []
         self.expected: Counter[Any] = Counter()  # messages under way, by subscription of a node
+        self.kept: Counter[Any] = Counter()  # messages that publishers keep for late comers
         self.for_world: deque[Any] = deque()  # subscriptions of the world, once for each message under way
         self.node_publishes: Callable[[str, Any, Any], None] | None = None
         self.node_subscribes: Callable[[str], None] | None = None
@@ -73,6 +74,7 @@ class RclpyNetwork:
         for kept in (self.nodes, self.clocks, self.contexts, self.listening, self.for_world):
             kept.clear()
         self.expected.clear()
+        self.kept.clear()
         self._state.clear()
 
     def enter(self, process: Process, before: Process | None) -> None:
@@ -111,6 +113,8 @@ class RclpyNetwork:
 
     def sent(self, publisher: Any) -> None:
         """Note that a message is under way to everybody who is matched with its publisher."""
+        if publisher.qos_profile.durability.name == "TRANSIENT_LOCAL":
+            self.kept[publisher] = min(self.kept[publisher] + 1, capacity(publisher.qos_profile))
         for subscription in self.matched(publisher):
             if subscription in self.world._subscriptions:
                 self.for_world.append(subscription)
@@ -120,6 +124,15 @@ class RclpyNetwork:
                 )
         self.scheduler.sent()
         self.wake_listening()
+
+    def joined(self, subscription: Any) -> None:
+        """Note that what publishers keep for late comers is under way to a new subscription."""
+        if subscription.qos_profile.durability.name != "TRANSIENT_LOCAL":
+            return
+        for publisher, kept in self.kept.items():
+            if subscription in self.matched(publisher):
+                most = capacity(subscription.qos_profile)
+                self.expected[subscription] = min(self.expected[subscription] + kept, most)
 
     def taken(self, subscription: Any) -> None:
         """Note that an executor takes a message."""

@@ -57,14 +57,16 @@ def _patch_nodes(network: RclpyNetwork) -> None:
             options["cli_args"] = own + ros_arguments((*task.process.argv[1:], *network.arguments))
         given = _parameters(network, node_name, options)
         options["parameter_overrides"] = [*given, *(options.get("parameter_overrides") or ())]
-        network.nodes.append((task.process, self))
         make(self, node_name, **options)
+        network.nodes.append((task.process, self))
         task.process.label = self.get_fully_qualified_name()
 
     def end(self: Any) -> Any:
         network.nodes[:] = [(process, node) for process, node in network.nodes if node is not self]
         for subscription in self.subscriptions:
             network.expected.pop(subscription, None)
+        for publisher in self.publishers:
+            network.kept.pop(publisher, None)
         return destroy(self)
 
     node_class.__init__, node_class.destroy_node = init, end
@@ -248,6 +250,7 @@ def _patch_topics(network: RclpyNetwork) -> None:
         made = create_subscription(self, *args, **options)
         if _of_node(made.topic_name) and network.node_subscribes is not None:
             network.node_subscribes(made.topic_name)
+            network.joined(made)
         return made
 
     node_class.create_publisher, node_class.create_subscription = publisher, subscription

@@ -16,6 +16,7 @@ from pytest_tarl.realros.lockstep import PATIENCE, Way, Wire, WireScheduler
 from pytest_tarl.realros.master import Master
 from pytest_tarl.realros.rospy_copy import RospyCopy
 from pytest_tarl.realros.rospy_patches import patch
+from pytest_tarl.ros.messages.snapshot import snapshot
 from pytest_tarl.ros.names import absolute
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Task, running_task
@@ -143,9 +144,9 @@ class RospyNetwork:
         """Hand a new callback what others have latched on its topic."""
         if copy.process is None:
             return
-        for sender, publisher in self._ends(subscriber.resolved_name, "pubs"):
-            if publisher.is_latch and publisher.latch is not None and sender is not copy:
-                job = partial(spawn_callback, copy.process, callback, publisher.latch, arguments)
+        for _, publisher in self._ends(subscriber.resolved_name, "pubs"):
+            if publisher.is_latch and publisher.latch is not None and not mismatch(publisher, subscriber):
+                job = partial(spawn_callback, copy.process, callback, snapshot(publisher.latch), arguments)
                 self.scheduler.later(job)
 
     def wake_listening(self) -> None:
@@ -241,7 +242,10 @@ class RospyNetwork:
                 hook()
             except Exception as error:
                 process.failed(task, error)
-        self.scheduler.later(self._hooks_done)
+        if task is None:
+            self.scheduler.later(self._hooks_done)
+        else:
+            self._hooks_done()
 
     def _hooks_done(self) -> None:
         self.in_hooks = False

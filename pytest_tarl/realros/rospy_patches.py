@@ -175,11 +175,22 @@ def _patch_sending(copy: RospyCopy) -> None:
     original = publisher.publish
 
     def publish(self: Any, message: Any, connection_override: Any = None) -> Any:
+        if connection_override is not None and message is self.latch:
+            return (
+                None  # what is latched is handed on by `latched`, to connections that are kept as to new ones
+            )
         connections = self.connections if connection_override is None else [connection_override]
         ways = [Way(self.resolved_name, copy.name, connection.endpoint_id) for connection in connections]
         for way in ways:
             copy.network.wire.wait_for_all(way)
-        result = original(self, message, connection_override)
+        try:
+            result = original(self, message, connection_override)
+        except (
+            BaseException
+        ):  # rospy leaves half a message in its buffer, and its next one would break the connection
+            self.buff.seek(0)
+            self.buff.truncate(0)
+            raise
         for way in ways:
             copy.network.sent(way)
         return result

@@ -25,6 +25,7 @@ FLAGS: dict[str, Any] = {
     "workers": "1",
     "cluster": None,
     "ros": "embedded",
+    "log": None,
     "looks": None,
     "strict": False,
 }

@@ -1,0 +1,1 @@
+"""Small programs whose result must be the same on the stand-in and on the real ROS."""
