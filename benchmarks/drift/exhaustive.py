@@ -20,6 +20,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain, combinations, product
+from math import log
 from statistics import fmean
 from typing import Any
 
@@ -33,28 +34,8 @@ from pytest_tarl.rollout import EpisodePlan
 from pytest_tarl.seeds import episode_seeds
 from tarl_lint.model import Operand
 
-FINE = (
-    0.0,
-    0.05,
-    0.1,
-    0.15,
-    0.2,
-    0.25,
-    0.3,
-    0.35,
-    0.4,
-    0.45,
-    0.5,
-    0.55,
-    0.6,
-    0.65,
-    0.7,
-    0.75,
-    0.8,
-    0.85,
-    0.9,
-)
-FACTORS = (*FINE, *(round(1 / factor, 3) for factor in FINE[:0:-1]), -1.0)
+FINE = tuple(percent / 100 for percent in range(5, 100, 5))
+FACTORS = (*sorted((*FINE, *(round(1 / factor, 3) for factor in FINE)), key=lambda f: abs(log(f))), 0.0, -1.0)
 COARSE = (0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.2, 1.5, 2.0, 2.75, 4.0, 8.0)
 SHOWN = 8  # repairs of the same sites in the drifted world, after which none is looked for that keeps the nominal one
 COARSEST = (0.35, 0.65, 1.5, 2.0, 3.0, 5.0)  # for the pairs of all operands

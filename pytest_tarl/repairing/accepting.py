@@ -53,30 +53,32 @@ class Examiner:
                 for guard in self.guards:
                     if self.tested >= MOST:
                         return None
-                    accepted = self._examined(replace(candidate, guard=guard), trials)
-                    if accepted is not None:
-                        return accepted
+                    examined = self._examined(replace(candidate, guard=guard), trials)
+                    if isinstance(examined, Accepted):
+                        return examined
+                    if examined == "gain too small" and guard in (candidate.guard, candidates.ALWAYS):
+                        break  # where the guard is as wide as the search had it, no other one makes more of it
         except BudgetSpentError:
             if self.refused.candidate is None:
                 self.refused = replace(self.refused, reason="budget")
         return None
 
-    def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | None:
-        """Look at a candidate on a few known seeds, then test it on fresh ones."""
+    def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Reason:
+        """Look at a candidate on a few known seeds, then test it on fresh ones; return what was wrong there, if any."""
         try:
             problem = self._known_to_fail(candidate, trials)
         except RepairError:
-            return None
+            return ""
         if problem:
             self._refuse(Refused(candidate, problem))
-            return None
+            return ""
         self.tested += 1
         found = self._tested(candidate)
         self.spent += len(found.drifted) + len(found.nominal)
         if found.accepted:
             return Accepted(candidate, found)
         self._refuse(Refused(candidate, found.reason, fmean(outcome.total for outcome in found.drifted)))
-        return None
+        return found.reason
 
     def _known_to_fail(self, candidate: Candidate, trials: Trials) -> Reason:
         """Say why not, from on-line episodes that lost and off-line ones in which the candidate acts; "" if neither."""
