@@ -1,28 +1,42 @@
-"""What recording costs: nanoseconds per event over the bare program, side by side in one run.
+"""What recording costs, side by side with its peers in one run.
 
-`python benchmarks/recording.py` prints a table. Each program is executed bare, with an empty hook that could
-not do less, and as the plugin instruments it, in turns, and the best turn of each counts.
+`python benchmarks/recording.py` prints the tables. Each program is executed bare, with an empty hook that could not do
+less, as the plugin instruments it, under coverage.py's C tracer and under slipcover (which never takes its probes out:
+it would stop counting), in turns, and the best turn of each counts. Times are CPU times of the process.
 """
 
 from __future__ import annotations
 
 import ast
+import os
+import resource
+import subprocess
+import sys
 import tempfile
 import textwrap
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
-from types import CodeType
+from types import CodeType, SimpleNamespace
 from typing import Any
+
+import pymunk
+from coverage import Coverage
+from slipcover import Slipcover
 
 from pytest_tarl.instrumentation.codecache import CodeCache
 from pytest_tarl.instrumentation.instrument import Offset, instrument
 from pytest_tarl.instrumentation.nodecode import NodeCode
 from pytest_tarl.instrumentation.recorder import Recorder
+from pytest_tarl.learning.statistics import sample
 
+os.environ["COVERAGE_CORE"] = "ctrace"  # what newer Pythons would replace by sys.monitoring
 TURNS = 60
 ROUNDS = 2_000  # some ten thousand events: an episode
+STEPS = 200
+DISCS = 340  # which makes a step of some 200 µs
+RUNS = 12
 
 STRAIGHT = """
 def work(rounds):
@@ -66,20 +80,6 @@ def work(rounds):
 LOADING = ("for _ in range(rounds)", "for i in range(rounds)", "node.step(")
 
 
-@dataclass(frozen=True)
-class Timing:
-    """Best seconds of one program, bare and recorded, and how many events a run has."""
-
-    bare: float
-    hook: float
-    recorded: float
-    events: int
-
-    def per_event(self, seconds: float) -> float:
-        """Return nanoseconds per event over the bare program."""
-        return (seconds - self.bare) / self.events * 1e9
-
-
 def sites_of(tree: ast.Module) -> dict[Offset, int]:
     """Return every statement inside the functions, but for the loops that only drive the program."""
     sites: dict[Offset, int] = {}
@@ -102,10 +102,10 @@ def compiled(source: str, *, inline: bool) -> CodeType:
     return code
 
 
-def prepared(code: CodeType, space: dict[str, Any]) -> Callable[[int], None]:
-    """Execute the definitions of a program and return its `work`."""
+def prepared(code: CodeType, space: dict[str, Any], name: str = "work") -> Callable[..., Any]:
+    """Execute the definitions of a program and return its `work`, or another function."""
     exec(code, space)  # noqa: S102
-    work: Callable[[int], None] = space["work"]
+    work: Callable[..., Any] = space[name]
     return work
 
 
@@ -116,62 +116,194 @@ def seconds(work: Callable[[int], None]) -> float:
     return time.process_time() - start
 
 
-def measured(source: str) -> Timing:
-    """Time a program in turns."""
-    bare = prepared(compile(source, "<program>", "exec"), {})
-    hooked = prepared(compiled(source, inline=False), {"__tarl__": lambda _number, value: value})
-    code = compiled(source, inline=True)
-    best, events = [float("inf")] * 3, 0
+def measured(source: str) -> tuple[dict[str, float], int]:
+    """Return the best seconds of a program by the way it is run, and the events of a run."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "program.py"
+        file.write_text(source)
+        ways = {"bare": bare, "an empty hook": hooked, "coverage.py": traced, "slipcover": covered}
+        best, events = dict.fromkeys([*ways, "recorded"], float("inf")), 0
+        for _ in range(TURNS):
+            for name, run in ways.items():
+                best[name] = min(best[name], run(source, file))
+            spent, events = recorded(source)
+            best["recorded"] = min(best["recorded"], spent)
+    return best, events
+
+
+def bare(source: str, file: Path) -> float:
+    """Time a program as it is."""
+    return seconds(prepared(compile(source, str(file), "exec"), {}))
+
+
+def hooked(source: str, _file: Path) -> float:
+    """Time a program that calls a hook which does nothing."""
+    return seconds(prepared(compiled(source, inline=False), {"__tarl__": lambda _number, value: value}))
+
+
+def recorded(source: str) -> tuple[float, int]:
+    """Time a program as the plugin runs it, and count its events."""
+    recorder, space = Recorder(), dict[str, Any]()
+    recorder.bind(space)
+    spent = seconds(prepared(compiled(source, inline=True), space))
+    return spent, len(recorder.finish().site)
+
+
+def traced(source: str, file: Path) -> float:
+    """Time a program under coverage.py's C tracer, lines only."""
+    coverage = Coverage(data_file=None, config_file=False, include=[str(file)])
+    work = prepared(compile(source, str(file), "exec"), {})
+    coverage.start()
+    try:
+        return seconds(work)
+    finally:
+        coverage.stop()
+
+
+def covered(source: str, file: Path) -> float:
+    """Time a program under slipcover, lines only."""
+    counter = Slipcover(d_miss_threshold=-1, source=[str(file.parent)])
+    space: dict[str, Any] = {}
+    return seconds(prepared(counter.instrument(compile(source, str(file), "exec")), space))
+
+
+def control_step() -> tuple[float, float]:
+    """Return microseconds of a step of a pymunk world with a controller of 20 sites: bare, recorded."""
+    sites = "\n".join(f"    v{i} = {'x' if i % 2 else 'node.kp'} * {i + 0.5}" for i in range(20))
+    source = f"def control(node, x):\n{sites}\n    return v19\n"
+    plain = prepared(compile(source, "<program>", "exec"), {}, "control")
+    step, best = float("inf"), [float("inf")] * 2
     for _ in range(TURNS):
         recorder, space = Recorder(), dict[str, Any]()
         recorder.bind(space)
-        times = seconds(bare), seconds(hooked), seconds(prepared(code, space))
-        best = [min(pair) for pair in zip(best, times, strict=True)]
-        events = len(recorder.finish().site)
-    return Timing(best[0], best[1], best[2], events)
+        watched = prepared(compiled(source, inline=True), space, "control")
+        step = min(step, stepped(plain))
+        best = [min(pair) for pair in zip(best, (called(plain), called(watched)), strict=True)]
+        assert len(recorder.finish().site) >= 20 * STEPS
+    return step, step + best[1] - best[0]
 
 
-def finishing() -> float:
-    """Return million events a second from the buffer to a trace, cells and steps included."""
-    recorder = Recorder()
-    hook = recorder.hook
-    for step in range(1000):
-        recorder.latch((step % 40,))
-        for site in range(200):
-            hook(site, 0.5)
-        recorder.reward(1.0, {"progress": 1.0})
+def called(control: Callable[[Any, float], float]) -> float:
+    """Return microseconds of a call of the controller; beside a step of the world they would drown in its noise."""
+    node = SimpleNamespace(kp=0.4)
     start = time.process_time()
-    trace = recorder.finish()
-    return len(trace.site) / (time.process_time() - start) / 1e6
+    for i in range(STEPS):
+        control(node, i * 0.001)
+    return (time.process_time() - start) / STEPS * 1e6
 
 
-def compiling(lines: int) -> tuple[float, float]:
-    """Return milliseconds to compile a module of so many lines with every statement recorded: cold, cached."""
-    body = textwrap.dedent(MIXED).strip("\n")
-    source = "\n".join([body] * (lines // (body.count("\n") + 1)))
+def stepped(control: Callable[[Any, float], float]) -> float:
+    """Return microseconds per step of a world of discs in a box; the controller is asked in each."""
+    world = pymunk.Space()
+    world.gravity = (0.0, -9.8)
+    world.add(pymunk.Segment(world.static_body, (0, 0), (40, 0), 0.5))
+    for i in range(DISCS):
+        disc = pymunk.Body(1.0, 1.0)
+        disc.position = (1.0 + i % 20 * 1.9, 1.5 + i // 20 * 1.9)
+        world.add(disc, pymunk.Circle(disc, 1.0))
+    node = SimpleNamespace(kp=0.4)
+    start = time.process_time()
+    for i in range(STEPS):
+        control(node, i * 0.001)
+        world.step(0.01)
+    return (time.process_time() - start) / STEPS * 1e6
+
+
+def finishing() -> tuple[float, float]:
+    """Return million events a second from the buffer to a trace, and from the buffer to statistics."""
+    best = [float("inf")] * 2
+    for _ in range(10):
+        recorder = Recorder()
+        for step in range(1000):
+            recorder.latch((step % 40,))
+            for site in range(200):
+                recorder.hook(site % 20, 0.5)
+            recorder.reward(1.0, {"progress": 1.0})
+        start = time.process_time()
+        trace = recorder.finish()
+        between = time.process_time()
+        sample(trace, 1, True, [tuple(range(20))])
+        spent = between - start, time.process_time() - start
+        best = [min(pair) for pair in zip(best, spent, strict=True)]
+    return len(trace.site) / best[0] / 1e6, len(trace.site) / best[1] / 1e6
+
+
+def importing(source: str, sites: int) -> tuple[float, float, float]:
+    """Return milliseconds to get the code of a module with so many sites: cold, cached, and Python's own cached."""
+    sys.dont_write_bytecode = False
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "node.py"
         file.write_text(source)
-        tree = ast.parse(source)
-        plan = {file: {(line, column + 1): number for (line, column), number in sites_of(tree).items()}}
+        found = sites_of(ast.parse(source))
+        some = list(found.items())[:: max(1, len(found) // sites)]
+        plan = {file: {(line, column + 1): number for (line, column), number in some}}
         times = []
-        for _ in range(2):
+        for turn in range(10):
+            cache = CodeCache(Path(folder) / "cache" / (str(turn) if turn < 5 else "4"))
             start = time.process_time()
-            NodeCode(plan, {}, (), inline=True, cache=CodeCache(Path(folder) / "cache")).compile(file)
+            NodeCode(plan, {}, (), inline=True, cache=cache).compile(file)
             times.append((time.process_time() - start) * 1e3)
-    return times[0], times[1]
+        own = []
+        for _ in range(6):
+            start = time.process_time()
+            SourceFileLoader("node", str(file)).get_code("node")
+            own.append((time.process_time() - start) * 1e3)
+    return min(times[:5]), min(times[5:]), min(own[1:])
+
+
+def starting() -> tuple[float, float]:
+    """Return milliseconds of a pytest run of one empty test: plugin off, plugin on and without any flag."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "test_it.py").write_text("def test_it(): pass\n")
+        environment = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "PYTHONDONTWRITEBYTECODE": ""}
+        best = [float("inf")] * 2
+        for _ in range(RUNS):
+            for i, flags in enumerate(((), ("-p", "pytest_tarl.plugin"))):
+                before = resource.getrusage(resource.RUSAGE_CHILDREN)
+                command = [
+                    sys.executable,
+                    "-m",
+                    "pytest",
+                    "-q",
+                    "-p",
+                    "no:cacheprovider",
+                    *flags,
+                    "test_it.py",
+                ]
+                subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
+                after = resource.getrusage(resource.RUSAGE_CHILDREN)
+                spent = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+                best[i] = min(best[i], spent * 1e3)
+    return best[0], best[1]
 
 
 def main() -> None:
-    """Print the table."""
-    print(f"{'ns per event over the bare program':42}{'empty hook':>12}{'recorded':>12}{'events':>12}")
-    for name, source in (("straight-line numeric code", STRAIGHT), ("mixed code", MIXED)):
-        timing = measured(source)
-        hook, recorded = timing.per_event(timing.hook), timing.per_event(timing.recorded)
-        print(f"{name:42}{hook:12.1f}{recorded:12.1f}{timing.events:12,}")
-    print(f"\nbuffer → trace: {finishing():.1f} million events/s")
-    cold, cached = compiling(1000)
-    print(f"module of 1,000 lines, every statement recorded: {cold:.1f} ms cold, {cached:.1f} ms cached")
+    """Print the tables."""
+    names = ("recorded", "an empty hook", "coverage.py", "slipcover")
+    print(f"| ns per event over the bare program | {' | '.join(names)} | goal | events |")
+    print("|---|---|---|---|---|---|---|")
+    for what, source, goal in (("straight-line numeric", STRAIGHT, 20), ("mixed", MIXED, 45)):
+        best, events = measured(source)
+        cells = " | ".join(f"{(best[name] - best['bare']) / events * 1e9:.1f}" for name in names)
+        print(f"| {what} | {cells} | ≤ {goal} | {events:,} |")
+    print("\n| what | measured | goal |\n|---|---|---|")
+    bare_step, recorded_step = control_step()
+    over = recorded_step / bare_step - 1
+    print(f"| 20 sites in a step of a pymunk world of {bare_step:.0f} µs | {over:+.2%} | ≤ 1 % |")
+    body = textwrap.dedent(MIXED).strip("\n")
+    for lines, sites in ((200, 20), (1000, 20), (1000, 1000)):
+        cold, cached, own = importing("\n".join([body] * (lines // (body.count("\n") + 1))), sites)
+        what = "every statement" if sites == lines else f"{sites} sites"
+        print(
+            f"| code of a module of {lines:,} lines, {what}: cached ({cold:.1f} ms cold) | {cached:.2f} ms "
+            f"(Python's own cache {own:.2f}) | ≤ 2 ms |"
+        )
+    off, on = starting()
+    print(f"| pytest without flags, plugin on over plugin off ({off:.0f} ms) | {on - off:+.1f} ms | ≤ 5 ms |")
+    to_trace, to_statistics = finishing()
+    print(f"| buffer → trace | {to_trace:.1f} million events/s | |")
+    print(f"| buffer → statistics | {to_statistics:.1f} million events/s | ≥ 10 |")
+    print("\nThe cost of an episode by itself: python benchmarks/episodes.py")
 
 
 if __name__ == "__main__":

@@ -27,6 +27,7 @@ from itertools import islice
 from operator import attrgetter
 from types import GetSetDescriptorType, MemberDescriptorType
 from typing import Any
+from weakref import ref
 
 LIMIT = 1e100
 SAMPLE = 512
@@ -113,13 +114,14 @@ def _kind(kind: type) -> tuple[Number | None, Parts | None]:
     if known is None:
         if len(_KINDS) >= _KINDS_KEPT:
             _KINDS.clear()
-        number = _number(kind)
-        known = _KINDS[id(kind)] = kind, number, None if number is not None else _parts(kind)
+        number, key = _number(kind), id(kind)
+        gone = ref(kind, lambda _: _KINDS.pop(key, None))
+        known = _KINDS[key] = gone, number, None if number is not None else _parts(kind)
     return known[1], known[2]
 
 
-# By identity, since the hash of a class may be code of the program; the class is kept with its entry.
-_KINDS: dict[int, tuple[type, Number | None, Parts | None]] = {}
+# By identity, since the hash of a class may be code of the program. An entry goes with its class, which is not kept.
+_KINDS: dict[int, tuple[ref[type], Number | None, Parts | None]] = {}
 _KINDS_KEPT = 1024
 
 
@@ -179,11 +181,10 @@ def _parts(kind: type) -> Parts | None:
     names = _fields(kind)
     if not names:
         return None
-    slots = [_slot(kind, name) for name in names]
-    known = [slot.__name__ for slot in slots if slot is not None]
+    known = [slot.__name__ for name in names if (slot := _slot(kind, name)) is not None]
     if len(known) == len(names) > 1 and _attribute(kind, "__getattribute__") is object.__getattribute__:
         return attrgetter(*known)
-    return lambda message: [_stored(message, slot, name) for slot, name in zip(slots, names, strict=True)]
+    return lambda message: [_stored(message, name) for name in names]
 
 
 def _fields(kind: type) -> tuple[str, ...]:
@@ -208,9 +209,10 @@ def _slot(kind: type, name: str) -> MemberDescriptorType | None:
     return next((slot for slot in found if isinstance(slot, MemberDescriptorType)), None)
 
 
-def _stored(message: object, slot: MemberDescriptorType | None, name: str) -> object:
+def _stored(message: object, name: str) -> object:
     """Read a field without running a property."""
     kind = type(message)
+    slot = _slot(kind, name)  # found anew, since it would keep the class
     if slot is not None:
         return slot.__get__(message, kind)
     state = _attribute(kind, "__dict__")

@@ -1,6 +1,8 @@
 from __future__ import annotations
 
+import gc
 import math
+import weakref
 from array import array
 from collections import OrderedDict, deque
 from dataclasses import dataclass
@@ -204,6 +206,16 @@ def test_objects_that_refuse_are_left_alone():
 def test_methods_of_subclasses_do_not_run():
     assert magnitude(Numbers([3.0, 4.0])) == 5.0
     assert magnitude(Count(7)) == 7.0
+
+
+@pytest.mark.parametrize("slots", [("x", "y"), ("x",), ()])
+def test_classes_are_not_kept_alive(slots):
+    kind = type("Message", (), {"__slots__": (*slots, "__weakref__"), "x" if "x" not in slots else "z": 1.0})
+    magnitude(kind())
+    gone = weakref.ref(kind)
+    del kind
+    gc.collect()
+    assert gone() is None
 
 
 def test_a_mock_sees_nothing():
