@@ -167,7 +167,24 @@ def lost_sites(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
             f"the node was edited since the recording: the slices of {', '.join(named)}{more} are lost; verdict and "
             "region stand. Record again with --tarl-record once the change is meant to stay."
         ),
+        *_moved(fixture, plan),
     )
+
+
+def _moved(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
+    """Tell which recorded sites stand on another line: they keep their slices."""
+    now = {place.id: place for place in plan.places}
+    moved = {
+        f"`{site.code}` from line {site.line} to {now[site.id].line}": None
+        for one in fixture.lists
+        for site in one.sites
+        if site.id in now and now[site.id].line != site.line
+    }
+    if not moved:
+        return ()
+    named = ", ".join(list(moved)[:MOST_NAMED])
+    more = f" and {len(moved) - MOST_NAMED} more" if len(moved) > MOST_NAMED else ""
+    return (f"beside that, {named}{more} moved and keep their slices.",)
 
 
 def failing(offline: Sample, online: Sample, verdict: Verdict, options: Options) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from pytest_tarl.errors import TarlError
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command; return 0, 1 where `diff --fail-if-worse` found a loss, 2 for what cannot be done."""
+    """Run a command; return 0, 1 where `diff` found what it was told to fail on, 2 for what cannot be done."""
     arguments = _parser().parse_args(argv)
     try:
         return int(arguments.run(arguments))
@@ -40,6 +40,21 @@ def _parser() -> argparse.ArgumentParser:
         "--fail-if-worse",
         action="store_true",
         help="exit with 1 when the second one earns significantly less",
+    )
+    diff.add_argument(
+        "--max-loss",
+        metavar="R",
+        type=float,
+        default=0.0,
+        help="with --fail-if-worse: a loss of reward per episode that nobody minds (default 0)",
+    )
+    diff.add_argument(
+        "--alpha", metavar="P", type=float, help="with --fail-if-worse: rate of false alarms (default 0.05)"
+    )
+    diff.add_argument(
+        "--fail-if-changed",
+        action="store_true",
+        help="exit with 1 when a recorded statement was edited or the sensors are others",
     )
     diff.set_defaults(run=_diff)
     _add_observe(commands)
@@ -109,4 +124,6 @@ def _diff(arguments: argparse.Namespace) -> int:
     first, second = load(arguments.first), load(arguments.second)
     found = diff.compared(first, second)
     print("\n".join(diff.lines(first, second, found)))
-    return int(arguments.fail_if_worse and found.worse)
+    alpha = diff.SIGNIFICANT if arguments.alpha is None else arguments.alpha
+    worse = arguments.fail_if_worse and found.worse(alpha, arguments.max_loss)
+    return int(worse or (arguments.fail_if_changed and found.changed))

@@ -32,10 +32,14 @@ class FixtureDiff:
     cells: tuple[int, int, int]  # only in A, in both, only in B
     same_sensors: bool
 
+    def worse(self, alpha: float, most: float = 0.0) -> bool:
+        """Tell whether B earns significantly less, and less by more than `most` per episode."""
+        return self.loss > most and self.p_loss < alpha
+
     @property
-    def worse(self) -> bool:
-        """Tell whether B earns significantly less."""
-        return self.loss > 0 and self.p_loss < SIGNIFICANT
+    def changed(self) -> bool:
+        """Tell whether a site was edited, added or taken away, or the sensors are others."""
+        return bool(self.gone or self.new) or not self.same_sensors
 
 
 SIGNIFICANT = 0.05
@@ -74,16 +78,21 @@ def lines(first: Fixture, second: Fixture, found: FixtureDiff) -> Iterator[str]:
     else:
         yield "  cells      not comparable: the sensors differ"
     for place in found.gone:
-        yield f"  gone       {place.path}:{place.line}  {_code(place)}"
+        yield f"  gone       `{_code(place)}` of {place.path}:{place.line}: its slice is lost, verdict and region stay"
     for place in found.new:
-        yield f"  new        {place.path}:{place.line}  {_code(place)}"
+        yield f"  new        `{_code(place)}` at {place.path}:{place.line}: it has no slice in the first"
     for moved in found.moved:
-        yield f"  moved      {_code(moved.before)}  from {moved.before.path}:{moved.before.line} to {_place(moved)}"
+        yield f"  moved      `{_code(moved.before)}` from {_before(moved)} to {_place(moved)}: its slice stays"
 
 
 def _place(moved: Moved) -> str:
     same_file = moved.before.path == moved.after.path
-    return f"line {moved.after.line}" if same_file else f"{moved.after.path}:{moved.after.line}"
+    return str(moved.after.line) if same_file else f"{moved.after.path}:{moved.after.line}"
+
+
+def _before(moved: Moved) -> str:
+    same_file = moved.before.path == moved.after.path
+    return f"line {moved.before.line}" if same_file else f"{moved.before.path}:{moved.before.line}"
 
 
 def _code(place: SitePlace) -> str:

@@ -42,19 +42,28 @@ def test_a_significant_loss_fails_when_asked_for(tmp_path: Path, capsys: pytest.
     paths = [saved(good, tmp_path / "a.npz"), saved(bad, tmp_path / "b.npz")]
     assert main(["diff", *paths]) == 0
     assert main(["diff", *paths, "--fail-if-worse"]) == 1
+    assert main(["diff", *paths, "--fail-if-worse", "--max-loss=60"]) == 0
+    assert main(["diff", *paths, "--fail-if-worse", "--alpha=0.0001"]) == 0
     assert main(["diff", *reversed(paths), "--fail-if-worse"]) == 0
     assert "reward" in capsys.readouterr().out
 
 
 def test_moved_gone_and_new_lines_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = example()
-    moved, gone, *rest = before.lists[0].sites
-    sites = (replace(moved, line=moved.line + 40), replace(gone, id="another", code="y = 1", line=77), *rest)
+    moved, kept, gone = before.lists[0].sites
+    sites = (replace(moved, line=moved.line + 40), kept, replace(gone, id="another", code="y = 1", line=77))
     after = replace(before, lists=(replace(before.lists[0], sites=sites), *before.lists[1:]))
     main(["diff", saved(before, tmp_path / "a.npz"), saved(after, tmp_path / "b.npz")])
     told = capsys.readouterr().out
-    assert f"moved      {moved.code}  from node.py:{moved.line} to line {moved.line + 40}" in told
-    assert "new        node.py:77  y = 1" in told
+    assert f"`{moved.code}` from line {moved.line} to {moved.line + 40}: its slice stays" in told
+    assert (
+        f"gone       `{gone.code}` of node.py:{gone.line}: its slice is lost, verdict and region stay" in told
+    )
+    assert "new        `y = 1` at node.py:77" in told
+    paths = [str(tmp_path / "a.npz"), str(tmp_path / "b.npz")]
+    assert main(["diff", *paths, "--fail-if-worse"]) == 0
+    assert main(["diff", *paths, "--fail-if-changed"]) == 1
+    assert main(["diff", paths[0], paths[0], "--fail-if-changed"]) == 0
 
 
 def test_what_cannot_be_read_is_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
