@@ -8,12 +8,14 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
 from pytest_tarl.errors import RecordingError
+from pytest_tarl.ros import services
 from pytest_tarl.ros.messages.snapshot import snapshot, stamp_if_unset, type_name
 from pytest_tarl.ros.messages.values import FieldError
 from pytest_tarl.ros.names import absolute
 from pytest_tarl.ros.scheduler import Scheduler, running_task
 
 if TYPE_CHECKING:
+    from pytest_tarl.ros.episode import Ros
     from pytest_tarl.ros.process import Process
 
 Listener = Callable[[Any], None]
@@ -51,7 +53,8 @@ class Topic:
 class Bus:
     """What the world publishes and hears. One per episode."""
 
-    def __init__(self, scheduler: Scheduler, run: Callable[..., None]) -> None:
+    def __init__(self, ros: Ros, scheduler: Scheduler, run: Callable[..., None]) -> None:
+        self._ros = ros
         self._scheduler = scheduler
         self._run = run
         self._topics: dict[str, Topic] = {}
@@ -90,6 +93,30 @@ class Bus:
     def observe(self, observer: Callable[[str, Any], None]) -> None:
         """Have `observer` called with topic and message before any subscriber gets it."""
         self._observers.append(observer)
+
+    def serve(self, service: str, service_type: Any, handler: Callable[[Any], Any]) -> None:
+        """Have the world answer a service: `handler(request)` returns the response."""
+        services.serve(self._ros, service, service_type, handler)
+
+    def call(self, service: str, request: Any) -> services.Reply:
+        """Call a node's service from the world: the reply is `done` once the node has answered.
+
+        A node that waits answers before this returns, one that is busy during a later `step`. Raises
+        RecordingError when nobody serves it.
+        """
+        reply: list[services.Reply | None] = []
+        if running_task() is not None:
+            reply.append(services.call(self._ros, service, request))
+        else:
+            self._run(lambda: reply.append(services.call(self._ros, service, request)))
+        if reply[0] is None:
+            served = (
+                ", ".join(name for name, _ in self._ros.part(services.ServiceDirectory).names()) or "none"
+            )
+            raise RecordingError(
+                f"No node serves {absolute(service)} now; services that are there: {served}."
+            )
+        return reply[0]
 
     def topic(self, name: str) -> Topic:
         """Return the topic of that name, made at first use."""

@@ -120,8 +120,14 @@ def build(definition: Definition, module: str) -> type[Message]:
         scope[f"slow{position}"] = _converter(field)
         lines.append(_copy_lines(field, position, scope))
     inits = [f"    self.{f.name} = default{i}()" for i, f in enumerate(definition.fields)] or ["    pass"]
+    alone = definition.fields[0].name if len(definition.fields) == 1 else ""
     source = [
         "def __init__(self, *args, **kwds):",
+        *(
+            [f"    if args and not kwds and args[0] is not None: self.{alone}, = args; return"]
+            if alone
+            else []
+        ),
         "    if args or kwds:",
         "        return base_init(self, *args, **kwds)",
         *inits,
@@ -204,10 +210,23 @@ def _converter(field: Field) -> Callable[[Any, str], Any]:
             else bytes(values.as_numbers(value, "uint8", size, name))
         )
     if field.base in values.CODES:
-        base = field.base
-        return lambda value, name: tuple(values.as_numbers(value, base, size, name))
+        return _packed_converter(field.base, size)
     convert = _element_converter(field)
     return lambda value, name: values.as_list(value, size, name, convert)
+
+
+def _packed_converter(base: str, size: int) -> Callable[[Any, str], Any]:
+    last: Any = ()  # what was made last; a tuple of numbers cannot have changed since
+
+    def convert(value: Any, name: str) -> Any:
+        nonlocal last
+        if value is not last or size:
+            if value is last and len(value) == size:
+                return value
+            last = tuple(values.as_numbers(value, base, size, name))
+        return last
+
+    return convert
 
 
 def _element_converter(field: Field) -> Callable[[Any, str], Any]:

@@ -8,19 +8,17 @@ Sequences of numbers are `array.array`, arrays of numbers are numpy arrays, as i
 
 from __future__ import annotations
 
+import keyword
 import operator
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache
 from typing import Any, ClassVar
 
-from pytest_tarl.ros.messages import values
 from pytest_tarl.ros.messages.definitions import Definition, Field, find_message, find_service
-from pytest_tarl.ros.messages.values import CODES, INTEGERS, FieldError
-
-_FLOAT32_LIMIT = (
-    3.402823466e38  # as rosidl rounds it, so that the largest float32 of all is refused there too
-)
+from pytest_tarl.ros.messages.ros2_copy import copy_function
+from pytest_tarl.ros.messages.ros2_fields import LITERALS, default, setter
+from pytest_tarl.ros.messages.values import FieldError
 
 
 class Message:
@@ -104,40 +102,54 @@ def service_class(package: str, name: str) -> type | None:
 def build(definition: Definition, module: str) -> type[Message]:
     """Build the class of a definition."""
     fields = [field for field in definition.fields if field.name != "structure_needs_at_least_one_member"]
-    scope: dict[str, Any] = {"new": object.__new__}
+    scope: dict[str, Any] = {"new": object.__new__, "fill": _fill, "UNSET": _UNSET}
     for position, field in enumerate(fields):
-        scope[f"default{position}"] = _default(field)
-        scope[f"copy{position}"] = _copier(field)
-    inits = [f"    self._{field.name} = default{position}()" for position, field in enumerate(fields)]
-    copies = [_copy_line(field, position) for position, field in enumerate(fields)]
-    source = [
-        "def __init__(self, **kwargs):",
-        *(inits or ["    pass"]),
-        "    if kwargs: fill(self, kwargs)",
-        "def copy(m):",
-        "    n = new(cls)",
-        *copies,
-        "    return n",
-    ]
-    scope["fill"] = _fill
+        scope[f"default{position}"] = default(field, _nested)
+    source = [*_init_lines(fields), *copy_function(fields, _nested, scope)]
+    setters = {f.name: setter(f, position, _nested, scope, source) for position, f in enumerate(fields)}
     exec(compile("\n".join(source), f"<message {definition.package}/{definition.name}>", "exec"), scope)  # noqa: S102
     namespace: dict[str, Any] = {
         "__slots__": ["_" + field.name for field in fields],
         "__module__": module,
         "__doc__": f"ROS 2 type {definition.package}/{definition.name}.",
         "__init__": scope["__init__"],
+        "SLOT_TYPES": tuple(_idl_text(field) for field in fields),
         "_tarl_fields": tuple(fields),
         "_fields_and_field_types": {field.name: _idl_text(field) for field in fields},
         "_tarl_copy": staticmethod(scope["copy"]),
         **{constant.name: constant.value for constant in definition.constants},
-        **{field.name: property(operator.attrgetter("_" + field.name), _setter(field)) for field in fields},
+        **{
+            name: property(operator.attrgetter("_" + name), scope[function])
+            for name, function in setters.items()
+        },
     }
     scope["cls"] = built = type(definition.name, (Message,), namespace)
     return built
 
 
+_UNSET = object()
+
+
+def _init_lines(fields: list[Field]) -> list[str]:
+    """Write the constructor: a keyword for each field, its default where it is not given."""
+    if any(keyword.iskeyword(field.name) or field.name in ("self", "unknown") for field in fields):
+        defaults = [f"    self._{field.name} = default{position}()" for position, field in enumerate(fields)]
+        return ["def __init__(self, **unknown):", *defaults, "    fill(self, unknown)"]
+    given = "".join(f"{field.name}=UNSET, " for field in fields)
+    lines = [
+        f"def __init__(self, {'*, ' if fields else ''}{given}**unknown):",
+        "    if unknown: fill(self, unknown)",
+    ]
+    for position, field in enumerate(fields):
+        plain = LITERALS.get(field.base) if field.shape == "one" and field.default is None else None
+        lines.append(f"    if {field.name} is UNSET: self._{field.name} = {plain or f'default{position}()'}")
+        lines.append(f"    else: self.{field.name} = {field.name}")
+    return lines
+
+
 def _fill(message: Message, given: dict[str, Any]) -> None:
     names = [field.name for field in message._tarl_fields]
+    given.pop("check_fields", None)  # newer rosidl's switch; here fields are always checked
     assert all(key in names for key in given), "Invalid arguments passed to constructor: " + ", ".join(
         sorted(key for key in given if key not in names)
     )
@@ -157,152 +169,3 @@ def _nested(base: str) -> type[Message]:
     if built is None:
         raise FieldError(f"message type {base} is not known")
     return built
-
-
-# --- what a new message holds
-
-
-def _default(field: Field) -> Callable[[], Any]:
-    if field.default is not None:
-        return lambda: field.default
-    element = _element_default(field)
-    if field.shape == "one":
-        return element
-    if field.base in CODES and field.base != "byte":
-        if field.shape == "sequence":
-            return lambda: array(CODES[field.base])
-        return lambda: _numpy_array([0] * field.size, field.base)
-    return (lambda: [element() for _ in range(field.size)]) if field.shape == "array" else list
-
-
-def _element_default(field: Field) -> Callable[[], Any]:
-    if not field.primitive:
-        return _nested(field.base)
-    if field.base == "byte":
-        return lambda: bytes([0])
-    zeros: dict[str, Callable[[], Any]] = {
-        "bool": bool,
-        "string": str,
-        "wstring": str,
-        "float32": float,
-        "float64": float,
-    }
-    return zeros.get(field.base, int)
-
-
-def _numpy_array(numbers: Any, base: str) -> Any:
-    import numpy as np  # only messages with fixed arrays of numbers need it
-
-    return np.array(numbers, dtype=base)
-
-
-# --- what assignment accepts
-
-
-def _setter(field: Field) -> Callable[[Any, Any], None]:
-    slot, check = "_" + field.name, _check(field)
-    if field.shape == "one":
-
-        def set_one(message: Any, value: Any) -> None:
-            check(value)
-            object.__setattr__(message, slot, value)
-
-        return set_one
-
-    def set_many(message: Any, value: Any) -> None:
-        object.__setattr__(message, slot, _accepted(field, check, value))
-
-    return set_many
-
-
-def _accepted(field: Field, check: Callable[[Any], None], value: Any) -> Any:
-    """Check an assigned sequence and bring it into the form in which rosidl stores it."""
-    packed = field.base in CODES and field.base != "byte"
-    if packed and field.shape == "array" and hasattr(value, "dtype"):
-        assert value.dtype.name == field.base, (
-            f"The '{field.name}' numpy.ndarray() must have the dtype of '{field.base}'"
-        )
-        assert value.size == field.size, (
-            f"The '{field.name}' numpy.ndarray() must have a size of {field.size}"
-        )
-        return value
-    if packed and isinstance(value, array):
-        assert value.typecode == CODES[field.base], (
-            f"The '{field.name}' array.array() must have the type code of '{CODES[field.base]}'"
-        )
-        return value if field.shape == "sequence" else _numpy_array(_sized(field, value), field.base)
-    assert isinstance(value, Sequence | set) and not isinstance(value, str), (  # noqa: PT018
-        f"The '{field.name}' field must be a sequence of {field.base}, not {type(value).__name__}"
-    )
-    for element in value:
-        check(element)
-    _sized(field, value)
-    if not packed:
-        return value
-    return (
-        array(CODES[field.base], value)
-        if field.shape == "sequence"
-        else _numpy_array(list(value), field.base)
-    )
-
-
-def _sized(field: Field, value: Any) -> Any:
-    assert field.shape == "sequence" or len(value) == field.size, (
-        f"The '{field.name}' field must have {field.size} elements"
-    )
-    return value
-
-
-def _check(field: Field) -> Callable[[Any], None]:
-    """Return the assertion for one element."""
-    if not field.primitive:
-        wanted: type = _nested(field.base)
-        said = f"a sub message of type '{field.base.rpartition('/')[2]}'"
-    else:
-        wanted = {
-            "bool": bool,
-            "string": str,
-            "wstring": str,
-            "float32": float,
-            "float64": float,
-            "byte": bytes,
-        }.get(field.base, int)
-        said = f"of type '{wanted.__name__}'"
-    message = f"The '{field.name}' field must be {said}"
-    low, high = INTEGERS.get(field.base, (0, 0))
-
-    def check(value: Any) -> None:
-        assert isinstance(value, wanted), message
-
-    def check_integer(value: Any) -> None:
-        assert isinstance(value, int), message
-        assert low <= value <= high, f"The '{field.name}' field must be an integer in [{low}, {high}]"
-
-    def check_float32(value: Any) -> None:
-        assert isinstance(value, float), message
-        assert not _FLOAT32_LIMIT < abs(value) < float("inf"), f"The '{field.name}' field must be a float32"
-
-    return check_float32 if field.base == "float32" else check_integer if wanted is int else check
-
-
-# --- what arrives
-
-
-def _copy_line(field: Field, position: int) -> str:
-    slot = f"_{field.name}"
-    if field.shape == "one" and field.primitive and field.base != "float32":
-        return f"    n.{slot} = m.{slot}"
-    return f"    n.{slot} = copy{position}(m.{slot})"
-
-
-def _copier(field: Field) -> Callable[[Any], Any]:
-    if not field.primitive:
-        element = _nested(field.base)._tarl_copy
-        return element if field.shape == "one" else lambda value: [element(item) for item in value]
-    if field.shape == "one":  # only float32 changes on the wire
-        return lambda value: values.as_float32(value, field.name)
-    if field.base in CODES and field.base != "byte":
-        return (
-            operator.itemgetter(slice(None)) if field.shape == "sequence" else operator.methodcaller("copy")
-        )
-    return list

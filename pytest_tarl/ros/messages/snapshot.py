@@ -11,6 +11,7 @@ from pytest_tarl.ros.clock import NANOSECONDS
 from pytest_tarl.ros.messages.values import FieldError
 
 _COPIERS: dict[type, Callable[[Any], Any]] = {}  # by message class; filled at first use, never changed
+_STAMPED: dict[type, bool] = {}  # whether messages of a class have a header with a stamp; likewise
 
 
 def snapshot(message: Any, wanted: type | None = None) -> Any:
@@ -78,11 +79,16 @@ def is_message(value: Any) -> bool:
 
 def stamp_if_unset(message: Any, now: int) -> None:
     """Give the header of `message` the present time (ns) unless it has a stamp."""
-    stamp: Any = getattr(getattr(message, "header", None), "stamp", None)
+    own = type(message)
+    if own not in _STAMPED:
+        _STAMPED[own] = hasattr(getattr(message, "header", None), "stamp")
+    if not _STAMPED[own]:
+        return
+    stamp: Any = message.header.stamp
     if hasattr(stamp, "nsecs"):
         if not (stamp.secs or stamp.nsecs):
             stamp.secs, stamp.nsecs = divmod(now, NANOSECONDS)
-    elif hasattr(stamp, "nanosec") and not (stamp.sec or stamp.nanosec):
+    elif not (stamp.sec or stamp.nanosec):
         stamp.sec, stamp.nanosec = divmod(now, NANOSECONDS)
 
 

@@ -8,30 +8,65 @@ from typing import Any
 
 
 class CallbackGroup:
-    """Decides whether one more of its callbacks may start."""
+    """Decides whether one more of its callbacks may start. Nodes derive groups of their own from it."""
 
     def __init__(self) -> None:
-        self.running = 0
+        self.entities: set[Any] = set()
 
     def add_entity(self, entity: Any) -> None:
-        """Do nothing: entities name their group."""
+        """Take an entity in."""
+        self.entities.add(entity)
 
     def has_entity(self, entity: Any) -> bool:
-        """Tell whether an entity names this group."""
-        return getattr(entity, "callback_group", None) is self
+        """Tell whether an entity belongs to this group."""
+        return entity in self.entities
 
     def can_execute(self, entity: Any) -> bool:
-        """Tell whether a callback may start now."""
-        return True
+        """Tell whether a callback could start now."""
+        raise NotImplementedError
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Let a callback start, or refuse."""
+        raise NotImplementedError
+
+    def ending_execution(self, entity: Any) -> None:
+        """Take note that a callback has ended."""
+        raise NotImplementedError
 
 
 class ReentrantCallbackGroup(CallbackGroup):
     """Any number of callbacks at once."""
 
+    def can_execute(self, entity: Any) -> bool:
+        """Tell that it can."""
+        return True
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Let it."""
+        return True
+
+    def ending_execution(self, entity: Any) -> None:
+        """Do nothing."""
+
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
-    """One callback at a time."""
+    """One callback at a time; a coroutine counts until it has returned."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._active: Any = None
 
     def can_execute(self, entity: Any) -> bool:
         """Tell whether none is running."""
-        return self.running == 0
+        return self._active is None
+
+    def beginning_execution(self, entity: Any) -> bool:
+        """Let it start if none is running."""
+        if self._active is not None:
+            return False
+        self._active = entity
+        return True
+
+    def ending_execution(self, entity: Any) -> None:
+        """Make room for the next."""
+        self._active = None

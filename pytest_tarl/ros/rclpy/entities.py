@@ -8,6 +8,7 @@ from typing import Any
 from pytest_tarl.ros.rclpy.services import Client, Service
 from pytest_tarl.ros.rclpy.timer import Rate, Timer
 from pytest_tarl.ros.rclpy.topics import Publisher, Subscription
+from pytest_tarl.ros.rclpy.waitable import GuardCondition, Mailbox
 
 
 class NodeEntities:
@@ -19,10 +20,11 @@ class NodeEntities:
         self.timers_: list[Timer] = []
         self.clients_: list[Client] = []
         self.services_: list[Service] = []
-
-    def entities(self) -> tuple[Any, ...]:
-        """List what an executor can run, in rclpy's order."""
-        return (*self.timers_, *self.subscriptions_, *self.clients_, *self.services_)
+        self.guards_: list[GuardCondition] = []
+        self.waitables_: list[Mailbox] = []
+        self.entities: tuple[list[Any], ...] = (  # what an executor can run, in rclpy's order
+            self.timers_, self.subscriptions_, self.guards_, self.clients_, self.services_, self.waitables_,
+        )  # fmt: skip
 
     @property
     def publishers(self) -> Iterator[Any]:
@@ -49,6 +51,16 @@ class NodeEntities:
         """The node's services."""
         return iter(self.services_)
 
+    @property
+    def guards(self) -> Iterator[Any]:
+        """The node's guard conditions."""
+        return iter(self.guards_)
+
+    @property
+    def waitables(self) -> Iterator[Any]:
+        """What actions wait for."""
+        return iter(self.waitables_)
+
     def destroy_publisher(self, publisher: Publisher) -> bool:
         """Destroy a publisher."""
         return _destroy(publisher, self.publishers_)
@@ -69,6 +81,10 @@ class NodeEntities:
         """Destroy a service."""
         return _destroy(service, self.services_)
 
+    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
+        """Destroy a guard condition."""
+        return _destroy(guard, self.guards_)
+
     def destroy_rate(self, rate: Rate) -> bool:
         """Destroy a rate."""
         rate.destroy()
@@ -76,15 +92,12 @@ class NodeEntities:
 
     def destroy_all(self) -> None:
         """Destroy everything."""
-        lists: tuple[list[Any], ...] = (
-            self.publishers_, self.subscriptions_, self.timers_, self.clients_, self.services_,
-        )  # fmt: skip
-        for entities in lists:
+        for entities in (self.publishers_, *self.entities):
             for entity in tuple(entities):
                 _destroy(entity, entities)
 
 
-def _destroy(entity: Any, entities: list[Any]) -> bool:
+def _destroy(entity: Any, entities: Any) -> bool:
     if entity not in entities:
         return False
     entities.remove(entity)

@@ -20,12 +20,42 @@ class RCLError(RuntimeError):
     tarl_shutdown = False
 
 
-class InvalidNodeNameException(Exception):  # noqa: N818
-    """A node name has characters that it may not have."""
+class NameValidationException(Exception):  # noqa: N818
+    """A name has characters that it may not have."""
+
+    def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        pointer = " " * invalid_index + "^"
+        super().__init__(f"Invalid {name_type}: {error_msg}:\n  {name!r}\n   {pointer}")
+        self.name_type, self.name = name_type, name
+        self.error_msg, self.invalid_index = error_msg, invalid_index
 
 
-class InvalidTopicNameException(Exception):  # noqa: N818
-    """A topic name has characters that it may not have."""
+class InvalidNamespaceException(NameValidationException):
+    """A namespace is not valid."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__("namespace", name, error_msg, invalid_index)
+
+
+class InvalidNodeNameException(NameValidationException):
+    """A node name is not valid."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__("node name", name, error_msg, invalid_index)
+
+
+class InvalidTopicNameException(NameValidationException):
+    """A topic name is not valid."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__("topic name", name, error_msg, invalid_index)
+
+
+class InvalidServiceNameException(NameValidationException):
+    """A service name is not valid."""
+
+    def __init__(self, name: str, error_msg: str, invalid_index: int = 0) -> None:
+        super().__init__("service name", name, error_msg, invalid_index)
 
 
 class InvalidHandle(Exception):  # noqa: N818
@@ -85,6 +115,13 @@ class InvalidParameterValueException(ParameterException):
 
     def __init__(self, parameter: Any, value: Any, reason: str, *args: Any) -> None:
         super().__init__(f"Invalid parameter value ({value}) for parameter. Reason: {reason}", parameter)
+
+
+class ParameterImmutableException(ParameterException):
+    """A read-only parameter is to be changed or forgotten."""
+
+    def __init__(self, parameter_name: str, *args: Any) -> None:
+        super().__init__("Attempted to modify read-only parameter", parameter_name, *args)
 
 
 class ROSInterruptException(Exception):  # noqa: N818

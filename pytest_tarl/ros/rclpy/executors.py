@@ -60,15 +60,19 @@ class Executor:
         self._tasks: list[Task] = []
         self._batch: deque[Entity] = deque()
         self._waiting: list[RunningTask] = []
+        self._stirred = True  # whether anything may have become ready since the last look, timers aside
         self._is_shutdown = False
+        self._active, self._limit = 0, 1  # callbacks that run beside each other
         self.context.on_wake(self.wake)
 
     def add_node(self, node: Node) -> bool:
         """Take a node over; tell whether it is new here."""
         if node in self._nodes:
             return False
+        if node.executor is not None:
+            node.executor.remove_node(node)
         self._nodes.append(node)
-        node.executor = self
+        node.take_executor(self)
         self.wake()
         return True
 
@@ -76,7 +80,7 @@ class Executor:
         """Let a node go."""
         if node in self._nodes:
             self._nodes.remove(node)
-            node.executor = None
+            node.take_executor(None)
 
     def get_nodes(self) -> list[Node]:
         """List the nodes."""
@@ -89,8 +93,13 @@ class Executor:
         self.wake()
         return task
 
+    def create_future(self) -> Future:
+        """Make a future whose callbacks this executor runs."""
+        return Future(executor=self)
+
     def wake(self) -> None:
         """Look again for what is ready."""
+        self._stirred = True
         for task in self._waiting:
             self._clock.wake(task)
 
@@ -110,74 +119,89 @@ class Executor:
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Run one callback, waiting up to `timeout_sec` for it (None: as long as it takes)."""
-        work = self._next_work(timeout_sec, None)
+        work = self._next_work(_until(self._clock.time, timeout_sec), None)
         if work is not None:
             self._run(work)
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Run callbacks until a future is done, or the timeout has passed."""
         until = _until(self._clock.time, timeout_sec)
-        future.add_done_callback(lambda _: self.wake())
-        while self.context.ok() and not future.done() and not future.cancelled() and not self._is_shutdown:
+        future.watch(self.wake)
+        while self.context.ok() and not future.done() and not self._is_shutdown:
             if until is not None and self._clock.time >= until:
                 return
             self._spin_towards(future, until)
 
     def spin_once_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Run one callback, unless the future is done before."""
-        future.add_done_callback(lambda _: self.wake())
+        future.watch(self.wake)
         self._spin_towards(future, _until(self._clock.time, timeout_sec))
 
     def _spin_towards(self, future: Future, until: int | None) -> None:
-        remaining = None if until is None else (until - self._clock.time) / 1e9
-        work = self._next_work(remaining, future)
+        work = self._next_work(until, future)
         if work is not None:
             self._run(work)
 
-    def _next_work(self, timeout_sec: float | None, future: Future | None) -> Entity | None:
-        until = _until(self._clock.time, timeout_sec)
+    def _next_work(self, until: int | None, future: Future | None) -> Entity | None:
+        batch, clock = self._batch, self._clock
         while True:
             if self.process.ending:
                 raise ExternalShutdownException
-            if not self.context.ok() or self._is_shutdown or (future is not None and future.done()):
+            if not self.context.initialised or self._is_shutdown or (future is not None and future.done()):
                 return None
-            work = self._pop()
-            if work is not None:
-                return work
-            if until is not None and self._clock.time >= until:
+            looks = (
+                1 if self._active < self._limit else 0
+            )  # one look a round: what a group refused waits for the next
+            while True:
+                if not batch:
+                    if not looks or not self._look():
+                        break
+                    looks = 0
+                entity = batch.popleft()
+                if entity.is_ready() and self._begins(entity):
+                    return entity
+            if until is not None and clock.time >= until:
                 return None
             self._wait(until)
 
-    def _pop(self) -> Entity | None:
-        """Take the next of what was ready at the last look; look again when that is used up."""
-        entity = self._next_in_batch()
-        if entity is None:
-            self._batch.extend(self._ready())
-            entity = self._next_in_batch()
-        return entity
+    def _begins(self, entity: Entity) -> bool:
+        """Ask the entity's group whether its callback may start now."""
+        group = entity.callback_group
+        if group is None or (group.can_execute(entity) and group.beginning_execution(entity)):
+            return True
+        self._stirred = True  # a group decides anew whenever it is asked
+        return False
 
-    def _next_in_batch(self) -> Entity | None:
-        while self._batch:
-            entity = self._batch.popleft()
-            group = entity.callback_group
-            if entity.is_ready() and (group is None or group.can_execute(entity)):
-                return entity
-        return None
+    def _look(self) -> bool:
+        """Look for what is ready: timers, and the rest if it may have changed since the last look; tell if any is."""
+        if self._stirred:
+            self._stirred = False
+            self._batch.extend(self._ready())
+            return bool(self._batch)
+        now = self._clock.time
+        for node in self._nodes:
+            for timer in node.timers_:
+                if timer.due <= now and timer.is_ready():
+                    self._batch.append(timer)
+        return bool(self._batch)
 
     def _ready(self) -> list[Entity]:
-        """List what is ready, in rclpy's order: tasks, then per node timers, subscriptions, clients, services."""
+        """List what is ready in rclpy's order: tasks, then each node's entities, kind by kind."""
+        found: list[Entity] = []
         if self._tasks:
-            self._tasks = [task for task in self._tasks if not task.done() and not task.cancelled()]
-        found: list[Entity] = [task for task in self._tasks if task.is_ready()]
+            self._tasks = [task for task in self._tasks if not task.done()]
+            found += [task for task in self._tasks if task.is_ready()]
         for node in self._nodes:
-            found += [entity for entity in node.entities() if entity.is_ready()]
+            found += [entity for kind in node.entities for entity in kind if entity.is_ready()]
         return found
 
     def _wait(self, until: int | None) -> None:
-        due = [timer.due for node in self._nodes for timer in node.timers_ if not timer.is_canceled()]
-        if until is not None:
-            due.append(until)
-        earliest = min((instant for instant in due if instant > self._clock.time), default=None)
+        earliest, now = until, self._clock.time
+        for node in self._nodes:
+            for timer in node.timers_:
+                due = timer.due
+                if due > now and (earliest is None or due < earliest) and not timer.is_canceled():
+                    earliest = due
         task = current_task()
         self._waiting.append(task)
         try:
@@ -187,15 +211,27 @@ class Executor:
 
     def _run(self, work: Entity) -> None:
         group = work.callback_group
-        if group is not None:
-            group.running += 1
+        outcome = None
         try:
             outcome = work.run()
         finally:
-            if group is not None:
-                group.running -= 1
+            if group is not None and outcome is None:
+                group.ending_execution(work)
+        if outcome is not None:
+            self._go_on(outcome, work)
+
+    def _go_on(self, outcome: Any, work: Entity) -> None:
+        """Drive the coroutine that a callback returned; its group stays occupied until it has returned."""
         if inspect.iscoroutine(outcome):
-            self.create_task(outcome)
+            going_on = self.create_task(outcome)
+            if work.callback_group is not None:
+                going_on.watch(lambda: self._ended(work))
+        elif work.callback_group is not None:
+            work.callback_group.ending_execution(work)
+
+    def _ended(self, work: Entity) -> None:
+        work.callback_group.ending_execution(work)
+        self.wake()
 
     def __enter__(self) -> Executor:
         return self
@@ -218,30 +254,25 @@ class MultiThreadedExecutor(Executor):
     def __init__(self, num_threads: int | None = None, *, context: Any = None) -> None:
         super().__init__(context=context)
         self._limit = num_threads or 64
-        self._active = 0
 
-    def _pop(self) -> Entity | None:
-        return super()._pop() if self._active < self._limit else None
+    def _next_work(self, until: int | None, future: Future | None) -> Entity | None:
+        try:
+            return super()._next_work(until, future)
+        except ExternalShutdownException:  # rclpy's own swallows it, so that spin returns
+            return None
 
     def _run(self, work: Entity) -> None:
         """Start a callback in a task of its own and let it run until it waits."""
-        group = work.callback_group
-        if group is not None:
-            group.running += 1
         self._active += 1
-        self._clock.spawn(self.process, self._run_beside, work, group)
+        self._clock.spawn(self.process, self._run_beside, work)
         self._clock.yield_now()
 
-    def _run_beside(self, work: Entity, group: Any) -> None:
+    def _run_beside(self, work: Entity) -> None:
         try:
-            outcome = work.run()
+            super()._run(work)
         finally:
             self._active -= 1
-            if group is not None:
-                group.running -= 1
             self.wake()
-        if inspect.iscoroutine(outcome):
-            self.create_task(outcome)
 
 
 def _until(now: int, timeout_sec: float | None) -> int | None:

@@ -14,38 +14,28 @@ from pytest_tarl.ros.missing import unsupported
 from pytest_tarl.ros.rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from pytest_tarl.ros.rclpy.context import this_context
 from pytest_tarl.ros.rclpy.entities import NodeEntities
-from pytest_tarl.ros.rclpy.exceptions import InvalidNodeNameException, InvalidTopicNameException
+from pytest_tarl.ros.rclpy.exceptions import (
+    InvalidNodeNameException,
+    InvalidServiceNameException,
+    InvalidTopicNameException,
+)
+from pytest_tarl.ros.rclpy.graph import NodeGraph
 from pytest_tarl.ros.rclpy.logging import RcutilsLogger
+from pytest_tarl.ros.rclpy.parameter_services import offer_parameter_services, parameter_event
 from pytest_tarl.ros.rclpy.parameters import NodeParameters
 from pytest_tarl.ros.rclpy.qos import as_profile
 from pytest_tarl.ros.rclpy.services import Client, Service
 from pytest_tarl.ros.rclpy.time import ROSClock
 from pytest_tarl.ros.rclpy.timer import Rate, Timer
 from pytest_tarl.ros.rclpy.topics import Publisher, Subscription
+from pytest_tarl.ros.rclpy.waitable import GuardCondition, Mailbox
 
 _TOPIC = re.compile(r"[~/]?[A-Za-z_{}][\w{}]*(/[A-Za-z_{}][\w{}]*)*|~/[\w{}/]+")
-_NOT_YET = frozenset(
-    [
-        "create_guard_condition",
-        "get_publishers_info_by_topic",
-        "get_subscriptions_info_by_topic",
-        "add_waitable",
-        "create_entity",
-        "get_client_names_and_types_by_node",
-        "get_service_names_and_types",
-        "get_publisher_names_and_types_by_node",
-        "wait_for_node",
-        "get_subscriber_names_and_types_by_node",
-        "get_service_names_and_types_by_node",
-        "add_pre_set_parameters_callback",
-        "describe_parameter",
-        "describe_parameters",
-        "set_descriptor",
-    ]
-)
+_SAID = "{} must not contain characters other than alphanumerics, '_', '~', '{{', or '}}'"
+_NOT_YET = frozenset(["add_waitable", "remove_waitable", "get_node_names_and_namespaces_with_enclaves"])
 
 
-class Node(NodeEntities, NodeParameters):
+class Node(NodeEntities, NodeGraph, NodeParameters):
     """A node: its name, what it creates and holds, and its parameters (the base classes)."""
 
     def __init__(
@@ -66,11 +56,12 @@ class Node(NodeEntities, NodeParameters):
         self.context = this_context("node.Node")
         self.context.require()
         self.process = self.context.process
-        self.executor: Any = None
+        self._executor: Any = None
+        self._event_publisher: Publisher | None = None
         self._command_line = names.parse_ros2(cli_args) if cli_args else self.context.command_line
         self._name = self._command_line.name or node_name
-        if not re.fullmatch(r"[A-Za-z_]\w*", self._name):
-            raise InvalidNodeNameException(f"Invalid node name: {self._name!r}")
+        if not re.fullmatch(r"[A-Za-z0-9_]+", self._name):
+            raise InvalidNodeNameException(self._name, _SAID.format("node name"), _first_bad(self._name))
         self._namespace = names.absolute(self._command_line.namespace or namespace or "/")
         self._full_name = names.absolute(f"{self._namespace}/{self._name}")
         self._remappings = {**self.process.ros.remappings, **self._command_line.remappings}
@@ -89,11 +80,40 @@ class Node(NodeEntities, NodeParameters):
         NodeParameters.__init__(self, {**overrides, **given}, allow_undeclared_parameters)
         if automatically_declare_parameters_from_overrides:
             self.declare_all_overrides()
+        if start_parameter_services:
+            offer_parameter_services(self)
+
+    @property
+    def executor(self) -> Any:
+        """The executor that runs this node's callbacks; assigning one adds the node to it."""
+        return self._executor
+
+    @executor.setter
+    def executor(self, executor: Any) -> None:
+        if self._executor is executor:
+            return
+        if self._executor is not None:
+            self._executor.remove_node(self)
+        if executor is not None:
+            executor.add_node(self)
+
+    def take_executor(self, executor: Any) -> None:
+        """Take note of who runs this node."""
+        self._executor = executor
 
     def notify(self) -> None:
         """Tell the executor that something became ready."""
-        if self.executor is not None:
-            self.executor.wake()
+        if self._executor is not None:
+            self._executor.wake()
+
+    def parameters_changed(self, parameters: list[Any], known: set[str]) -> None:
+        """Publish what was set on /parameter_events, if anybody listens."""
+        place = self.process.bus.topic("/parameter_events")
+        if place.subscriptions or place.listeners:
+            event = parameter_event(self, parameters, known)
+            if self._event_publisher is None:
+                self._event_publisher = Publisher(self, type(event), place, as_profile(1000))
+            self._event_publisher.publish(event)
 
     def _overrides(self, given: Any) -> dict[str, Any]:
         """Pick what is meant for this node: plain names, and those under its own name or `/**`."""
@@ -133,19 +153,33 @@ class Node(NodeEntities, NodeParameters):
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
         """Return the absolute name of a topic."""
         if not isinstance(topic, str) or not _TOPIC.fullmatch(topic):
-            raise InvalidTopicNameException(f"Invalid topic name: {topic!r}")
+            raise InvalidTopicNameException(str(topic), _SAID.format("topic name"), _first_bad(str(topic)))
         if only_expand:
             return names.expand(topic, self._full_name)
         return names.resolve(topic, self._full_name, self._remappings)
 
-    resolve_service_name = resolve_topic_name
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """Return the absolute name of a service."""
+        try:
+            return self.resolve_topic_name(service, only_expand=only_expand)
+        except InvalidTopicNameException as error:
+            raise InvalidServiceNameException(error.name, error.error_msg, error.invalid_index) from None
 
     def create_publisher(
-        self, msg_type: Any, topic: str, qos_profile: Any, *, callback_group: Any = None, **_: Any
+        self,
+        msg_type: Any,
+        topic: str,
+        qos_profile: Any,
+        *,
+        callback_group: Any = None,
+        event_callbacks: Any = None,
+        qos_overriding_options: Any = None,
+        publisher_class: Any = None,
     ) -> Publisher:
         """Create a publisher."""
         place = self.process.bus.topic(self.resolve_topic_name(topic))
-        self.publishers_.append(Publisher(self, msg_type, place, as_profile(qos_profile)))
+        made = (publisher_class or Publisher)(self, msg_type, place, as_profile(qos_profile))
+        self.publishers_.append(made)
         return self.publishers_[-1]
 
     def create_subscription(
@@ -156,17 +190,20 @@ class Node(NodeEntities, NodeParameters):
         qos_profile: Any,
         *,
         callback_group: Any = None,
+        event_callbacks: Any = None,
+        qos_overriding_options: Any = None,
         raw: bool = False,
-        **_: Any,
+        content_filter_options: Any = None,
     ) -> Subscription:
         """Create a subscription."""
         if raw:
             raise unsupported("Node.create_subscription(raw=True)")
+        if content_filter_options is not None:
+            raise unsupported("Node.create_subscription(content_filter_options=…)")
         place = self.process.bus.topic(self.resolve_topic_name(topic))
         group = callback_group or self.default_callback_group
         made = Subscription(self, msg_type, place, callback, group, as_profile(qos_profile))
-        self.subscriptions_.append(made)
-        self.notify()
+        self._add(made, self.subscriptions_)
         return made
 
     def create_timer(
@@ -179,11 +216,10 @@ class Node(NodeEntities, NodeParameters):
     ) -> Timer:
         """Create a timer with a period in seconds."""
         period = int(float(timer_period_sec) * NANOSECONDS)
-        timer = Timer(self, period, callback, callback_group or self.default_callback_group)
+        timer = Timer(self, period, callback, callback_group or self.default_callback_group, clock)
         if not autostart:
             timer.cancel()
-        self.timers_.append(timer)
-        self.notify()
+        self._add(timer, self.timers_)
         return timer
 
     def create_rate(self, frequency: float, clock: Any = None) -> Rate:
@@ -203,42 +239,41 @@ class Node(NodeEntities, NodeParameters):
     ) -> Service:
         """Create a service."""
         name = self.resolve_service_name(srv_name)
-        self.services_.append(
-            Service(self, srv_type, name, callback, callback_group or self.default_callback_group)
-        )
-        return self.services_[-1]
+        made = Service(self, srv_type, name, callback, callback_group or self.default_callback_group)
+        self._add(made, self.services_)
+        return made
 
     def create_client(self, srv_type: Any, srv_name: str, *, callback_group: Any = None, **_: Any) -> Client:
         """Create a client of a service."""
         name = self.resolve_service_name(srv_name)
-        self.clients_.append(Client(self, srv_type, name, callback_group or self.default_callback_group))
-        return self.clients_[-1]
+        made = Client(self, srv_type, name, callback_group or self.default_callback_group)
+        self._add(made, self.clients_)
+        return made
 
-    def count_publishers(self, topic_name: str) -> int:
-        """Return how many publish on a topic. The simulated world counts as one."""
-        return 1 + len(self.process.bus.topic(self.resolve_topic_name(topic_name)).publications)
+    def create_guard_condition(
+        self, callback: Callable[[], Any] | None, callback_group: Any = None
+    ) -> GuardCondition:
+        """Create a guard condition."""
+        made = GuardCondition(self, callback, callback_group or self.default_callback_group)
+        self._add(made, self.guards_)
+        return made
 
-    def count_subscribers(self, topic_name: str) -> int:
-        """Return how many subscribe to a topic. The simulated world counts as one."""
-        return 1 + len(self.process.bus.topic(self.resolve_topic_name(topic_name)).subscriptions)
+    def create_mailbox(self, callback_group: Any = None) -> Mailbox:
+        """Create what an action waits with."""
+        made = Mailbox(self, callback_group or self.default_callback_group)
+        self._add(made, self.waitables_)
+        return made
 
-    def get_topic_names_and_types(self, no_demangle: bool = False) -> list[tuple[str, list[str]]]:
-        """List topics that nodes publish on."""
-        return [
-            (place.name, sorted({p.type.replace("/", "/msg/") for p in place.publications}))
-            for place in self.process.bus.topics()
-            if place.publications
-        ]
-
-    def get_node_names(self) -> list[str]:
-        """List the nodes of this program."""
-        return [node.get_name() for node in self.context.nodes]
+    def _add(self, entity: Any, kind: list[Any]) -> None:
+        kind.append(entity)
+        entity.callback_group.add_entity(entity)
+        self.notify()
 
     def destroy_node(self) -> None:
         """Destroy the node and all that it created."""
         self.destroy_all()
-        if self.executor is not None:
-            self.executor.remove_node(self)
+        if self._executor is not None:
+            self._executor.remove_node(self)
         if self in self.context.nodes:
             self.context.nodes.remove(self)
 
@@ -252,6 +287,10 @@ class Node(NodeEntities, NodeParameters):
         if name in _NOT_YET:
             raise unsupported(f"Node.{name}")
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+
+def _first_bad(name: str) -> int:
+    return next((i for i, letter in enumerate(name) if not (letter.isalnum() or letter in "_/~{}")), 0)
 
 
 def _flat(tree: dict[str, Any], prefix: str = "") -> dict[str, Any]:

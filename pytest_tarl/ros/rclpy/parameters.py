@@ -1,16 +1,19 @@
-"""The parameters of a node: declared, typed, overridden from outside, guarded by callbacks."""
+"""The parameters of a node: declared, typed, described, overridden from outside, guarded by callbacks."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from copy import deepcopy
 from typing import Any
 
 from pytest_tarl.ros.messages import find_class
+from pytest_tarl.ros.rclpy.descriptors import fits, new_descriptor, objection
 from pytest_tarl.ros.rclpy.exceptions import (
     InvalidParameterException,
     InvalidParameterTypeException,
     InvalidParameterValueException,
     ParameterAlreadyDeclaredException,
+    ParameterImmutableException,
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
@@ -30,18 +33,19 @@ class NodeParameters:
 
     def __init__(self, overrides: dict[str, Any], allow_undeclared: bool) -> None:
         self._parameters: dict[str, Parameter] = {}
-        self._dynamic: set[str] = set()
+        self._descriptors: dict[str, Any] = {}  # without an entry: the type of the value, nothing else
         self._parameter_overrides = overrides
         self._allow_undeclared = allow_undeclared
+        self._pre_set_callbacks: list[SetCallback] = []
         self._set_callbacks: list[SetCallback] = []
         self._post_set_callbacks: list[SetCallback] = []
-        self.declare_parameter("use_sim_time", False)
+        self._parameters["use_sim_time"] = Parameter("use_sim_time", value=False)
 
     def declare_all_overrides(self) -> None:
-        """Declare every parameter that was given from outside."""
+        """Declare every parameter that was given from outside, of any type from then on."""
         for name, value in self._parameter_overrides.items():
             if name not in self._parameters:
-                self.declare_parameter(name, value)
+                self.declare_parameter(name, value, new_descriptor(dynamic_typing=True))
 
     def declare_parameter(
         self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
@@ -55,24 +59,40 @@ class NodeParameters:
         default = None if wanted is not None else value
         given = default if ignore_override else self._parameter_overrides.get(name, default)
         parameter = Parameter(name, value=given)
-        expected = wanted or (Parameter(name, value=default).type_ if default is not None else None)
-        dynamic = descriptor is not None and descriptor.dynamic_typing
-        if not dynamic and expected is not None and given is not None and not _fits(parameter, expected):
-            raise InvalidParameterTypeException(parameter, expected.name)
+        described = self._description(name, wanted, default, given, descriptor)
+        if not described.dynamic_typing and given is not None and not fits(parameter, described.type):
+            raise InvalidParameterTypeException(parameter, ParameterType(described.type).name)
         if given is not None:
-            self._ask_callbacks([parameter], raising=True)
-        if dynamic or (value is None and given is None):
-            self._dynamic.add(name)
+            self._accept_declared(parameter, described)
         self._parameters[name] = parameter
+        self._descriptors[name] = described
         return parameter
 
+    def _description(self, name: str, wanted: Any, default: Any, given: Any, descriptor: Any) -> Any:
+        described = deepcopy(descriptor) if descriptor is not None else new_descriptor()
+        described.name = name
+        if wanted is None and default is None and given is None:
+            described.dynamic_typing = True
+        if not described.dynamic_typing:
+            known = wanted or Parameter(name, value=default if default is not None else given).type_
+            described.type = int(known)
+        return described
+
+    def _accept_declared(self, parameter: Parameter, described: Any) -> None:
+        reason = objection(parameter, described, declaring=True)
+        if not reason:
+            result = self._ask_callbacks([parameter])
+            reason = "" if result.successful else result.reason or "refused"
+        if reason:
+            raise InvalidParameterValueException(parameter.name, parameter.value, reason)
+
     def declare_parameters(
-        self, namespace: str, parameters: Iterable[tuple[Any, ...]], ignore_override: bool = False
+        self, namespace: str, parameters: Iterable[Any], ignore_override: bool = False
     ) -> list[Parameter]:
         """Declare several, given as (name), (name, value) or (name, value, descriptor)."""
         declared = []
         for entry in parameters:
-            name, value, descriptor = (*entry, None, None)[:3]
+            name, value, descriptor = (*((entry,) if isinstance(entry, str) else entry), None, None)[:3]
             full = f"{namespace}.{name}" if namespace else name
             declared.append(self.declare_parameter(full, value, descriptor, ignore_override))
         return declared
@@ -81,7 +101,10 @@ class NodeParameters:
         """Forget a parameter."""
         if name not in self._parameters:
             raise ParameterNotDeclaredException(name)
+        if self.describe_parameter(name).read_only:
+            raise ParameterImmutableException(name)
         del self._parameters[name]
+        self._descriptors.pop(name, None)
 
     def has_parameter(self, name: str) -> bool:
         """Tell whether a parameter is declared."""
@@ -94,7 +117,7 @@ class NodeParameters:
             if self._allow_undeclared:
                 return Parameter(name)
             raise ParameterNotDeclaredException(name)
-        if parameter.value is None and name not in self._dynamic:
+        if parameter.value is None and not self.describe_parameter(name).dynamic_typing:
             raise ParameterUninitializedException(name)
         return parameter
 
@@ -118,13 +141,64 @@ class NodeParameters:
         """Return the type of a parameter."""
         return self.get_parameter(name).type_
 
+    def get_parameter_types(self, names: list[str]) -> list[ParameterType]:
+        """Return the types of several parameters."""
+        return [self.get_parameter_type(name) for name in names]
+
+    def list_parameters(self, prefixes: list[str], depth: int = 0) -> Any:
+        """List names as rcl_interfaces/ListParametersResult; `depth` 0 is all the way down."""
+        made: Any = find_class("ros2", "rcl_interfaces", "ListParametersResult")
+        names = [name for name in self._parameters if _below(name, prefixes, depth)]
+        parents = {name.rpartition(".")[0] for name in names if "." in name}
+        return made(names=sorted(names), prefixes=sorted(parents))
+
+    def describe_parameter(self, name: str) -> Any:
+        """Return a parameter's descriptor."""
+        if name not in self._parameters:
+            if self._allow_undeclared:
+                return new_descriptor(name=name)
+            raise ParameterNotDeclaredException(name)
+        if name not in self._descriptors:
+            self._descriptors[name] = new_descriptor(name=name, type=int(self._parameters[name].type_))
+        return self._descriptors[name]
+
+    def describe_parameters(self, names: list[str]) -> list[Any]:
+        """Return several descriptors."""
+        return [self.describe_parameter(name) for name in names]
+
+    def set_descriptor(self, name: str, descriptor: Any, alternative_value: Any = None) -> Any:
+        """Replace a descriptor. Returns the parameter's value. Raises where the value does not fit."""
+        if self.describe_parameter(name).read_only:
+            raise ParameterImmutableException(name)
+        described = deepcopy(descriptor)
+        described.name = name
+        parameter = Parameter(name, value=alternative_value) if alternative_value is not None else None
+        parameter = parameter or self._parameters[name]
+        if not described.dynamic_typing:
+            described.type = int(parameter.type_)
+        reason = objection(parameter, described, declaring=True)
+        if reason:
+            raise InvalidParameterValueException(name, parameter.value, reason)
+        self._parameters[name], self._descriptors[name] = parameter, described
+        return parameter.get_parameter_value()
+
     def set_parameters(self, parameter_list: list[Parameter]) -> list[Any]:
         """Set parameters one by one; each result tells whether it was accepted."""
+        self._require_declared(parameter_list)
         return [self._set([parameter]) for parameter in parameter_list]
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> Any:
         """Set all parameters or none."""
-        return self._set(parameter_list)
+        self._require_declared(parameter_list)
+        return self._set(list(parameter_list))
+
+    def add_pre_set_parameters_callback(self, callback: SetCallback) -> None:
+        """Have `callback` turn a list of parameters into what is really set."""
+        self._pre_set_callbacks.insert(0, callback)
+
+    def remove_pre_set_parameters_callback(self, callback: SetCallback) -> None:
+        """Do not ask `callback` any more."""
+        self._pre_set_callbacks.remove(callback)
 
     def add_on_set_parameters_callback(self, callback: SetCallback) -> None:
         """Ask `callback` before parameters change; the newest is asked first."""
@@ -142,41 +216,59 @@ class NodeParameters:
         """Do not tell `callback` any more."""
         self._post_set_callbacks.remove(callback)
 
+    def _require_declared(self, parameters: list[Parameter]) -> None:
+        if not self._allow_undeclared:
+            unknown = [p.name for p in parameters if p.name not in self._parameters]
+            if unknown:
+                raise ParameterNotDeclaredException(unknown)
+
     def _set(self, parameters: list[Parameter]) -> Any:
+        for rewrite in tuple(self._pre_set_callbacks):
+            parameters = rewrite(parameters)
         for parameter in parameters:
-            known = self._parameters.get(parameter.name)
-            if known is None and not self._allow_undeclared:
-                raise ParameterNotDeclaredException(parameter.name)
-            if (
-                known is not None
-                and parameter.name not in self._dynamic
-                and not _fits(parameter, known.type_)
-            ):
-                reason = f"Wrong parameter type, expected '{known.type_}' got '{parameter.type_}'"
-                return outcome(False, reason)
+            if parameter.name in self._parameters:
+                described = self.describe_parameter(parameter.name)
+                reason = objection(parameter, described, declaring=False)
+                if reason:
+                    return outcome(False, reason)
         result = self._ask_callbacks(parameters)
         if result.successful:
-            self._parameters.update({parameter.name: parameter for parameter in parameters})
+            self._store(parameters)
             for callback in tuple(self._post_set_callbacks):
                 callback(parameters)
         return result
 
-    def _ask_callbacks(self, parameters: list[Parameter], *, raising: bool = False) -> Any:
+    def _store(self, parameters: list[Parameter]) -> None:
+        changed = {p.name for p in parameters} & set(self._parameters)
+        for parameter in parameters:
+            if parameter.type_ == ParameterType.NOT_SET:
+                self._parameters.pop(parameter.name, None)
+                self._descriptors.pop(parameter.name, None)
+                continue
+            if parameter.name not in self._parameters:
+                self._descriptors[parameter.name] = new_descriptor(name=parameter.name, dynamic_typing=True)
+            self._parameters[parameter.name] = parameter
+        self.parameters_changed(parameters, changed)
+
+    def parameters_changed(self, parameters: list[Parameter], known: set[str]) -> None:
+        """Tell others; `known` are the names that were there before."""
+
+    def _ask_callbacks(self, parameters: list[Parameter]) -> Any:
         for callback in tuple(self._set_callbacks):
             result = callback(parameters)
+            if not hasattr(result, "successful"):
+                return outcome(False, "Callback returned an invalid type")
             if not result.successful:
-                if raising:
-                    raise InvalidParameterValueException(
-                        parameters[0].name, parameters[0].value, result.reason
-                    )
                 return result
-        return None if raising else outcome(True)
+        return outcome(True)
 
 
-def _fits(parameter: Parameter, expected: ParameterType) -> bool:
-    """Tell whether a value has the declared type; an empty list fits every array."""
-    if expected == ParameterType.NOT_SET or parameter.type_ == expected:
-        return True
-    return (
-        expected.name.endswith("ARRAY") and isinstance(parameter.value, list | tuple) and not parameter.value
-    )
+def _below(name: str, prefixes: list[str], depth: int) -> bool:
+    for prefix in prefixes or [""]:
+        if name == prefix:
+            return True
+        if not prefix or name.startswith(prefix + "."):
+            rest = name[len(prefix) + 1 :] if prefix else name
+            if not depth or rest.count(".") < depth:
+                return True
+    return False

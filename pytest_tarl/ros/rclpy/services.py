@@ -1,7 +1,5 @@
 """rclpy's services and clients: request and response each wait for the executor of the node they reach."""
 
-# ruff: noqa: ARG002 (signatures are rclpy's)
-
 from __future__ import annotations
 
 import inspect
@@ -10,21 +8,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.ros.clock import nanoseconds
-from pytest_tarl.ros.messages.snapshot import snapshot
 from pytest_tarl.ros.rclpy.task import Future
 from pytest_tarl.ros.scheduler import Task, current_task
+from pytest_tarl.ros.services import Answer, ServiceDirectory, adapted
 
 if TYPE_CHECKING:
-    from pytest_tarl.ros.episode import Ros
     from pytest_tarl.ros.rclpy.node import Node
-
-
-class ServiceDirectory:
-    """Who serves what, in one episode."""
-
-    def __init__(self, ros: Ros) -> None:
-        self.services: dict[str, Service] = {}
-        self.waiting: list[Task] = []
 
 
 class Service:
@@ -34,15 +23,19 @@ class Service:
         self, node: Node, srv_type: Any, srv_name: str, callback: Callable[..., Any], group: Any
     ) -> None:
         self.node = node
-        self.srv_type = srv_type
+        self.srv_type = self.service_class = srv_type
+        self.request_type: type = srv_type.Request
         self.srv_name = self.service_name = srv_name
         self.callback = callback
         self.callback_group = group
-        self.queue: deque[tuple[Any, Client, Future]] = deque()
+        self.queue: deque[tuple[Any, Answer]] = deque()
         self._directory = node.process.ros.part(ServiceDirectory)
-        self._directory.services[srv_name] = self
-        for task in self._directory.waiting:
-            node.process.scheduler.wake(task)
+        self._directory.add(srv_name, self)
+
+    def handle(self, request: Any, answer: Answer) -> None:
+        """Queue a request until the node's executor comes to it."""
+        self.queue.append((request, answer))
+        self.node.notify()
 
     def is_ready(self) -> bool:
         """Tell whether a request waits."""
@@ -50,20 +43,25 @@ class Service:
 
     def run(self) -> Any:
         """Answer the oldest request; a coroutine answers when it has finished."""
-        request, client, future = self.queue.popleft()
+        request, answer = self.queue.popleft()
         response = self.callback(request, self.srv_type.Response())
         if inspect.iscoroutine(response):
-            return self._answer_later(response, client, future)
-        client.answer(future, snapshot(response))
+            return self._answer_later(response, answer)
+        answer(self._checked(response))
         return None
 
-    async def _answer_later(self, response: Any, client: Client, future: Future) -> None:
-        client.answer(future, snapshot(await response))
+    async def _answer_later(self, response: Any, answer: Answer) -> None:
+        answer(self._checked(await response))
+
+    def _checked(self, response: Any) -> Any:
+        if not isinstance(response, self.srv_type.Response):
+            raise TypeError(f"the callback of service {self.srv_name} returned {type(response)}, "
+                            f"not {self.srv_type.Response}")  # fmt: skip
+        return response
 
     def destroy(self) -> None:
         """Stop serving."""
-        if self._directory.services.get(self.srv_name) is self:
-            del self._directory.services[self.srv_name]
+        self._directory.remove(self.srv_name, self)
 
 
 class Client:
@@ -77,34 +75,32 @@ class Client:
         self.queue: deque[tuple[Future, Any]] = deque()
         self._directory = node.process.ros.part(ServiceDirectory)
         self._calling: dict[Future, Task] = {}
+        self._pending: list[Future] = []
 
     def service_is_ready(self) -> bool:
         """Tell whether somebody serves it."""
-        return self.srv_name in self._directory.services
+        return self.srv_name in self._directory
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait until somebody serves it; tell whether that was within the timeout."""
-        clock, task = self.node.process.scheduler, current_task()
-        until = None if timeout_sec is None else clock.time + nanoseconds(timeout_sec)
-        self._directory.waiting.append(task)
-        while (
-            not self.service_is_ready() and self.node.context.ok() and (until is None or clock.time < until)
-        ):
-            clock.wait(until)
-        self._directory.waiting.remove(task)
-        if self.node.process.ending:
-            self.node.process.refuse_to_wait()
-        return self.service_is_ready()
+        process = self.node.process
+        until = None if timeout_sec is None else process.scheduler.time + nanoseconds(timeout_sec)
+        found = self._directory.wait(current_task(), self.srv_name, until, self.node.context.ok)
+        if process.ending:
+            process.refuse_to_wait()
+        return found
 
     def call_async(self, request: Any) -> Future:
         """Send a request; the future is done once an executor has handled the response."""
         if not isinstance(request, self.srv_type.Request):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
-        future = Future(executor=self.node.executor)
-        service = self._directory.services.get(self.srv_name)
+        future = Future()
+        service = self._directory.find(self.srv_name)
         if service is not None:
-            service.queue.append((snapshot(request), self, future))
-            service.node.notify()
+            service.handle(
+                adapted(request, service.request_type), lambda response: self.answer(future, response)
+            )
+        self._pending.append(future)
         return future
 
     def call(self, request: Any, timeout_sec: float | None = None) -> Any:
@@ -120,6 +116,8 @@ class Client:
 
     def answer(self, future: Future, response: Any) -> None:
         """Take a response: for a waiting `call` at once, for a future through the executor."""
+        if response is not None:
+            response = adapted(response, self.srv_type.Response)
         waiting = self._calling.get(future)
         if waiting is not None:
             future.set_result(response)
@@ -135,12 +133,25 @@ class Client:
     def run(self) -> None:
         """Complete the oldest future whose response has arrived."""
         future, response = self.queue.popleft()
+        if future in self._pending:
+            self._pending.remove(future)
         if not future.cancelled():
+            future.belongs_to(self.node.executor)
             future.set_result(response)
 
     def remove_pending_request(self, future: Future) -> None:
         """Give up on a request."""
-        future.cancel()
+        if future in self._pending:
+            self._pending.remove(future)
 
     def destroy(self) -> None:
-        """Forget it."""
+        """Give up on all requests."""
+        for future in self._pending:
+            future.cancel()
+        self._pending.clear()
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.destroy()

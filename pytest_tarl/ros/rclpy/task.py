@@ -16,6 +16,7 @@ class Future:
         self._result: Any = None
         self._exception: BaseException | None = None
         self._callbacks: list[Callable[[Future], Any]] = []
+        self._watchers: list[Callable[[], Any]] = []
         self._executor = executor
 
     def __await__(self) -> Generator[Future, None, Any]:
@@ -24,8 +25,8 @@ class Future:
         return self.result()
 
     def done(self) -> bool:
-        """Tell whether there is a result or an exception."""
-        return self._done
+        """Tell whether there is a result or an exception, or it was cancelled."""
+        return self._done or self._cancelled
 
     def cancelled(self) -> bool:
         """Tell whether it was cancelled."""
@@ -60,16 +61,42 @@ class Future:
         self._finish()
 
     def add_done_callback(self, callback: Callable[[Future], Any]) -> None:
-        """Have a function called with this future when it is done; at once if it is."""
-        if self._done or self._cancelled:
-            callback(self)
-        else:
+        """Have a function called with this future when it is done: by the executor where it has one, else at once."""
+        if not self.done():
             self._callbacks.append(callback)
+        elif self._executor is not None:
+            self._executor.create_task(callback, self)
+        else:
+            callback(self)
+
+    def watch(self, watcher: Callable[[], Any]) -> None:
+        """Have a function of ours called as soon as this is done."""
+        if self.done():
+            watcher()
+        else:
+            self._watchers.append(watcher)
+
+    def belongs_to(self, executor: Any) -> None:
+        """Have the done callbacks run by an executor."""
+        self._executor = executor
+
+    def remove_done_callback(self, callback: Callable[[Future], Any]) -> bool:
+        """Take a function back; tell whether it was there."""
+        if callback not in self._callbacks:
+            return False
+        self._callbacks.remove(callback)
+        return True
 
     def _finish(self) -> None:
+        watchers, self._watchers = self._watchers, []
+        for watcher in watchers:
+            watcher()
         callbacks, self._callbacks = self._callbacks, []
         for callback in callbacks:
-            callback(self)
+            if self._executor is not None:
+                self._executor.create_task(callback, self)
+            else:
+                callback(self)
 
 
 class Task(Future):
@@ -89,10 +116,25 @@ class Task(Future):
         """Tell whether it can go on."""
         return not (self._done or self._cancelled or self._blocked)
 
+    def executing(self) -> bool:
+        """Tell whether it has begun and waits for something."""
+        return self._blocked
+
+    def cancel(self) -> None:
+        """Give up on it; a coroutine that has begun is closed."""
+        if self._coroutine is not None and not self._done:
+            self._coroutine.close()
+        super().cancel()
+
     def run(self) -> None:
-        """Run on to the end or to the next future that is not done."""
-        if self._done or self._cancelled:
-            return
+        """Run on to the end or to the next future that is not done; what it raises, its executor's spin raises."""
+        try:
+            self._advance()
+        except Exception as error:
+            self.set_exception(error)
+            raise
+
+    def _advance(self) -> None:
         if self._coroutine is None:
             outcome = self._handler(*self._args, **self._kwargs)
             if not inspect.iscoroutine(outcome):
@@ -106,11 +148,14 @@ class Task(Future):
             return
         self._blocked = True
         if isinstance(awaited, Future):
-            awaited.add_done_callback(self._unblock)
+            awaited.watch(self._unblock)
         else:
-            self._unblock(self)
+            self._unblock()
 
-    def _unblock(self, _: Future) -> None:
+    def _unblock(self) -> None:
         self._blocked = False
         if self._executor is not None:
             self._executor.wake()
+
+
+__all__ = ["Future", "Task"]

@@ -3,25 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.ros.clock import NANOSECONDS
 from pytest_tarl.ros.rclpy.exceptions import ROSInterruptException
+from pytest_tarl.ros.rclpy.time import Time
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.node import Node
 
 
+@dataclass(frozen=True)
+class TimerInfo:
+    """When a timer's callback should have been called, and when it was."""
+
+    expected_call_time: Time
+    actual_call_time: Time
+
+
 class Timer:
     """Becomes ready every `period` nanoseconds; an executor that is late skips what it missed."""
 
-    def __init__(self, node: Node, period: int, callback: Callable[..., Any] | None, group: Any) -> None:
+    def __init__(
+        self, node: Node, period: int, callback: Callable[..., Any] | None, group: Any, clock: Any = None
+    ) -> None:
         self.node = node
+        self.clock = clock if clock is not None else node.get_clock()
         self.callback = callback
         self.callback_group = group
         self.timer_period_ns = period
         self._clock = node.process.scheduler
         self._canceled = False
+        self._last = self._clock.time
         self.due = self._clock.time + period
 
     def is_ready(self) -> bool:
@@ -43,8 +57,8 @@ class Timer:
         self.node.notify()
 
     def time_since_last_call(self) -> int:
-        """Return nanoseconds since the present period began."""
-        return self._clock.time - (self.due - self.timer_period_ns)
+        """Return nanoseconds since the last call, or since the timer began."""
+        return self._clock.time - self._last
 
     def time_until_next_call(self) -> int | None:
         """Return nanoseconds until it is ready; None while cancelled."""
@@ -56,14 +70,42 @@ class Timer:
 
     def run(self) -> Any:
         """Begin the next period that is not over yet and call the callback."""
+        expected, self._last = self.due, self._clock.time
         self._begin_period()
-        return self.callback() if self.callback is not None else None
+        callback = self._callback
+        if callback is None:
+            return None
+        return callback() if self._told_as is None else callback(**{self._told_as: self._info(expected)})
+
+    @property
+    def callback(self) -> Callable[..., Any] | None:
+        """What is called; a parameter that is annotated as TimerInfo gets one."""
+        return self._callback
+
+    @callback.setter
+    def callback(self, callback: Callable[..., Any] | None) -> None:
+        self._callback = callback
+        self._told_as = _told_as(callback) if callback is not None else None
+
+    def _info(self, expected: int) -> TimerInfo:
+        kind = self.clock.clock_type
+        return TimerInfo(Time(nanoseconds=expected, clock_type=kind),
+                         Time(nanoseconds=self._last, clock_type=kind))  # fmt: skip
 
     def _begin_period(self) -> None:
         self.due += self.timer_period_ns
         behind = self._clock.time - self.due
         if behind >= 0 and self.timer_period_ns > 0:
             self.due += (1 + behind // self.timer_period_ns) * self.timer_period_ns
+
+
+def _told_as(callback: Callable[..., Any]) -> str | None:
+    if not getattr(callback, "__annotations__", None):
+        return None
+    for name, kind in callback.__annotations__.items():
+        if kind is TimerInfo or str(kind).rpartition(".")[2] == "TimerInfo":
+            return name
+    return None
 
 
 class Rate:

@@ -1,7 +1,10 @@
 """rclpy's publishers and subscriptions."""
 
+# ruff: noqa: ARG002 (signatures are rclpy's)
+
 from __future__ import annotations
 
+import inspect
 from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -14,6 +17,8 @@ from pytest_tarl.ros.rclpy.qos import DurabilityPolicy, QoSProfile
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.node import Node
+
+_VARIADIC = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
 
 
 class Publisher:
@@ -48,6 +53,13 @@ class Publisher:
             self.process.bus.publish_from(self, self._place, msg, keep=self._keep)
         except FieldError as error:
             raise TypeError(f"{error} (publishing {self.type} on {self._place.name})") from error
+
+    def assert_liveliness(self) -> None:
+        """Do nothing: a publisher lives as long as its node."""
+
+    def wait_for_all_acked(self, timeout: Any = None) -> bool:
+        """Tell that everything has arrived: nothing is lost here."""
+        return True
 
     def get_subscription_count(self) -> int:
         """Return how many listen. The simulated world counts as one."""
@@ -102,8 +114,24 @@ class Subscription:
         return bool(self.queue)
 
     def run(self) -> Any:
-        """Call the callback with the oldest message."""
-        return self.callback(self.queue.popleft())
+        """Call the callback with the oldest message, and with its times where it takes two arguments."""
+        message = self.queue.popleft()
+        return self._callback(message, self._info()) if self._wants_info else self._callback(message)
+
+    @property
+    def callback(self) -> Callable[..., Any]:
+        """What is called with each message."""
+        return self._callback
+
+    @callback.setter
+    def callback(self, callback: Callable[..., Any]) -> None:
+        self._callback = callback
+        self._wants_info = _wants_info(callback)
+
+    def _info(self) -> dict[str, Any]:
+        now = self.process.scheduler.time
+        return {"source_timestamp": now, "received_timestamp": now, "publication_sequence_number": None,
+                "reception_sequence_number": None}  # fmt: skip
 
     def get_publisher_count(self) -> int:
         """Return how many publish. The simulated world counts as one."""
@@ -114,6 +142,23 @@ class Subscription:
         self.queue.clear()
         if self in self._place.subscriptions:
             self._place.subscriptions.remove(self)
+
+
+def _wants_info(callback: Callable[..., Any]) -> bool:
+    code = getattr(callback, "__code__", None) or getattr(
+        getattr(callback, "__func__", None), "__code__", None
+    )
+    if code is not None and not code.co_flags & _VARIADIC:  # the usual case, without the cost of a signature
+        defaults = len(getattr(callback, "__defaults__", None) or ())
+        needed = code.co_argcount - defaults - hasattr(callback, "__self__")
+        return bool(needed == 2)
+    try:
+        inspect.signature(callback).bind(None)
+    except ValueError:
+        return False
+    except TypeError:
+        return True
+    return False
 
 
 def _require_message_class(msg_type: Any) -> None:

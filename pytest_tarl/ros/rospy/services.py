@@ -4,25 +4,32 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from pytest_tarl.errors import TarlError
 from pytest_tarl.ros.clock import nanoseconds
-from pytest_tarl.ros.messages.snapshot import snapshot
-from pytest_tarl.ros.rospy.exceptions import ROSException, ROSInterruptException, ServiceException
+from pytest_tarl.ros.messages.values import FieldError
+from pytest_tarl.ros.rospy.exceptions import (
+    ROSException,
+    ROSInterruptException,
+    ROSSerializationException,
+    ServiceException,
+)
 from pytest_tarl.ros.rospy.node import this_node
-from pytest_tarl.ros.scheduler import Task, current_task
+from pytest_tarl.ros.scheduler import current_task
+from pytest_tarl.ros.services import Answer, ServiceDirectory, adapted
 
-if TYPE_CHECKING:
-    from pytest_tarl.ros.episode import Ros
+_LOGGER = logging.getLogger("rosout")
+_NO_RESPONSE = "service cannot process request: service handler returned None"
 
 
-class ServiceDirectory:
-    """Who serves what, in one episode."""
+class Refusal:
+    """Stands for the response of a handler that failed."""
 
-    def __init__(self, ros: Ros) -> None:
-        self.services: dict[str, Service] = {}
-        self.waiting: list[Task] = []
+    def __init__(self, reason: str) -> None:
+        self.reason = reason
 
 
 class Service:
@@ -40,34 +47,41 @@ class Service:
         self._process = node.process
         self.resolved_name = node.resolve(name)
         self.service_class = service_class
+        self.request_type: type = service_class._request_class
         self.handler = handler
+        self._error_handler = error_handler
         self._directory = node.process.ros.part(ServiceDirectory)
-        if self.resolved_name in self._directory.services:
+        if self.resolved_name in self._directory:
             raise ServiceException(f"service [{self.resolved_name}] already registered")
-        self._directory.services[self.resolved_name] = self
+        self._directory.add(self.resolved_name, self)
         self._process.at_end(self.shutdown)
-        for task in self._directory.waiting:
-            self._process.scheduler.wake(task)
 
     def shutdown(self, reason: str = "") -> None:
         """Stop serving."""
-        self._directory.services.pop(self.resolved_name, None)
+        self._directory.remove(self.resolved_name, self)
 
     def spin(self) -> None:
         """Wait until the node is shut down."""
         while not self._process.ending:
             self._process.scheduler.wait()
 
-    def handle(self, request: Any, answer: Callable[[Any], None]) -> None:
+    def handle(self, request: Any, answer: Answer) -> None:
         """Handle a request in a task of this node; `answer` gets the response, None where the handler gave none."""
         self._process.scheduler.spawn(self._process, self._serve, request, answer)
 
-    def _serve(self, request: Any, answer: Callable[[Any], None]) -> None:
-        response = None
+    def _serve(self, request: Any, answer: Answer) -> None:
+        """Handle a request; as in rospy, an exception of the handler is the caller's failure, not the node's end."""
         try:
             response = self._as_response(self.handler(request))
-        finally:
-            answer(response)
+        except Exception as error:
+            if isinstance(error, TarlError):
+                raise
+            _LOGGER.exception("Error processing request: %s", error)
+            if self._error_handler is not None:
+                self._error_handler(error, type(error), error.__traceback__)
+            answer(Refusal(f"error processing request: {error}"))
+            return
+        answer(response if response is not None else Refusal(_NO_RESPONSE))
 
     def _as_response(self, returned: Any) -> Any:
         made: type = self.service_class._response_class
@@ -94,11 +108,8 @@ class ServiceProxy:
 
     def call(self, *args: Any, **kwds: Any) -> Any:
         """Call the service with a request or its fields. Raises ServiceException."""
-        if len(args) == 1 and isinstance(args[0], self.request_class):
-            request = args[0]
-        else:
-            request = self.request_class(*args, **kwds)
-        service = self._node.process.ros.part(ServiceDirectory).services.get(self.resolved_name)
+        request = self._request(args, kwds)
+        service = self._node.process.ros.part(ServiceDirectory).find(self.resolved_name)
         if service is None:
             raise ServiceException(f"service [{self.resolved_name}] unavailable")
         clock, task, answers = self._node.process.scheduler, current_task(), []
@@ -107,15 +118,30 @@ class ServiceProxy:
             answers.append(response)
             clock.wake(task)
 
-        service.handle(snapshot(request), answer)
+        try:
+            service.handle(adapted(request, service.request_type), answer)
+        except FieldError as error:
+            raise ROSSerializationException(f"{error} (calling {self.resolved_name})") from error
         while not answers:
             clock.wait()
             if self._node.process.ending:
                 raise ROSInterruptException("rospy shutdown")
-        if answers[0] is None:
-            raise ServiceException(f"service [{self.resolved_name}] responded with an error: "
-                                   "service cannot process request: service handler returned None")  # fmt: skip
-        return snapshot(answers[0])
+        return self._response(answers[0])
+
+    def _request(self, args: tuple[Any, ...], kwds: dict[str, Any]) -> Any:
+        if len(args) == 1 and isinstance(args[0], self.request_class):
+            return args[0]
+        try:
+            return self.request_class(*args, **kwds)
+        except (TypeError, AttributeError) as error:
+            raise TypeError(f"Invalid number of arguments, args should be {self.request_class.__slots__}: {error}"
+                            if args else str(error)) from error  # fmt: skip
+
+    def _response(self, answered: Any) -> Any:
+        if answered is None or isinstance(answered, Refusal):
+            reason = _NO_RESPONSE if answered is None else answered.reason
+            raise ServiceException(f"service [{self.resolved_name}] responded with an error: {reason}")
+        return adapted(answered, self.response_class)
 
     def wait_for_service(self, timeout: float | None = None) -> None:
         """Wait until the service is there. Raises ROSException after `timeout` seconds."""
@@ -128,19 +154,11 @@ class ServiceProxy:
 def wait_for_service(service: str, timeout: Any = None) -> None:
     """Wait until a service is there. Raises ROSException after `timeout` seconds."""
     node = this_node("wait_for_service")
-    clock, task = node.process.scheduler, current_task()
-    directory = node.process.ros.part(ServiceDirectory)
     name = node.resolve(service)
-    until = (
-        None if timeout is None else clock.time + nanoseconds(getattr(timeout, "to_sec", lambda: timeout)())
-    )
-    directory.waiting.append(task)
-    while (
-        name not in directory.services and not node.process.ending and (until is None or clock.time < until)
-    ):
-        clock.wait(until)
-    directory.waiting.remove(task)
-    if name in directory.services:
+    seconds = getattr(timeout, "to_sec", lambda: timeout)()
+    until = None if timeout is None else node.process.scheduler.time + nanoseconds(seconds)
+    directory = node.process.ros.part(ServiceDirectory)
+    if directory.wait(current_task(), name, until, lambda: not node.process.ending):
         return
     if node.process.ending:
         raise ROSInterruptException("rospy shutdown")

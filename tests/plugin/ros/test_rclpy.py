@@ -212,6 +212,7 @@ def test_service_is_called_with_a_future_across_nodes(start: Start) -> None:
 def test_coroutine_callbacks_await_futures(start: Start) -> None:
     ros = start("""
         import rclpy
+        from rclpy.callback_groups import ReentrantCallbackGroup
         from std_srvs.srv import Trigger
         rclpy.init()
         node = rclpy.create_node("n")
@@ -220,7 +221,7 @@ def test_coroutine_callbacks_await_futures(start: Start) -> None:
             response.message = "yes"
             return response
         node.create_service(Trigger, "ask", answer)
-        client = node.create_client(Trigger, "ask")
+        client = node.create_client(Trigger, "ask", callback_group=ReentrantCallbackGroup())
         async def tick():
             timer.cancel()
             log.append((await client.call_async(Trigger.Request())).message)
@@ -229,6 +230,27 @@ def test_coroutine_callbacks_await_futures(start: Start) -> None:
     """)
     ros.step(1.0)
     assert ros.namespace["log"] == ["yes"]
+
+
+def test_coroutine_that_awaits_a_response_in_its_own_exclusive_group_waits_for_ever(start: Start) -> None:
+    ros = start("""
+        import rclpy
+        from std_srvs.srv import Trigger
+        rclpy.init()
+        node = rclpy.create_node("n")
+        log = []
+        node.create_service(Trigger, "ask", lambda request, response: response)
+        client = node.create_client(Trigger, "ask")
+        async def tick():
+            timer.cancel()
+            log.append("asked")
+            await client.call_async(Trigger.Request())
+            log.append("answered")
+        timer = node.create_timer(0.1, tick)
+        rclpy.spin(node)
+    """)
+    ros.step(5.0)
+    assert ros.namespace["log"] == ["asked"]
 
 
 def test_multi_threaded_executor_goes_on_while_a_callback_waits(start: Start) -> None:
@@ -339,9 +361,9 @@ def test_use_before_init_and_double_shutdown_fail_as_in_ros(start: Start) -> Non
 def test_what_is_missing_is_named(start: Start) -> None:
     make = "import rclpy; rclpy.init(); node = rclpy.create_node('n');"
     for missing, line in {
-        r"rclpy\.lifecycle": "import rclpy.lifecycle",
-        r"rclpy\.action": "from rclpy.action import ActionClient",
-        r"Node\.create_guard_condition": f"{make} node.create_guard_condition(print)",
+        r"rclpy\.serialization": "import rclpy.serialization",
+        r"rclpy\.experimental": "from rclpy.experimental import EventsExecutor",
+        r"Node\.add_waitable": f"{make} node.add_waitable(print)",
     }.items():
         with pytest.raises(UnsupportedApiError, match=missing):
             start(line)
