@@ -221,11 +221,11 @@ def test_coroutine_callbacks_await_futures(start: Start) -> None:
             response.message = "yes"
             return response
         node.create_service(Trigger, "ask", answer)
-        client = node.create_client(Trigger, "ask", callback_group=ReentrantCallbackGroup())
+        client = node.create_client(Trigger, "ask")
         async def tick():
             timer.cancel()
             log.append((await client.call_async(Trigger.Request())).message)
-        timer = node.create_timer(0.1, tick)
+        timer = node.create_timer(0.1, tick, callback_group=ReentrantCallbackGroup())
         rclpy.spin(node)
     """)
     ros.step(1.0)
