@@ -96,6 +96,7 @@ class Tarl:
         if not path.is_file():
             raise SettingsError(f"tarl.start: there is no file {script!r} in {self._folder}.")
         self.drives_ros = True
+        self.ros.use_definitions_around(path.parent)
         self.ros.parameters.update(parameters or {})
         imports = self._imports
 

@@ -6,12 +6,14 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
 from typing import Any, TypeVar
 
 from pytest_tarl.errors import NodeError
 from pytest_tarl.ros.bus import Bus
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.install import standins_installed
+from pytest_tarl.ros.messages import workspace
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Scheduler, Spinning, running_task
 from pytest_tarl.ros.watchdog import DEFAULT_LIMIT, WATCHDOG
@@ -73,6 +75,10 @@ class Ros:
             self._parts[kind] = kind(self)
         found: Part = self._parts[kind]
         return found
+
+    def use_definitions_around(self, folder: Path) -> None:
+        """Know the message, service and action files of the workspace that `folder` is in."""
+        workspace.search(folder)
 
     def start(self, run: Callable[[], None], *, name: str, argv: Sequence[str] = ()) -> None:
         """Run a node's main program until it first waits. Raises NodeError where it ends in an exception."""

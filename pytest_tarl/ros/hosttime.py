@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import queue
+import select
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -22,9 +23,12 @@ _CLOCKS: tuple[tuple[Any, str], ...] = (
     (time, "monotonic_ns"),
     (time, "perf_counter_ns"),
     (time, "sleep"),
+    (select, "select"),
     (threading, "_time"),  # these two have bound time.monotonic under their own names
     (queue, "time"),
 )
+
+_POLL = nanoseconds(0.01)  # how often a waiting `select` looks
 
 
 @contextmanager
@@ -33,7 +37,8 @@ def virtual_host_time(scheduler: Scheduler) -> Iterator[None]:
     saved = [(owner, name, getattr(owner, name)) for owner, name in _CLOCKS]
     for owner, name, real in saved:
         virtual = (lambda: scheduler.time) if name.endswith("_ns") else (lambda: seconds(scheduler.time))
-        setattr(owner, name, _sleep(real, scheduler) if name == "sleep" else _clock(real, virtual))
+        waiting = {"sleep": _sleep, "select": _select}.get(name)
+        setattr(owner, name, _clock(real, virtual) if waiting is None else waiting(real, scheduler))
     try:
         yield
     finally:
@@ -46,6 +51,27 @@ def _clock(real: Callable[[], Any], virtual: Callable[[], Any]) -> Callable[[], 
         return virtual() if running_task() is not None else real()
 
     return read
+
+
+def _select(real: Callable[..., Any], scheduler: Scheduler) -> Callable[..., Any]:
+    """Let a node that polls its keyboard or a socket wait in virtual time; what is there is there at once."""
+
+    def select(rlist: Any, wlist: Any, xlist: Any, timeout: float | None = None) -> Any:
+        task = running_task()
+        if task is None:
+            return real(rlist, wlist, xlist, timeout)
+        until = None if timeout is None else scheduler.time + nanoseconds(timeout)
+        while True:
+            ready = real(rlist, wlist, xlist, 0)
+            if any(ready) or (until is not None and scheduler.time >= until):
+                return ready
+            if task.process.ending:
+                task.process.refuse_to_wait()
+                return ready
+            next_look = scheduler.time + _POLL
+            scheduler.wait(next_look if until is None else min(until, next_look))
+
+    return select
 
 
 def _sleep(real: Callable[[float], None], scheduler: Scheduler) -> Callable[[float], None]:

@@ -6,15 +6,15 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib import import_module
-from importlib.machinery import ModuleSpec
+from importlib.machinery import ModuleSpec, PathFinder
 from types import CodeType, FrameType, ModuleType
 from typing import TYPE_CHECKING
 
 from pytest_tarl.ros.hosttime import virtual_host_time
 from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.installed import installed_kind
-from pytest_tarl.ros.messages.packages import could_be_package, is_package, package_module
-from pytest_tarl.ros.missing import refusing, unsupported
+from pytest_tarl.ros.messages.packages import PARTS, could_be_package, is_package, package_module
+from pytest_tarl.ros.missing import unsupported
 from pytest_tarl.ros.threads import threads_as_tasks
 
 if TYPE_CHECKING:
@@ -31,7 +31,28 @@ STANDINS: Mapping[str, str] = {  # what a node imports → what it gets
     "genpy.rostime": "genpy",
     "genpy.message": "genpy",
     "roslib": "roslib",
+    "rospy.client": "rospy",
+    "rospy.core": "rospy",
+    "rospy.msg": "rospy.topics",
+    "rospy.names": "rospy.node",
+    "rospy.service": "rospy.services",
+    "rospy.topics": "rospy.topics",
     "rclpy": "rclpy",
+    "rclpy.action": "rclpy.action",
+    "rclpy.action.client": "rclpy.action.client",
+    "rclpy.action.server": "rclpy.action.server",
+    "rclpy.clock_type": "rclpy.time",
+    "rclpy.constants": "rclpy.time",
+    "rclpy.context": "rclpy.context",
+    "rclpy.event_handler": "rclpy.event_handler",
+    "rclpy.guard_condition": "rclpy.waitable",
+    "rclpy.lifecycle": "rclpy.lifecycle",
+    "rclpy.lifecycle.node": "rclpy.lifecycle.node",
+    "rclpy.lifecycle.publisher": "rclpy.lifecycle.entities",
+    "rclpy.lifecycle.managed_entity": "rclpy.lifecycle.entities",
+    "rclpy.qos_event": "rclpy.event_handler",
+    "rclpy.topic_endpoint_info": "rclpy.graph",
+    "rclpy.wait_for_message": "rclpy.wait_for_message",
     "rclpy.callback_groups": "rclpy.callback_groups",
     "rclpy.client": "rclpy.services",
     "rclpy.clock": "rclpy.time",
@@ -48,19 +69,43 @@ STANDINS: Mapping[str, str] = {  # what a node imports → what it gets
     "rclpy.task": "rclpy.task",
     "rclpy.time": "rclpy.time",
     "rclpy.timer": "rclpy.timer",
-    "rclpy.utilities": "rclpy",
+    "rclpy.utilities": "rclpy.utilities",
     "message_filters": "message_filters",
+    "actionlib": "actionlib",
+    "actionlib.simple_action_client": "actionlib.client",
+    "actionlib.simple_action_server": "actionlib.server",
+    "ament_index_python": "packages",
+    "ament_index_python.packages": "packages",
+    "rospkg": "packages",
+    "roslib.packages": "packages",
+    "sensor_msgs.point_cloud2": "point_cloud2",
+    "sensor_msgs_py": "point_cloud2",
+    "sensor_msgs_py.point_cloud2": "point_cloud2",
+    "tf": "tf",
+    "tf.broadcaster": "tf",
+    "tf.listener": "tf",
+    "tf2_geometry_msgs": "tf2_geometry_msgs",
+    "tf2_py": "tf2_ros",
+    "tf2_ros": "tf2_ros",
+    "tf2_ros.buffer": "tf2_ros.buffer",
+    "tf2_ros.buffer_interface": "tf2_ros.buffer",
+    "tf2_ros.static_transform_broadcaster": "tf2_ros.broadcasting",
+    "tf2_ros.transform_broadcaster": "tf2_ros.broadcasting",
+    "tf2_ros.transform_listener": "tf2_ros.broadcasting",
+    "cv_bridge": "cv_bridge",
+    "cv_bridge.core": "cv_bridge",
     "tf.transformations": "transformations",
     "tf_transformations": "transformations",
 }
-_TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_transformations")
-_MISSING = ("tf2_ros", "tf2_py", "actionlib", "rosgraph", "rospkg", "rosnode", "rostopic", "dynamic_reconfigure",
-            "moveit_commander", "ament_index_python", "rcl_interfaces.srv", "image_transport")  # fmt: skip
+_TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_transformations", "tf2_ros", "tf2_py",
+            "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py")  # fmt: skip
+_MISSING = ("rosgraph", "rosnode", "rostopic", "rosservice", "rosparam", "roslaunch", "moveit_commander",
+            "image_transport", "tf2_sensor_msgs", "tf2_kdl", "ros_numpy", "nav2_simple_commander")  # fmt: skip
 _STANDALONE = (
     "cv_bridge",
     "rospkg",
     "ament_index_python",
-)  # work without a running ROS, so a real one is fine
+)  # a real one works without a running ROS and is preferred
 
 
 class StandinFinder:
@@ -76,12 +121,20 @@ class StandinFinder:
     ) -> ModuleSpec | None:
         """Find a stand-in; None leaves the name to the other finders."""
         root = name.partition(".")[0]
-        if root in _TALKING or root in _MISSING:
+        if name in STANDINS and root not in _STANDALONE:
             return self._spec(name)
+        if root in _TALKING or root in _MISSING:
+            return self._talking_spec(name)
+        if root in _STANDALONE:
+            return None if PathFinder.find_spec(root) is not None else self._spec(name)
         if not could_be_package(root):
             return None
         kind = self._kind_of_importer()
-        return self._spec(name) if installed_kind(root) != kind and is_package(kind, root) else None
+        if installed_kind(root) == kind or not is_package(kind, root):
+            return None
+        if name.partition(".")[2].partition(".")[0] in PARTS or not _is_ordinary_package(root):
+            return self._spec(name)
+        return None  # a package of nodes that defines messages as well: only those are ours
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         """Make a module object that nobody has seen before."""
@@ -92,9 +145,6 @@ class StandinFinder:
             module.__dict__.update(
                 {key: value for key, value in vars(home).items() if not _is_import_data(key)}
             )
-        elif name == "tf":
-            module = ModuleType(name)
-            module.__dict__["__getattr__"] = refusing("tf")
         else:
             made = package_module(self._kind or "ros2", name)
             if made is None:
@@ -107,13 +157,21 @@ class StandinFinder:
     def exec_module(self, module: ModuleType) -> None:
         """Do nothing: the module is complete."""
 
+    def _talking_spec(self, name: str) -> ModuleSpec:
+        """Find a part of a package that talks: its messages, where it has some."""
+        root, _, part = name.partition(".")
+        kind = self._kind or "ros1"
+        if part.partition(".")[0] in PARTS and is_package(kind, root):
+            return self._spec(name)
+        if name == root and is_package(kind, root):
+            return self._spec(name)
+        raise unsupported(name)
+
     def _spec(self, name: str) -> ModuleSpec:
         root = name.partition(".")[0]
         if self._kind is None and root in ("rospy", "rclpy"):
             self._settle_kind("ros1" if root == "rospy" else "ros2")
-        if root in _TALKING and name not in STANDINS and name != "tf":
-            raise unsupported(name)
-        if name in _MISSING:
+        if root in _STANDALONE and name not in STANDINS:
             raise unsupported(name)
         return ModuleSpec(name, self, origin="pytest_tarl.ros", is_package=True)  # type: ignore[arg-type]
 
@@ -129,6 +187,16 @@ class StandinFinder:
         if installed_kind("std_msgs") not in (None, kind):
             self.hidden.update(_hide({name for name in sys.modules if could_be_package(name)}))
         return kind
+
+
+def _is_ordinary_package(root: str) -> bool:
+    spec = PathFinder.find_spec(root)
+    return (
+        spec is not None
+        and spec.loader is not None
+        and spec.origin is not None
+        and installed_kind(root) is None
+    )
 
 
 def _kind_named_by(frame: FrameType | None) -> Kind | None:

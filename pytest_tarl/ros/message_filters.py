@@ -1,15 +1,16 @@
-"""message_filters for both ROS generations: subscribers, time synchronisers, cache-free."""
+"""message_filters for both ROS generations: subscribers, caches, synchronisers."""
 
-# ruff: noqa: ARG002 (signatures are message_filters' own)
+# ruff: noqa: N802 (names are message_filters')
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import product
 from typing import Any
 
 from pytest_tarl.ros.clock import NANOSECONDS, nanoseconds
 
-__all__ = ["ApproximateTimeSynchronizer", "SimpleFilter", "Subscriber", "TimeSynchronizer"]
+__all__ = ["ApproximateTimeSynchronizer", "Cache", "SimpleFilter", "Subscriber", "TimeSynchronizer"]
 
 
 class SimpleFilter:
@@ -18,13 +19,13 @@ class SimpleFilter:
     def __init__(self) -> None:
         self.callbacks: dict[int, tuple[Callable[..., Any], tuple[Any, ...]]] = {}
 
-    def registerCallback(self, cb: Callable[..., Any], *args: Any) -> int:  # noqa: N802 (message_filters' name)
+    def registerCallback(self, cb: Callable[..., Any], *args: Any) -> int:
         """Have a function called with what comes out; return a number for it."""
         number = len(self.callbacks)
         self.callbacks[number] = (cb, args)
         return number
 
-    def signalMessage(self, *msg: Any) -> None:  # noqa: N802
+    def signalMessage(self, *msg: Any) -> None:
         """Let messages come out."""
         for callback, args in list(self.callbacks.values()):
             callback(*(msg + args))
@@ -35,7 +36,7 @@ class Subscriber(SimpleFilter):
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__()
-        if hasattr(args[0], "create_subscription"):
+        if args and hasattr(args[0], "create_subscription"):
             node, message_type, topic, *rest = args
             self.topic = topic
             profile = kwargs.pop("qos_profile", rest[0] if rest else 10)
@@ -43,14 +44,14 @@ class Subscriber(SimpleFilter):
         else:
             from pytest_tarl.ros.rospy.topics import Subscriber as RospySubscriber
 
-            self.topic = args[0]
+            self.topic = args[0] if args else kwargs["name"]
             self.sub = RospySubscriber(*args, **{**kwargs, "callback": self.callback})
 
     def callback(self, msg: Any) -> None:
         """Pass a message on."""
         self.signalMessage(msg)
 
-    def getTopic(self) -> str:  # noqa: N802
+    def getTopic(self) -> str:
         """Return the topic."""
         return str(self.topic)
 
@@ -59,6 +60,60 @@ class Subscriber(SimpleFilter):
         end = getattr(self.sub, "unregister", None) or self.sub.destroy
         end()
 
+    unsubscribe = unregister
+
+
+class Cache(SimpleFilter):
+    """Keeps the last messages of a filter, in the order of their stamps, and passes them on."""
+
+    def __init__(
+        self, f: SimpleFilter | None = None, cache_size: int = 1, allow_headerless: bool = False
+    ) -> None:
+        super().__init__()
+        self.cache_size = cache_size
+        self.allow_headerless = allow_headerless
+        self._kept: list[tuple[int, Any]] = []
+        if f is not None:
+            self.connectInput(f)
+
+    def connectInput(self, f: SimpleFilter) -> None:
+        """Take messages from a filter."""
+        f.registerCallback(self.add)
+
+    def add(self, msg: Any) -> None:
+        """Take a message."""
+        self._kept.append((_time_of(msg, self.allow_headerless), msg))
+        self._kept.sort(key=lambda entry: entry[0])
+        del self._kept[: -self.cache_size]
+        self.signalMessage(msg)
+
+    def getInterval(self, from_stamp: Any, to_stamp: Any) -> list[Any]:
+        """Return the messages between two instants, both included."""
+        low, high = _ns(from_stamp), _ns(to_stamp)
+        return [message for stamp, message in self._kept if low <= stamp <= high]
+
+    def getElemAfterTime(self, stamp: Any) -> Any:
+        """Return the oldest message at or after an instant, None if there is none."""
+        return next((message for time, message in self._kept if time >= _ns(stamp)), None)
+
+    def getElemBeforeTime(self, stamp: Any) -> Any:
+        """Return the newest message at or before an instant, None if there is none."""
+        return next((message for time, message in reversed(self._kept) if time <= _ns(stamp)), None)
+
+    def getLastestTime(self) -> Any:
+        """Return the newest message's stamp, None if there is none (the name is message_filters')."""
+        return self._kept[-1][1].header.stamp if self._kept else None
+
+    getLatestTime = getLastestTime  # noqa: N815
+
+    def getOldestTime(self) -> Any:
+        """Return the oldest message's stamp, None if there is none."""
+        return self._kept[0][1].header.stamp if self._kept else None
+
+    def getLast(self) -> Any:
+        """Return the newest message."""
+        return self._kept[-1][1] if self._kept else None
+
 
 class TimeSynchronizer(SimpleFilter):
     """Passes messages on together when their stamps are equal."""
@@ -66,21 +121,32 @@ class TimeSynchronizer(SimpleFilter):
     def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
         super().__init__()
         self.queue_size = queue_size
-        self.queues: list[dict[int, Any]] = [{} for _ in fs]
+        self.queues: list[dict[int, Any]] = []
+        self.connectInput(fs)
+
+    def connectInput(self, fs: Sequence[SimpleFilter]) -> None:
+        """Take messages from filters."""
+        self.queues = [{} for _ in fs]
         for index, source in enumerate(fs):
-            source.registerCallback(self._add, index)
+            source.registerCallback(self._take, index)
 
-    def _add(self, message: Any, index: int) -> None:
-        stamp = _stamp(message)
-        self._keep(index, stamp, message)
-        if all(stamp in queue for queue in self.queues):
-            self.signalMessage(*(queue.pop(stamp) for queue in self.queues))
-
-    def _keep(self, index: int, stamp: int, message: Any) -> None:
+    def _take(self, message: Any, index: int) -> None:
+        stamp = self._stamp(message)
         queue = self.queues[index]
         queue[stamp] = message
         while len(queue) > self.queue_size:
             del queue[min(queue)]
+        self._match(stamp, index)
+
+    def _stamp(self, message: Any) -> int:
+        return _time_of(message, False)
+
+    def _match(self, stamp: int, index: int) -> None:  # noqa: ARG002 (index matters to others)
+        if all(stamp in queue for queue in self.queues):
+            self._signal([stamp] * len(self.queues))
+
+    def _signal(self, stamps: Sequence[int]) -> None:
+        self.signalMessage(*(queue.pop(stamp) for queue, stamp in zip(self.queues, stamps, strict=True)))
 
 
 class ApproximateTimeSynchronizer(TimeSynchronizer):
@@ -92,39 +158,51 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         queue_size: int,
         slop: float,
         allow_headerless: bool = False,
-        reset: bool = False,
+        reset: bool = False,  # noqa: ARG002 (for clocks that jump back)
         **_: Any,
     ) -> None:
-        super().__init__(fs, queue_size)
-        self.slop = nanoseconds(slop)
+        self.slop = nanoseconds(slop) if isinstance(slop, int | float) else slop.nanoseconds
         self.allow_headerless = allow_headerless
+        super().__init__(fs, queue_size)
 
-    def _add(self, message: Any, index: int) -> None:
-        stamp = _stamp(message) if hasattr(message, "header") or not self.allow_headerless else _now()
-        self._keep(index, stamp, message)
-        chosen = [self._nearest(queue, stamp) for queue in self.queues]
-        if None in chosen:
-            return
-        stamps = [s for s in chosen if s is not None]
-        if max(stamps) - min(stamps) <= self.slop:
-            self.signalMessage(*(queue.pop(s) for queue, s in zip(self.queues, stamps, strict=True)))
+    def _stamp(self, message: Any) -> int:
+        return _time_of(message, self.allow_headerless)
 
-    def _nearest(self, queue: dict[int, Any], stamp: int) -> int | None:
-        near = [other for other in queue if abs(other - stamp) <= self.slop]
-        return min(near, key=lambda other: (abs(other - stamp), other), default=None)
-
-
-def _stamp(message: Any) -> int:
-    stamp = message.header.stamp
-    if hasattr(stamp, "nsecs"):
-        return int(stamp.secs) * NANOSECONDS + int(stamp.nsecs)
-    return int(stamp.sec) * NANOSECONDS + int(stamp.nanosec)
+    def _match(self, stamp: int, index: int) -> None:
+        """Pass on the first set around the new message that lies within the slop, the nearest ones first."""
+        near = [
+            [stamp]
+            if i == index
+            else sorted((s for s in queue if abs(s - stamp) <= self.slop), key=_distance(stamp))
+            for i, queue in enumerate(self.queues)
+        ]
+        for stamps in product(*near):
+            if max(stamps) - min(stamps) <= self.slop:
+                self._signal(stamps)
+                return
 
 
-def _now() -> int:
+def _distance(stamp: int) -> Callable[[int], tuple[int, int]]:
+    return lambda other: (abs(other - stamp), other)
+
+
+def _time_of(message: Any, allow_headerless: bool) -> int:
+    if hasattr(message, "header"):
+        return _ns(message.header.stamp)
+    if not allow_headerless:
+        raise TypeError("Cannot use message filters with non-stamped messages. Use the 'allow_headerless' constructor "
+                        "option to auto-assign ROS time to headerless messages.")  # fmt: skip
     from pytest_tarl.ros.process import current_process
 
     return current_process("message_filters").scheduler.time
+
+
+def _ns(stamp: Any) -> int:
+    if hasattr(stamp, "to_nsec"):
+        return int(stamp.to_nsec())
+    if hasattr(stamp, "nanoseconds"):
+        return int(stamp.nanoseconds)
+    return int(stamp.sec) * NANOSECONDS + int(stamp.nanosec)
 
 
 def __getattr__(name: str) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -10,11 +11,12 @@ from pytest_tarl.ros.messages import ros1, ros2
 from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.installed import installed_class
 
-_BUILDERS = {
+_BUILDERS: dict[tuple[str, str], Callable[[str, str], type[Any] | None]] = {
     ("ros1", "msg"): ros1.message_class,
     ("ros1", "srv"): ros1.service_class,
     ("ros2", "msg"): ros2.message_class,
     ("ros2", "srv"): ros2.service_class,
+    ("ros2", "action"): ros2.action_class,
 }
 
 
@@ -23,12 +25,16 @@ def message_type(name: str) -> type[Any]:
 
     `nav_msgs/Odometry` names the ROS 1 class, `nav_msgs/msg/Odometry` the ROS 2 class, as in the two systems
     themselves. Either can be published to nodes of either kind: subscribers get the class they asked for.
+    Services and actions likewise: `std_srvs/srv/SetBool`, `nav2_msgs/action/NavigateToPose`, `std_srvs/SetBool`.
     """
     package, *middle, short = name.split("/") if "/" in name else ("", name)
-    if middle not in ([], ["msg"], ["srv"]) or not package or not short:
+    if middle not in ([], ["msg"], ["srv"], ["action"]) or not package or not short:
         raise UnsupportedApiError(f"{name!r} is not the name of a message type: write 'nav_msgs/msg/Odometry' "
                                   "(ROS 2) or 'nav_msgs/Odometry' (ROS 1).")  # fmt: skip
-    found = find_class("ros2" if middle else "ros1", package, short, middle[0] if middle else "msg")
+    if middle:
+        found = find_class("ros2", package, short, middle[0])
+    else:
+        found = find_class("ros1", package, short) or find_class("ros1", package, short, "srv")
     if found is None:
         raise unknown_type(package, short)
     return found
@@ -36,8 +42,11 @@ def message_type(name: str) -> type[Any]:
 
 @cache
 def find_class(kind: Kind, package: str, name: str, part: str = "msg") -> type[Any] | None:
-    """Return the class of a message (`part` msg) or service (srv) type, None if nobody knows it."""
-    return installed_class(kind, package, name, part) or _BUILDERS[kind, part](package, name)
+    """Return the class of a message (`part` msg), service (srv) or action type, None if nobody knows it."""
+    builder = _BUILDERS.get((kind, part))
+    return installed_class(kind, package, name, part) or (
+        builder(package, name) if builder is not None else None
+    )
 
 
 def class_like(own: type, other: type) -> type[Any]:
@@ -54,7 +63,8 @@ def class_like(own: type, other: type) -> type[Any]:
 def unknown_type(package: str, name: str) -> UnsupportedApiError:
     """Say that a type has no definition."""
     return UnsupportedApiError(
-        f"Message type {package}/{name} is not known here: it is in none of the packages whose definitions come with "
-        f"`rosbags`, and no installed ROS package {package!r} of the right generation was found. Check the "
-        "spelling, or install the package (source your workspace) in the environment that runs pytest."
+        f"Message type {package}/{name} is not known here: its definition comes neither with `rosbags` nor with us, "
+        f"there is no {name}.msg, .srv or .action in the repository of the node, and no installed ROS package "
+        f"{package!r} of the right generation was found. Check the spelling, or put the package's definitions "
+        "below the repository, or install it (source your workspace) in the environment that runs pytest."
     )

@@ -8,7 +8,8 @@ from functools import cache
 from typing import Any, Literal
 
 from pytest_tarl.errors import UnsupportedApiError
-from pytest_tarl.ros.messages.extras import MESSAGES, SERVICES
+from pytest_tarl.ros.messages.known import Part, known_types
+from pytest_tarl.ros.messages.workspace import workspace_types
 
 Kind = Literal["ros1", "ros2"]
 Shape = Literal["one", "array", "sequence"]
@@ -83,44 +84,98 @@ class Definition:
 
 def find_message(kind: Kind, package: str, name: str) -> Definition | None:
     """Return the definition of a message type, None if nobody knows it."""
-    own = MESSAGES.get(kind, {}).get(f"{package}/{name}")
+    own = _text(kind, "msg", f"{package}/{name}")
     if own is not None:
         return parse(kind, package, name, own)
     shipped = _store(kind).get(f"{package}/msg/{name}")
-    return _from_store(kind, package, name, shipped) if shipped is not None else None
+    if shipped is not None:
+        return _from_store(kind, package, name, shipped)
+    return _part_of_action(package, name) if kind == "ros1" else None
 
 
 def find_service(kind: Kind, package: str, name: str) -> tuple[Definition, Definition] | None:
     """Return request and response of a service type, None if nobody knows it."""
-    own = SERVICES.get(kind, {}).get(f"{package}/{name}")
+    own = _text(kind, "srv", f"{package}/{name}")
     if own is None:
         return None
-    request, _, response = own.partition("---")
     suffixes = ("Request", "Response") if kind == "ros1" else ("_Request", "_Response")
+    request, response = _sections(own, 2)
     return parse(kind, package, name + suffixes[0], request), parse(
         kind, package, name + suffixes[1], response
     )
 
 
-@cache
-def message_names(kind: Kind, package: str) -> tuple[str, ...]:
-    """List the message types of a package."""
+def find_action(kind: Kind, package: str, name: str) -> tuple[Definition, Definition, Definition] | None:
+    """Return goal, result and feedback of an action type, None if nobody knows it."""
+    own = _text(kind, "action", f"{package}/{name}")
+    if own is None:
+        return None
+    joint = "" if kind == "ros1" else "_"
+    goal, result, feedback = (
+        parse(kind, package, f"{name}{joint}{half}", text)
+        for half, text in zip(("Goal", "Result", "Feedback"), _sections(own, 3), strict=True)
+    )
+    return goal, result, feedback
+
+
+_ACTION_MESSAGES = {  # what genaction makes of an action, outermost last
+    "Goal": None,
+    "Result": None,
+    "Feedback": None,
+    "ActionGoal": "std_msgs/Header header\nactionlib_msgs/GoalID goal_id\n{0}Goal goal",
+    "ActionResult": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{0}Result result",
+    "ActionFeedback": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{0}Feedback feedback",
+    "Action": "{0}ActionGoal action_goal\n{0}ActionResult action_result\n{0}ActionFeedback action_feedback",
+}
+
+
+def _part_of_action(package: str, name: str) -> Definition | None:
+    """Return one of the seven messages that ROS 1 generates for an action."""
+    for ending, template in reversed(_ACTION_MESSAGES.items()):
+        halves = find_action("ros1", package, name.removesuffix(ending)) if name.endswith(ending) else None
+        if halves is not None:
+            if template is None:
+                return halves[("Goal", "Result", "Feedback").index(ending)]
+            return parse("ros1", package, name, template.format(name.removesuffix(ending)))
+    return None
+
+
+def _text(kind: Kind, part: Part, name: str) -> str | None:
+    """Return a definition from the user's workspace, else a known one."""
+    return workspace_types(part).get(name) or known_types(kind, part).get(name)
+
+
+def _sections(text: str, count: int) -> list[str]:
+    """Split at the lines of dashes."""
+    found = [""]
+    for line in text.splitlines():
+        if line.strip() == "---":
+            found.append("")
+        else:
+            found[-1] += line + "\n"
+    return (found + [""] * count)[:count]
+
+
+def type_names(kind: Kind, package: str, part: Part) -> tuple[str, ...]:
+    """List the messages, services or actions of a package."""
     shipped = [name.rpartition("/")[2] for name in _store(kind) if name.startswith(f"{package}/")]
-    own = [name.partition("/")[2] for name in MESSAGES.get(kind, {}) if name.startswith(f"{package}/")]
-    return tuple(sorted({*shipped, *own}))
-
-
-@cache
-def service_names(kind: Kind, package: str) -> tuple[str, ...]:
-    """List the service types of a package."""
-    return tuple(sorted(n.partition("/")[2] for n in SERVICES.get(kind, {}) if n.startswith(f"{package}/")))
+    own = [
+        name.partition("/")[2]
+        for table in (workspace_types(part), known_types(kind, part))
+        for name in table
+        if name.startswith(f"{package}/")
+    ]
+    names = {*own, *(shipped if part == "msg" else ())}
+    if kind == "ros1" and part == "msg":
+        names |= {n + ending for n in type_names(kind, package, "action") for ending in _ACTION_MESSAGES}
+    return tuple(sorted(names))
 
 
 def parse(kind: Kind, package: str, name: str, text: str) -> Definition:
     """Read a message definition as it stands in a `.msg` file (one half of a `.srv` file)."""
     fields, constants = [], []
     for line in text.splitlines():
-        line = line.split("#")[0].strip()
+        line = _without_comment(kind, line)
         if not line:
             continue
         kind_of_value, rest = line.split(None, 1)
@@ -128,21 +183,41 @@ def parse(kind: Kind, package: str, name: str, text: str) -> Definition:
         if assigned:
             constants.append(Constant(left.strip(), _constant(kind_of_value, value.strip())))
         else:
-            fields.append(_field(kind_of_value, left.split(), package))
+            fields.append(_field(kind, kind_of_value, rest, package))
     return Definition(kind, package, name, tuple(fields), tuple(constants))
 
 
-def _field(type_text: str, words: list[str], package: str) -> Field:
+def _without_comment(kind: Kind, line: str) -> str:
+    """Cut the comment off, except in a text constant of ROS 1, where a `#` belongs to the text."""
+    head = line.split("#")[0]
+    return (line if kind == "ros1" and head.lstrip().startswith("string ") and "=" in head else head).strip()
+
+
+_TIMES = {"time": "builtin_interfaces/Time", "duration": "builtin_interfaces/Duration"}
+
+
+def _field(kind: Kind, type_text: str, rest: str, package: str) -> Field:
+    name, _, default_text = rest.strip().partition(" ")
     base, bracket, size = type_text.partition("[")
     base = base.split("<=")[0]
     if base == "Header":
         base = "std_msgs/Header"
+    if kind == "ros2":
+        base = _TIMES.get(base, base)
     if base not in _PRIMITIVES and "/" not in base:
         base = f"{package}/{base}"
-    default = _constant(base, words[1]) if len(words) > 1 else None
     size = size.rstrip("]")
     shape: Shape = "one" if not bracket else "array" if size.isdigit() else "sequence"
-    return Field(words[0], base, shape, int(size) if size.isdigit() else 0, default)
+    default = (
+        _default_value(base, default_text.strip(), many=shape != "one") if default_text.strip() else None
+    )
+    return Field(name, base, shape, int(size) if size.isdigit() else 0, default)
+
+
+def _default_value(base: str, text: str, *, many: bool) -> Any:
+    if many:
+        return [_constant(base, item.strip()) for item in text.strip("[]").split(",") if item.strip()]
+    return _constant(base, text)
 
 
 def _constant(type_text: str, value: str) -> Any:

@@ -6,35 +6,37 @@ from types import ModuleType
 from typing import Any
 
 from pytest_tarl.ros.messages import find_class, ros1, unknown_type
-from pytest_tarl.ros.messages.definitions import Kind, message_names, service_names
+from pytest_tarl.ros.messages.definitions import Kind, type_names
+from pytest_tarl.ros.messages.known import Part
+from pytest_tarl.ros.messages.workspace import workspace_packages
 
 _ENDINGS = ("_msgs", "_srvs", "_interfaces")
-_OTHERS = ("turtlesim",)
+_OTHERS = {"turtlesim", "rospy_tutorials", "actionlib_tutorials", "beginner_tutorials", "turtle_actionlib",
+           "roscpp_tutorials", "roscpp", "bond", "theora_image_transport"}  # fmt: skip
+PARTS: tuple[Part, ...] = ("msg", "srv", "action")
 
 
 def could_be_package(name: str) -> bool:
     """Tell by the name alone whether this may be a message package: most imports are none and must stay cheap."""
-    return name.endswith(_ENDINGS) or name in _OTHERS
+    return name.endswith(_ENDINGS) or name in _OTHERS or name in workspace_packages()
 
 
 def is_package(kind: Kind, package: str) -> bool:
     """Tell whether definitions of this message package are known."""
-    return bool(message_names(kind, package) or service_names(kind, package))
+    return any(type_names(kind, package, part) for part in PARTS)
 
 
 class PackagePart(ModuleType):
-    """`package.msg` or `package.srv`."""
+    """`package.msg`, `package.srv` or `package.action`."""
 
-    def __init__(self, kind: Kind, package: str, part: str) -> None:
+    def __init__(self, kind: Kind, package: str, part: Part) -> None:
         super().__init__(f"{package}.{part}", f"Types of {package}, built from their definitions.")
         self._kind, self._package, self._part = kind, package, part
         self.__path__: list[str] = []
 
     def __getattr__(self, name: str) -> Any:
         if name == "__all__":
-            return list(
-                message_names(self._kind, self._package) if self._part == "msg" else self._service_names()
-            )
+            return self._names()
         if name.startswith("__"):
             raise AttributeError(name)
         found = find_class(self._kind, self._package, name, self._part) or self._half_of_service(name)
@@ -43,14 +45,10 @@ class PackagePart(ModuleType):
         setattr(self, name, found)
         return found
 
-    def _service_names(self) -> list[str]:
-        names = service_names(self._kind, self._package)
-        halves = (
-            [name + half for name in names for half in ("Request", "Response")]
-            if self._kind == "ros1"
-            else []
-        )
-        return sorted([*names, *halves])
+    def _names(self) -> list[str]:
+        names = type_names(self._kind, self._package, self._part)
+        halves = ("Request", "Response") if self._kind == "ros1" and self._part == "srv" else ()
+        return sorted([*names, *(name + half for name in names for half in halves)])
 
     def _half_of_service(self, name: str) -> Any:
         """ROS 1 has `SetBoolRequest` and `SetBoolResponse` beside `SetBool`."""
@@ -65,8 +63,11 @@ def package_module(kind: Kind, name: str) -> ModuleType | None:
     package, _, part = name.partition(".")
     if not is_package(kind, package):
         return None
-    if part in ("msg", "srv"):
-        return PackagePart(kind, package, part)
+    for known in PARTS:
+        if part == known:
+            return PackagePart(kind, package, known)
+        if part.startswith(f"{known}._"):  # `from std_msgs.msg._String import String`
+            return PackagePart(kind, package, known)
     if part:
         return None
     module = ModuleType(package, f"Message package {package}, built from definitions.")

@@ -15,7 +15,14 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any, ClassVar
 
-from pytest_tarl.ros.messages.definitions import Definition, Field, find_message, find_service
+from pytest_tarl.ros.messages.definitions import (
+    Definition,
+    Field,
+    find_action,
+    find_message,
+    find_service,
+    parse,
+)
 from pytest_tarl.ros.messages.ros2_copy import copy_function
 from pytest_tarl.ros.messages.ros2_fields import LITERALS, default, setter
 from pytest_tarl.ros.messages.values import FieldError
@@ -99,6 +106,46 @@ def service_class(package: str, name: str) -> type | None:
     return type(name, (), {"__module__": f"{package}.srv", "Request": request, "Response": response})
 
 
+@cache
+def action_class(package: str, name: str) -> type | None:
+    """Return the class that stands for an action type, with `Goal`, `Result`, `Feedback` and what carries them."""
+    parts = find_action("ros2", package, name)
+    if parts is None:
+        return None
+    goal, result, feedback = (build(part, f"{package}.action") for part in parts)
+    action = type(
+        name, (), {"__module__": f"{package}.action", "Goal": goal, "Result": result, "Feedback": feedback}
+    )
+    action.Impl = type("Impl", (), _carriers(package, name, parts))  # type: ignore[attr-defined]
+    return action
+
+
+def _carriers(package: str, name: str, parts: tuple[Definition, ...]) -> dict[str, Any]:
+    """Build what rosidl wraps around the parts of an action."""
+    goal, result, feedback = (f"{package}/{part.name}" for part in parts)
+    uuid = "unique_identifier_msgs/UUID goal_id"
+    texts = {
+        "SendGoal_Request": f"{uuid}\n{goal} goal",
+        "SendGoal_Response": "bool accepted\nbuiltin_interfaces/Time stamp",
+        "GetResult_Request": uuid,
+        "GetResult_Response": f"int8 status\n{result} result",
+        "FeedbackMessage": f"{uuid}\n{feedback} feedback",
+    }
+    made = {
+        key: build(parse("ros2", package, f"{name}_{key}", text), f"{package}.action")
+        for key, text in texts.items()
+    }
+    services = {
+        f"{service}Service": type(
+            f"{name}_{service}",
+            (),
+            {"Request": made[f"{service}_Request"], "Response": made[f"{service}_Response"]},
+        )
+        for service in ("SendGoal", "GetResult")
+    }
+    return {**services, "FeedbackMessage": made["FeedbackMessage"]}
+
+
 def build(definition: Definition, module: str) -> type[Message]:
     """Build the class of a definition."""
     fields = [field for field in definition.fields if field.name != "structure_needs_at_least_one_member"]
@@ -124,10 +171,13 @@ def build(definition: Definition, module: str) -> type[Message]:
         },
     }
     scope["cls"] = built = type(definition.name, (Message,), namespace)
+    if not module.endswith(".msg"):
+        _parts[f"{definition.package}/{definition.name}"] = built
     return built
 
 
 _UNSET = object()
+_parts: dict[str, type[Message]] = {}  # halves of services and actions, which carriers refer to
 
 
 def _init_lines(fields: list[Field]) -> list[str]:
@@ -165,7 +215,7 @@ def _idl_text(field: Field) -> str:
 
 
 def _nested(base: str) -> type[Message]:
-    built = message_class(*base.split("/"))
+    built = _parts.get(base) or message_class(*base.split("/"))
     if built is None:
         raise FieldError(f"message type {base} is not known")
     return built

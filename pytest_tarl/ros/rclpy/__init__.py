@@ -7,17 +7,40 @@ from __future__ import annotations
 from typing import Any
 
 from pytest_tarl.ros.missing import refuse
-from pytest_tarl.ros.rclpy import exceptions, executors, logging, parameter, qos, task
+from pytest_tarl.ros.rclpy import (
+    callback_groups,
+    context,
+    exceptions,
+    executors,
+    logging,
+    node,
+    parameter,
+    qos,
+    task,
+    time,
+    timer,
+    topics,
+    utilities,
+)
+from pytest_tarl.ros.rclpy import services as service
 from pytest_tarl.ros.rclpy.context import Context, this_context
 from pytest_tarl.ros.rclpy.executors import Executor, SingleThreadedExecutor
 from pytest_tarl.ros.rclpy.node import Node
 from pytest_tarl.ros.rclpy.parameter import Parameter
 from pytest_tarl.ros.rclpy.task import Future
+from pytest_tarl.ros.rclpy.utilities import get_default_context, ok, shutdown, try_shutdown
+
+clock = duration = clock_type = (
+    time  # `import rclpy` is enough for rclpy.duration.Duration, as in rclpy itself
+)
+publisher = subscription = topics
+client = service
 
 __all__ = [
-    "Context", "Future", "Node", "Parameter", "create_node", "exceptions", "executors", "get_default_context",
-    "get_global_executor", "init", "logging", "ok", "parameter", "qos", "shutdown", "spin", "spin_once",
-    "spin_until_future_complete", "task", "try_shutdown",
+    "Context", "Executor", "Future", "Node", "Parameter", "callback_groups", "client", "clock", "clock_type", "context",
+    "create_node", "duration", "exceptions", "executors", "get_default_context", "get_global_executor", "init",
+    "logging", "node", "ok", "parameter", "publisher", "qos", "service", "shutdown", "spin", "spin_once",
+    "spin_until_future_complete", "subscription", "task", "time", "timer", "try_shutdown", "utilities",
 ]  # fmt: skip
 
 
@@ -28,26 +51,6 @@ def init(*, args: list[str] | None = None, context: Any = None, **_: Any) -> Con
     return found
 
 
-def shutdown(*, context: Any = None, uninstall_handlers: bool | None = None) -> None:
-    """Bring ROS down. Raises RCLError if it is."""
-    this_context("shutdown").shutdown()
-
-
-def try_shutdown(*, context: Any = None, uninstall_handlers: bool | None = None) -> None:
-    """Bring ROS down unless it is."""
-    this_context("try_shutdown").try_shutdown()
-
-
-def ok(*, context: Any = None) -> bool:
-    """Tell whether ROS is up."""
-    return this_context("ok").ok()
-
-
-def get_default_context(*, shutting_down: bool = False) -> Context:
-    """Return the context of this program."""
-    return this_context("get_default_context")
-
-
 def create_node(node_name: str, **options: Any) -> Node:
     """Create a node."""
     return Node(node_name, **options)
@@ -55,11 +58,11 @@ def create_node(node_name: str, **options: Any) -> Node:
 
 def get_global_executor() -> Executor:
     """Return the executor that the spin functions use."""
-    context = this_context("get_global_executor")
-    if context.executor is None:
-        context.executor = SingleThreadedExecutor()
-    found: Executor = context.executor
-    return found
+    found = this_context("get_global_executor")
+    if found.executor is None:
+        found.executor = SingleThreadedExecutor()
+    executor: Executor = found.executor
+    return executor
 
 
 def spin(node: Node, executor: Executor | None = None) -> None:

@@ -219,6 +219,8 @@ class Executor:
                 group.ending_execution(work)
         if outcome is not None:
             self._go_on(outcome, work)
+        if work.is_ready():
+            self._stirred = True  # it has more to do
 
     def _go_on(self, outcome: Any, work: Entity) -> None:
         """Drive the coroutine that a callback returned; its group stays occupied until it has returned."""
@@ -266,6 +268,8 @@ class MultiThreadedExecutor(Executor):
         self._active += 1
         self._clock.spawn(self.process, self._run_beside, work)
         self._clock.yield_now()
+        if work.is_ready():
+            self._stirred = True
 
     def _run_beside(self, work: Entity) -> None:
         try:

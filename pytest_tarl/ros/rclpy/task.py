@@ -110,15 +110,16 @@ class Task(Future):
         self._args, self._kwargs = args, kwargs or {}
         self._coroutine: Any = handler if inspect.iscoroutine(handler) else None
         self._blocked = False
+        self._executing = False
         self.callback_group: Any = None
 
     def is_ready(self) -> bool:
         """Tell whether it can go on."""
-        return not (self._done or self._cancelled or self._blocked)
+        return not (self._done or self._cancelled or self._blocked or self._executing)
 
     def executing(self) -> bool:
-        """Tell whether it has begun and waits for something."""
-        return self._blocked
+        """Tell whether it is running now."""
+        return self._executing
 
     def cancel(self) -> None:
         """Give up on it; a coroutine that has begun is closed."""
@@ -128,11 +129,14 @@ class Task(Future):
 
     def run(self) -> None:
         """Run on to the end or to the next future that is not done; what it raises, its executor's spin raises."""
+        self._executing = True
         try:
             self._advance()
         except Exception as error:
             self.set_exception(error)
             raise
+        finally:
+            self._executing = False
 
     def _advance(self) -> None:
         if self._coroutine is None:

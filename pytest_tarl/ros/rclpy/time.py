@@ -27,13 +27,30 @@ class ClockType(IntEnum):
 class Duration:
     """A span of time in nanoseconds."""
 
-    def __init__(self, *, seconds: float = 0, nanoseconds: int = 0) -> None:
+    def __init__(self, *, seconds: float = 0, nanoseconds: float = 0) -> None:
         self._nanoseconds = int(seconds * NANOSECONDS) + int(nanoseconds)
 
     @property
     def nanoseconds(self) -> int:
         """The whole span in nanoseconds."""
         return self._nanoseconds
+
+    def __add__(self, other: Any) -> Duration:
+        if not isinstance(other, Duration):
+            return NotImplemented
+        return Duration(nanoseconds=self._nanoseconds + other.nanoseconds)
+
+    def __sub__(self, other: Any) -> Duration:
+        if not isinstance(other, Duration):
+            return NotImplemented
+        return Duration(nanoseconds=self._nanoseconds - other.nanoseconds)
+
+    def __mul__(self, factor: Any) -> Duration:
+        if not isinstance(factor, int | float):
+            return NotImplemented
+        return Duration(nanoseconds=self._nanoseconds * factor)
+
+    __rmul__ = __mul__
 
     def to_msg(self) -> Any:
         """Return it as builtin_interfaces/Duration."""
@@ -161,6 +178,38 @@ class Time:
         return NotImplemented if behind is None else behind >= 0
 
 
+class ClockChange(IntEnum):
+    """How a clock jumped."""
+
+    ROS_TIME_NO_CHANGE = 1
+    ROS_TIME_ACTIVATED = 2
+    ROS_TIME_DEACTIVATED = 3
+    SYSTEM_TIME_NO_CHANGE = 4
+
+
+class JumpThreshold:
+    """From which size on a jump of the clock is told."""
+
+    def __init__(
+        self, *, min_forward: Duration | None, min_backward: Duration | None, on_clock_change: bool = True
+    ) -> None:
+        self.min_forward, self.min_backward = min_forward, min_backward
+        self.on_clock_change = on_clock_change
+
+
+class JumpHandle:
+    """Holds callbacks for jumps."""
+
+    def unregister(self) -> None:
+        """Let go of them."""
+
+    def __enter__(self) -> JumpHandle:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.unregister()
+
+
 class Clock:
     """Reads the virtual clock, whatever kind it claims to be."""
 
@@ -175,6 +224,17 @@ class Clock:
     def now(self) -> Time:
         """Return the present instant."""
         return Time(nanoseconds=self._scheduler.time, clock_type=self.clock_type)
+
+    def create_jump_callback(
+        self, threshold: Any, *, pre_callback: Any = None, post_callback: Any = None
+    ) -> JumpHandle:
+        """Take callbacks for jumps of the clock; it never jumps."""
+        if pre_callback is None and post_callback is None:
+            raise ValueError("One of pre_callback or post_callback must be callable")
+        return JumpHandle()
+
+    def __repr__(self) -> str:
+        return f"Clock(clock_type={self.clock_type.name})"
 
     def sleep_until(self, until: Time, context: Any = None) -> bool:
         """Wait for an instant; tell whether it was reached before the shutdown."""
@@ -192,6 +252,11 @@ class ROSClock(Clock):
 
     def __init__(self) -> None:
         super().__init__(clock_type=ClockType.ROS_TIME)
+
+    @property
+    def ros_time_is_active(self) -> bool:
+        """Tell that time comes from the simulation, which it does."""
+        return True
 
 
 class Infinite:

@@ -93,6 +93,7 @@ class Subscription:
         self.callback_group = group
         self.qos_profile = profile
         self.queue: deque[Any] = deque(maxlen=profile.capacity)
+        self.arrived: Callable[[], None] | None = None  # told when a message is there, besides the executor
         self._place = place
         wants_kept = profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
         self.process.bus.attach(self, place, wants_kept=wants_kept)
@@ -108,6 +109,8 @@ class Subscription:
         """Queue a message, dropping the oldest when full, and tell the node's executor."""
         self.queue.append(message)
         self.node.notify()
+        if self.arrived is not None:
+            self.arrived()
 
     def is_ready(self) -> bool:
         """Tell whether a message waits."""

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from pytest_tarl.errors import UnsupportedApiError
 from pytest_tarl.ros import message_type
 from pytest_tarl.ros.messages import find_class, snapshot
-from pytest_tarl.ros.messages.definitions import find_message, message_names, parse
+from pytest_tarl.ros.messages.definitions import find_message, parse, type_names
 from pytest_tarl.ros.messages.installed import installed_kind
 from pytest_tarl.ros.messages.snapshot import field_names, translate
 from pytest_tarl.ros.messages.values import FieldError
@@ -43,7 +43,7 @@ def test_unknown_types_and_wrong_names_are_told() -> None:
 @pytest.mark.parametrize("kind", ["ros1", "ros2"])
 def test_every_common_message_is_built_copied_and_shown(kind: str) -> None:
     for package in PACKAGES:
-        for name in message_names(kind, package):  # type: ignore[arg-type]
+        for name in type_names(kind, package, "msg"):  # type: ignore[arg-type]
             made = find_class(kind, package, name)()  # type: ignore[arg-type, misc]
             twin = snapshot.snapshot(made)
             assert twin is not made

@@ -491,7 +491,8 @@ def test_what_is_missing_is_named(start: Start) -> None:
     for missing, line in {
         r"rospy\.get_master": "import rospy; rospy.get_master()",
         r"rospy\.impl": "import rospy.impl",
-        r"tf2_ros": "import tf2_ros",
+        r"rosgraph": "import rosgraph",
+        r"tf2_kdl": "import tf2_kdl",
         r"Spaceship": "import rospy; from std_msgs.msg import Spaceship",
     }.items():
         with pytest.raises(UnsupportedApiError, match=missing):

@@ -1,0 +1,29 @@
+"""Definitions of widely used message, service and action types that `rosbags` does not ship."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from typing import Literal
+
+from pytest_tarl.ros.messages.known import actions, msgs, srvs
+
+Part = Literal["msg", "srv", "action"]
+_BOTH = {"msg": msgs.BOTH, "srv": srvs.BOTH, "action": actions.BOTH}
+_ROS1 = {"msg": msgs.ROS1, "srv": srvs.ROS1, "action": actions.ROS1}
+_ROS2 = {"msg": msgs.ROS2, "srv": srvs.ROS2, "action": actions.ROS2}
+
+
+@cache
+def known_types(kind: str, part: Part) -> Mapping[str, str]:
+    """Return the definitions by type name, in the syntax of .msg, .srv and .action files."""
+    own = _ROS1 if kind == "ros1" else _ROS2
+    return {**_split(_BOTH[part]), **_split(own[part])}
+
+
+def _split(text: str) -> dict[str, str]:
+    found = {}
+    for section in text.split("== ")[1:]:
+        name, _, definition = section.partition("\n")
+        found[name.strip()] = definition
+    return found

@@ -1,0 +1,256 @@
+"""Service types, as `== package/Name` and the lines of its .srv file."""
+
+BOTH = """
+== gazebo_msgs/GetModelState
+string model_name
+string relative_entity_name
+---
+std_msgs/Header header
+geometry_msgs/Pose pose
+geometry_msgs/Twist twist
+bool success
+string status_message
+== gazebo_msgs/SetModelState
+gazebo_msgs/ModelState model_state
+---
+bool success
+string status_message
+== gazebo_msgs/SpawnModel
+string model_name
+string model_xml
+string robot_namespace
+geometry_msgs/Pose initial_pose
+string reference_frame
+---
+bool success
+string status_message
+== gazebo_msgs/DeleteModel
+string model_name
+---
+bool success
+string status_message
+== mavros_msgs/CommandBool
+bool value
+---
+bool success
+uint8 result
+== mavros_msgs/CommandTOL
+float32 min_pitch
+float32 yaw
+float32 latitude
+float32 longitude
+float32 altitude
+---
+bool success
+uint8 result
+== mavros_msgs/SetMode
+uint8 base_mode
+string custom_mode
+---
+bool mode_sent
+== nav_msgs/GetMap
+---
+nav_msgs/OccupancyGrid map
+== nav_msgs/GetPlan
+geometry_msgs/PoseStamped start
+geometry_msgs/PoseStamped goal
+float32 tolerance
+---
+nav_msgs/Path plan
+== nav_msgs/LoadMap
+string map_url
+---
+uint8 RESULT_SUCCESS=0
+uint8 RESULT_MAP_DOES_NOT_EXIST=1
+uint8 RESULT_INVALID_MAP_DATA=2
+uint8 RESULT_INVALID_MAP_METADATA=3
+uint8 RESULT_UNDEFINED_FAILURE=255
+nav_msgs/OccupancyGrid map
+uint8 result
+== nav_msgs/SetMap
+nav_msgs/OccupancyGrid map
+geometry_msgs/PoseWithCovarianceStamped initial_pose
+---
+bool success
+== sensor_msgs/SetCameraInfo
+sensor_msgs/CameraInfo camera_info
+---
+bool success
+string status_message
+== std_srvs/Empty
+---
+== std_srvs/SetBool
+bool data
+---
+bool success
+string message
+== std_srvs/Trigger
+---
+bool success
+string message
+== tf2_msgs/FrameGraph
+---
+string frame_yaml
+== turtlebot3_msgs/Dqn
+uint8 action
+bool init
+---
+float32[] state
+float32 reward
+bool done
+== turtlebot3_msgs/Sound
+uint8 value
+---
+bool success
+string message
+== turtlesim/Kill
+string name
+---
+== turtlesim/SetPen
+uint8 r
+uint8 g
+uint8 b
+uint8 width
+uint8 off
+---
+== turtlesim/Spawn
+float32 x
+float32 y
+float32 theta
+string name
+---
+string name
+== turtlesim/TeleportAbsolute
+float32 x
+float32 y
+float32 theta
+---
+== turtlesim/TeleportRelative
+float32 linear
+float32 angular
+---
+"""
+
+ROS1 = """
+== diagnostic_msgs/SelfTest
+---
+string id
+byte passed
+diagnostic_msgs/DiagnosticStatus[] status
+== dynamic_reconfigure/Reconfigure
+dynamic_reconfigure/Config config
+---
+dynamic_reconfigure/Config config
+== roscpp/Empty
+---
+== roscpp/GetLoggers
+---
+roscpp/Logger[] loggers
+== roscpp/SetLoggerLevel
+string logger
+string level
+---
+== roscpp_tutorials/TwoInts
+int64 a
+int64 b
+---
+int64 sum
+== rospy_tutorials/AddTwoInts
+int64 a
+int64 b
+---
+int64 sum
+== rospy_tutorials/BadTwoInts
+int64 a
+int32 b
+---
+int32 sum
+== beginner_tutorials/AddTwoInts
+int64 a
+int64 b
+---
+int64 sum
+"""
+
+ROS2 = """
+== action_msgs/CancelGoal
+GoalInfo goal_info
+---
+int8 ERROR_NONE=0
+int8 ERROR_REJECTED=1
+int8 ERROR_UNKNOWN_GOAL_ID=2
+int8 ERROR_GOAL_TERMINATED=3
+int8 return_code
+GoalInfo[] goals_canceling
+== diagnostic_msgs/SelfTest
+---
+string id
+byte passed
+diagnostic_msgs/DiagnosticStatus[] status
+== example_interfaces/AddTwoInts
+int64 a
+int64 b
+---
+int64 sum
+== example_interfaces/SetBool
+bool data
+---
+bool success
+string message
+== example_interfaces/Trigger
+---
+bool success
+string message
+== lifecycle_msgs/ChangeState
+Transition transition
+---
+bool success
+== lifecycle_msgs/GetAvailableStates
+---
+State[] available_states
+== lifecycle_msgs/GetAvailableTransitions
+---
+TransitionDescription[] available_transitions
+== lifecycle_msgs/GetState
+---
+State current_state
+== nav2_msgs/ClearEntireCostmap
+std_msgs/Empty request
+---
+std_msgs/Empty response
+== nav2_msgs/ManageLifecycleNodes
+uint8 STARTUP=0
+uint8 PAUSE=1
+uint8 RESUME=2
+uint8 RESET=3
+uint8 SHUTDOWN=4
+uint8 command
+---
+bool success
+== rcl_interfaces/DescribeParameters
+string[] names
+---
+ParameterDescriptor[] descriptors
+== rcl_interfaces/GetParameterTypes
+string[] names
+---
+uint8[] types
+== rcl_interfaces/GetParameters
+string[] names
+---
+ParameterValue[] values
+== rcl_interfaces/ListParameters
+uint64 DEPTH_RECURSIVE=0
+string[] prefixes
+uint64 depth
+---
+ListParametersResult result
+== rcl_interfaces/SetParameters
+Parameter[] parameters
+---
+SetParametersResult[] results
+== rcl_interfaces/SetParametersAtomically
+Parameter[] parameters
+---
+SetParametersResult result
+"""

@@ -1,0 +1,103 @@
+"""Where packages are: ament_index_python, rospkg and roslib.packages, by the package.xml files around the nodes."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from pytest_tarl.ros.messages.workspace import package_folders
+from pytest_tarl.ros.missing import refuse
+
+__all__ = [
+    "InvalidROSPkgException",
+    "PackageNotFoundError",
+    "ResourceNotFound",
+    "RosPack",
+    "get_package_prefix",
+    "get_package_share_directory",
+    "get_package_share_path",
+    "get_packages_with_prefixes",
+    "get_pkg_dir",
+    "on_ros_path",
+]  # fmt: skip
+
+
+class PackageNotFoundError(KeyError):
+    """There is no such package below the repository of the node (ament's name)."""
+
+
+class ResourceNotFound(Exception):  # noqa: N818
+    """There is no such package below the repository of the node (rospkg's name)."""
+
+
+class InvalidROSPkgException(Exception):  # noqa: N818
+    """There is no such package below the repository of the node (roslib's name)."""
+
+
+def _folder(package: str) -> Path | None:
+    return package_folders().get(package)
+
+
+def get_package_share_directory(package_name: str) -> str:
+    """Return the folder of a package's source: what would be installed from there is found there."""
+    found = _folder(package_name)
+    if found is None:
+        raise PackageNotFoundError(
+            f"package '{package_name}' not found, looked below the repository of the node"
+        )
+    return str(found)
+
+
+def get_package_share_path(package_name: str) -> Path:
+    """Return the folder of a package's source as a path."""
+    return Path(get_package_share_directory(package_name))
+
+
+def get_package_prefix(package_name: str) -> str:
+    """Return the folder of a package's source."""
+    return get_package_share_directory(package_name)
+
+
+def get_packages_with_prefixes() -> dict[str, str]:
+    """Return all packages and their folders."""
+    return {name: str(folder) for name, folder in package_folders().items()}
+
+
+def get_pkg_dir(package: str, required: bool = True) -> str | None:
+    """Return a package's folder, as roslib does."""
+    found = _folder(package)
+    if found is None and required:
+        raise InvalidROSPkgException(f"cannot locate package {package!r} below the repository of the node")
+    return None if found is None else str(found)
+
+
+def on_ros_path(p: str) -> bool:
+    """Tell whether a path is inside of a package."""
+    return any(Path(p).is_relative_to(folder) for folder in package_folders().values())
+
+
+class RosPack:
+    """rospkg's view of the packages."""
+
+    def get_path(self, name: str) -> str:
+        """Return a package's folder."""
+        found = _folder(name)
+        if found is None:
+            raise ResourceNotFound(name)
+        return str(found)
+
+    def list(self) -> Any:
+        """List the packages."""
+        return [*package_folders()]
+
+    def get_depends(self, name: str, implicit: bool = True) -> Any:  # noqa: ARG002 (rospkg's signature)
+        """List what a package depends on, as its manifest says."""
+        manifest = ElementTree.parse(Path(self.get_path(name), "package.xml"))  # noqa: S314 (the user's own file)
+        return [tag.text for tag in manifest.getroot() if tag.tag.endswith("depend") and tag.text]
+
+
+def __getattr__(name: str) -> Any:
+    """Name what is missing."""
+    raise refuse(str(sys._getframe(1).f_globals.get("__name__", "rospkg")), name)

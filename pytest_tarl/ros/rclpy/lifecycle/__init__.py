@@ -1,0 +1,27 @@
+"""rclpy's lifecycle nodes: a state machine that a test, a manager or the node itself drives."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pytest_tarl.ros.missing import refuse
+from pytest_tarl.ros.rclpy.lifecycle.entities import (
+    LifecyclePublisher,
+    ManagedEntity,
+    SimpleManagedEntity,
+)
+from pytest_tarl.ros.rclpy.lifecycle.node import LifecycleNode, LifecycleNodeMixin
+from pytest_tarl.ros.rclpy.lifecycle.states import LifecycleState, TransitionCallbackReturn
+
+Node, NodeMixin = LifecycleNode, LifecycleNodeMixin
+State, Publisher = LifecycleState, LifecyclePublisher
+
+__all__ = [
+    "LifecycleNode", "LifecycleNodeMixin", "LifecyclePublisher", "LifecycleState", "ManagedEntity", "Node", "NodeMixin",
+    "Publisher", "SimpleManagedEntity", "State", "TransitionCallbackReturn",
+]  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    """Name what is missing."""
+    raise refuse("rclpy.lifecycle", name)

@@ -1,0 +1,157 @@
+"""rospy's older `tf`: listener and broadcaster with tuples instead of messages."""
+
+# ruff: noqa: N802 (names are tf's)
+
+from __future__ import annotations
+
+from copy import deepcopy
+from typing import Any
+
+from pytest_tarl.ros import transformations
+from pytest_tarl.ros.messages import message_type
+from pytest_tarl.ros.missing import refuse
+from pytest_tarl.ros.tf2_geometry_msgs import (
+    do_transform_point,
+    do_transform_pose_stamped,
+    do_transform_vector3,
+)
+from pytest_tarl.ros.tf2_ros.broadcasting import TransformBroadcaster as Tf2Broadcaster
+from pytest_tarl.ros.tf2_ros.broadcasting import TransformListener as Tf2Listener
+from pytest_tarl.ros.tf2_ros.buffer import Buffer
+from pytest_tarl.ros.transforms import (
+    ConnectivityException,
+    ExtrapolationException,
+    LookupException,
+    TransformException,
+    clean,
+)
+
+Exception = TransformException  # noqa: A001 (tf.Exception)
+
+__all__ = [
+    "ConnectivityException", "Exception", "ExtrapolationException", "LookupException", "TransformBroadcaster",
+    "TransformListener", "TransformerROS", "transformations",
+]  # fmt: skip
+
+Parts = tuple[float, ...]
+
+
+class TransformerROS:
+    """Answers questions about frames in tuples: (x, y, z) and (x, y, z, w)."""
+
+    def __init__(self, interpolate: bool = True, cache_time: Any = None) -> None:  # noqa: ARG002
+        self._buffer = Buffer(cache_time)
+
+    def lookupTransform(
+        self, target_frame: str, source_frame: str, time: Any
+    ) -> tuple[list[float], list[float]]:
+        """Return translation and rotation of one frame in another."""
+        found = self._buffer.lookup_transform(clean(target_frame), clean(source_frame), time).transform
+        move, turn = found.translation, found.rotation
+        return [move.x, move.y, move.z], [turn.x, turn.y, turn.z, turn.w]
+
+    def canTransform(self, target_frame: str, source_frame: str, time: Any) -> bool:
+        """Tell whether a look-up would succeed."""
+        return bool(self._buffer.can_transform(clean(target_frame), clean(source_frame), time))
+
+    def waitForTransform(
+        self,
+        target_frame: str,
+        source_frame: str,
+        time: Any,
+        timeout: Any,
+        polling_sleep_duration: Any = None,  # noqa: ARG002
+    ) -> None:
+        """Wait until a look-up would succeed. Raises tf.Exception when the time is over."""
+        found, reason = self._buffer.can_transform(
+            clean(target_frame), clean(source_frame), time, timeout, True
+        )
+        if not found:
+            raise TransformException(f"timeout: {reason}")
+
+    def getLatestCommonTime(self, source_frame: str, dest_frame: str) -> Any:
+        """Return the newest instant for which both frames are known."""
+        return self._buffer.get_latest_common_time(clean(source_frame), clean(dest_frame))
+
+    def frameExists(self, frame_id: str) -> bool:
+        """Tell whether a frame was heard of."""
+        return self._buffer.frame_exists(frame_id)
+
+    def getFrameStrings(self) -> list[str]:
+        """List all frames."""
+        return self._buffer.frames()
+
+    def allFramesAsString(self) -> str:
+        """Describe the tree."""
+        return self._buffer.all_frames_as_string()
+
+    def setTransform(self, transform: Any, authority: str = "") -> None:
+        """Add geometry_msgs/TransformStamped."""
+        self._buffer.set_transform(transform, authority)
+
+    def fromTranslationRotation(self, translation: Parts, rotation: Parts) -> Any:
+        """Return the 4×4 matrix of a translation and a quaternion."""
+        return transformations.compose(translation, rotation)
+
+    def transformPoint(self, target_frame: str, ps: Any) -> Any:
+        """Return a PointStamped in another frame."""
+        return do_transform_point(ps, self._to(target_frame, ps))
+
+    def transformVector3(self, target_frame: str, v3s: Any) -> Any:
+        """Return a Vector3Stamped in another frame."""
+        return do_transform_vector3(v3s, self._to(target_frame, v3s))
+
+    def transformPose(self, target_frame: str, ps: Any) -> Any:
+        """Return a PoseStamped in another frame."""
+        return do_transform_pose_stamped(ps, self._to(target_frame, ps))
+
+    def transformQuaternion(self, target_frame: str, ps: Any) -> Any:
+        """Return a QuaternionStamped in another frame."""
+        found = self._to(target_frame, ps)
+        turn, own = found.transform.rotation, ps.quaternion
+        moved = deepcopy(ps)
+        moved.header.frame_id = target_frame
+        product = transformations.quaternion_multiply(
+            (turn.x, turn.y, turn.z, turn.w), (own.x, own.y, own.z, own.w)
+        )
+        moved.quaternion.x, moved.quaternion.y, moved.quaternion.z, moved.quaternion.w = (
+            float(p) for p in product
+        )
+        return moved
+
+    def _to(self, target_frame: str, message: Any) -> Any:
+        header = message.header
+        return self._buffer.lookup_transform(clean(target_frame), clean(header.frame_id), header.stamp)
+
+
+class TransformListener(TransformerROS):
+    """Hears /tf and /tf_static."""
+
+    def __init__(self, interpolate: bool = True, cache_time: Any = None) -> None:
+        super().__init__(interpolate, cache_time)
+        self._listener = Tf2Listener(self._buffer)
+
+
+class TransformBroadcaster:
+    """Tells where frames are."""
+
+    def __init__(self, queue_size: int = 100) -> None:  # noqa: ARG002
+        self._broadcaster = Tf2Broadcaster()
+
+    def sendTransform(self, translation: Parts, rotation: Parts, time: Any, child: str, parent: str) -> None:
+        """Send one transform."""
+        message: Any = message_type("geometry_msgs/TransformStamped")()
+        message.header.frame_id, message.header.stamp, message.child_frame_id = parent, time, child
+        move, turn = message.transform.translation, message.transform.rotation
+        move.x, move.y, move.z = translation
+        turn.x, turn.y, turn.z, turn.w = rotation
+        self.sendTransformMessage(message)
+
+    def sendTransformMessage(self, transform: Any) -> None:
+        """Send geometry_msgs/TransformStamped."""
+        self._broadcaster.sendTransform(transform)
+
+
+def __getattr__(name: str) -> Any:
+    """Name what is missing."""
+    raise refuse("tf", name)

@@ -1,0 +1,217 @@
+"""tf2_ros's Buffer: look-ups with waiting, and transforming of stamped messages."""
+
+# ruff: noqa: ARG002 (signatures are tf2_ros's)
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+from pytest_tarl.ros.process import current_process
+from pytest_tarl.ros.transforms import DEFAULT_CACHE, TransformException, TransformTree, clean
+
+_LOOK = 10_000_000  # nanoseconds between two looks of a waiting look-up
+
+
+class TypeException(Exception):  # noqa: N818 (tf2_ros's name)
+    """Nobody knows how to transform a type."""
+
+
+class TransformRegistration:
+    """Who transforms which message class; importing tf2_geometry_msgs adds the geometry ones."""
+
+    def __init__(self) -> None:
+        self._converters: dict[Any, Callable[[Any, Any], Any]] = {}
+
+    def add(self, key: Any, callback: Callable[[Any, Any], Any]) -> None:
+        """Add a type."""
+        self._converters[key] = callback
+
+    def get(self, key: Any) -> Callable[[Any, Any], Any]:
+        """Return who transforms a type. Raises TypeException."""
+        if key in self._converters:
+            return self._converters[key]
+        geometry = import_module("pytest_tarl.ros.tf2_geometry_msgs")
+        found: Callable[[Any, Any], Any] | None = geometry.TRANSFORMERS.get(key.__name__)
+        if found is None:
+            raise TypeException(f"Type {key} if not loaded or supported")
+        return found
+
+
+class BufferInterface:
+    """What both kinds of buffers offer on top of look-ups."""
+
+    def __init__(self) -> None:
+        self.registration = TransformRegistration()
+
+    def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = None) -> Any:
+        """Return how one frame lies in another."""
+        raise NotImplementedError
+
+    def transform(
+        self, object_stamped: Any, target_frame: str, timeout: Any = None, new_type: Any = None
+    ) -> Any:
+        """Return a stamped message in another frame."""
+        header = object_stamped.header
+        found = self.lookup_transform(target_frame, header.frame_id, header.stamp, timeout)
+        return self.registration.get(type(object_stamped))(object_stamped, found)
+
+
+class Buffer(BufferInterface):
+    """Keeps what was heard of frames and answers questions about them."""
+
+    def __init__(self, cache_time: Any = None, debug: Any = True, node: Any = None) -> None:
+        super().__init__()
+        self.process = current_process("tf2_ros.Buffer")
+        self._tree = TransformTree(nanoseconds_of(cache_time) if cache_time is not None else DEFAULT_CACHE)
+        self._waiting: list[tuple[Any, tuple[str, str, Any]]] = []
+
+    def set_transform(self, transform: Any, authority: str) -> None:
+        """Add geometry_msgs/TransformStamped."""
+        self._tree.add(transform, nanoseconds_of(transform.header.stamp), static=False, authority=authority)
+        self._answer()
+
+    def set_transform_static(self, transform: Any, authority: str) -> None:
+        """Add one that holds for ever."""
+        self._tree.add(transform, nanoseconds_of(transform.header.stamp), static=True, authority=authority)
+        self._answer()
+
+    def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = None) -> Any:
+        """Return how `source_frame` lies in `target_frame`, waiting up to `timeout`. Raises TransformException."""
+        self.can_transform(target_frame, source_frame, time, timeout)
+        return self._message(target_frame, source_frame, nanoseconds_of(time))
+
+    def lookup_transform_full(
+        self,
+        target_frame: str,
+        target_time: Any,
+        source_frame: str,
+        source_time: Any,
+        fixed_frame: str,
+        timeout: Any = None,
+    ) -> Any:
+        """Return how `source_frame` lay at one time in `target_frame` at another, by way of a frame at rest."""
+        self.can_transform(fixed_frame, source_frame, source_time, timeout)
+        inner, _ = self._tree.look_up(fixed_frame, source_frame, nanoseconds_of(source_time))
+        outer, when = self._tree.look_up(target_frame, fixed_frame, nanoseconds_of(target_time))
+        return _stamped(outer @ inner, target_frame, source_frame, when)
+
+    def can_transform(
+        self,
+        target_frame: str,
+        source_frame: str,
+        time: Any,
+        timeout: Any = None,
+        return_debug_tuple: bool = False,
+    ) -> Any:
+        """Tell whether a look-up would succeed, waiting up to `timeout` for it."""
+        clock = self.process.scheduler
+        span = nanoseconds_of(timeout) if timeout is not None else 0
+        until = clock.time + span
+        reason = self._problem(target_frame, source_frame, time)
+        while reason and clock.time < until and not self.process.ending:
+            clock.wait(min(until, clock.time + _LOOK))
+            reason = self._problem(target_frame, source_frame, time)
+        return (not reason, reason) if return_debug_tuple else not reason
+
+    async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
+        """Return how one frame lies in another, as soon as it is known (ROS 2)."""
+        await self.wait_for_transform_async(target_frame, source_frame, time)
+        return self.lookup_transform(target_frame, source_frame, time)
+
+    def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
+        """Return a future that is done when a look-up would succeed (ROS 2)."""
+        from pytest_tarl.ros.rclpy.task import Future
+
+        future = Future()
+        self._waiting.append((future, (target_frame, source_frame, time)))
+        self._answer()
+        return future
+
+    def all_frames_as_string(self) -> str:
+        """Describe the tree."""
+        return "\n".join(
+            f"Frame {c} exists with parent {e.parent}." for c, e in sorted(self._tree.edges.items())
+        )
+
+    def all_frames_as_yaml(self) -> str:
+        """Describe the tree as YAML."""
+        return "\n".join(f"{c}:\n  parent: '{e.parent}'" for c, e in sorted(self._tree.edges.items()))
+
+    def clear(self) -> None:
+        """Forget everything that moves."""
+        for child in [child for child, edge in self._tree.edges.items() if not edge.static]:
+            del self._tree.edges[child]
+
+    def get_latest_common_time(self, target_frame: str, source_frame: str) -> Any:
+        """Return the newest instant for which both frames are known."""
+        when = self._tree.look_up(target_frame, source_frame, 0)[1]
+        return _stamp(when)
+
+    def frame_exists(self, frame: str) -> bool:
+        """Tell whether a frame was heard of."""
+        return clean(frame) in self._tree.edges or any(
+            e.parent == clean(frame) for e in self._tree.edges.values()
+        )
+
+    def frames(self) -> list[str]:
+        """List all frames."""
+        return sorted({*self._tree.edges, *(edge.parent for edge in self._tree.edges.values())})
+
+    def _problem(self, target: str, source: str, time: Any) -> str:
+        try:
+            self._tree.look_up(target, source, nanoseconds_of(time))
+        except TransformException as error:
+            return str(error)
+        return ""
+
+    def _message(self, target: str, source: str, time: int) -> Any:
+        pose, when = self._tree.look_up(target, source, time)
+        return _stamped(pose, target, source, when)
+
+    def _answer(self) -> None:
+        for entry in tuple(self._waiting):
+            future, question = entry
+            if not self._problem(*question):
+                self._waiting.remove(entry)
+                future.set_result(True)
+
+
+def nanoseconds_of(time: Any) -> int:
+    """Return an instant or a span of either generation, or float seconds, in nanoseconds."""
+    if hasattr(time, "to_nsec"):
+        return int(time.to_nsec())
+    if hasattr(time, "nanoseconds"):
+        return int(time.nanoseconds)
+    if hasattr(time, "nanosec"):
+        return int(time.sec) * 1_000_000_000 + int(time.nanosec)
+    return round(float(time) * 1_000_000_000)
+
+
+def transform_stamped() -> Any:
+    """Make an empty geometry_msgs/TransformStamped of the generation that the node uses."""
+    return import_module("geometry_msgs.msg").TransformStamped()
+
+
+def _stamp(when: int) -> Any:
+    stamp = transform_stamped().header.stamp
+    seconds, rest = divmod(when, 1_000_000_000)
+    if hasattr(stamp, "nsecs"):
+        from pytest_tarl.ros.rospy.timing import Time
+
+        return Time(seconds, rest)
+    stamp.sec, stamp.nanosec = seconds, rest
+    return stamp
+
+
+def _stamped(pose: Any, target: str, source: str, when: int) -> Any:
+    made = transform_stamped()
+    made.header.stamp, made.header.frame_id, made.child_frame_id = _stamp(when), clean(target), clean(source)
+    move, turn = made.transform.translation, made.transform.rotation
+    move.x, move.y, move.z = (float(part) for part in pose.translation)
+    turn.x, turn.y, turn.z, turn.w = (float(part) for part in pose.rotation)
+    return made
+
+
+__all__ = ["Buffer", "BufferInterface", "TransformRegistration", "TypeException"]

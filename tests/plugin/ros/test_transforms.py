@@ -1,0 +1,192 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pytest_tarl.ros import message_type, transformations
+from pytest_tarl.ros.transforms import Rigid, slerp
+from tests.plugin.ros.conftest import Start
+
+angles = st.floats(-3.1, 3.1)
+ORDERS = [
+    frame + order
+    for frame in "sr"
+    for order in ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx", "zyz", "zxz", "xyx")
+]
+
+
+@pytest.mark.parametrize("axes", ORDERS)
+@given(angles, angles, angles)
+def test_angles_of_a_rotation_give_the_same_rotation(
+    axes: str, first: float, second: float, third: float
+) -> None:
+    matrix = transformations.euler_matrix(first, second, third, axes)
+    again = transformations.euler_matrix(*transformations.euler_from_matrix(matrix, axes), axes)
+    assert np.allclose(matrix, again, atol=1e-7)
+
+
+@given(angles, angles, angles)
+def test_quaternion_of_a_matrix_is_the_quaternion(roll: float, pitch: float, yaw: float) -> None:
+    quaternion = transformations.quaternion_from_euler(roll, pitch, yaw)
+    found = transformations.quaternion_from_matrix(transformations.quaternion_matrix(quaternion))
+    assert np.allclose(found, quaternion, atol=1e-9) or np.allclose(found, -quaternion, atol=1e-9)
+
+
+@pytest.mark.parametrize("pitch", [math.pi / 2, -math.pi / 2])
+@pytest.mark.parametrize("axes", ["sxyz", "rzyx", "rxyz", "szyx"])
+def test_looking_straight_up_loses_nothing(pitch: float, axes: str) -> None:
+    matrix = transformations.euler_matrix(0.3, pitch, 0.4, axes)
+    again = transformations.euler_matrix(*transformations.euler_from_matrix(matrix, axes), axes)
+    assert np.allclose(matrix, again, atol=1e-7)
+
+
+def test_moving_axes_are_fixed_axes_in_the_opposite_order() -> None:
+    assert np.allclose(transformations.quaternion_from_euler(0.1, 0.2, 0.3, "rzyx"),
+                       transformations.quaternion_from_euler(0.3, 0.2, 0.1, "sxyz"))  # fmt: skip
+
+
+@given(angles, angles)
+def test_halfway_between_two_turns_is_half_the_angle(start: float, end: float) -> None:
+    turns = [tuple(transformations.quaternion_about_axis(a, (0, 0, 1)).tolist()) for a in (start, end)]
+    half = slerp(turns[0], turns[1], 0.5)
+    assert math.isclose(sum(a * b for a, b in zip(half, turns[0], strict=True)),
+                        abs(sum(a * b for a, b in zip(half, turns[1], strict=True))), abs_tol=1e-6)  # fmt: skip
+
+
+@given(angles, st.floats(-5, 5), st.floats(-5, 5))
+def test_there_and_back_is_nowhere(yaw: float, x: float, y: float) -> None:
+    pose = Rigid((x, y, 1.0), (0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2)))
+    assert np.allclose((pose @ pose.inverse()).apply((1.0, 2.0, 3.0)), (1.0, 2.0, 3.0))
+
+
+def transform(parent: str, child: str, time: float, x: float, yaw: float = 0.0) -> object:
+    made = message_type("geometry_msgs/msg/TransformStamped")()
+    made.header.frame_id, made.child_frame_id = parent, child
+    made.header.stamp.sec, made.header.stamp.nanosec = divmod(round(time * 1e9), 10**9)
+    made.transform.translation.x = x
+    made.transform.rotation.z, made.transform.rotation.w = math.sin(yaw / 2), math.cos(yaw / 2)
+    return made
+
+
+TF2_NODE = """
+    import rclpy, tf2_ros
+    import tf2_geometry_msgs
+    from geometry_msgs.msg import PointStamped
+    from rclpy.duration import Duration
+    from rclpy.time import Time
+    from tf2_ros.buffer import Buffer
+    from tf2_ros.transform_listener import TransformListener
+
+    rclpy.init()
+    node = rclpy.create_node("n")
+    buffer = Buffer(cache_time=Duration(seconds=5))
+    TransformListener(buffer, node)
+    log = []
+
+    def ask():
+        now = Time(nanoseconds=1_500_000_000)
+        try:
+            found = buffer.lookup_transform("odom", "laser", now)
+        except tf2_ros.TransformException as error:
+            log.append(type(error).__name__)
+            return
+        move = found.transform.translation
+        log.append((round(move.x, 6), round(move.y, 6), found.header.frame_id, found.child_frame_id))
+        point = PointStamped()
+        point.header.frame_id = "laser"
+        point.point.x = 1.0
+        log.append(round(buffer.transform(point, "odom").point.x, 6))
+
+    node.create_timer(1.0, ask)
+    rclpy.spin(node)
+"""
+
+
+def test_buffer_interpolates_along_the_tree_and_names_what_is_missing(start: Start) -> None:
+    ros = start(TF2_NODE)
+    message = message_type("tf2_msgs/msg/TFMessage")
+    ros.step(1.0)
+    ros.bus.publish("/tf_static", message(transforms=[transform("base_link", "laser", 0.0, 0.5)]), latch=True)
+    ros.bus.publish("/tf", message(transforms=[transform("odom", "base_link", 1.0, 1.0)]))
+    ros.step(1.0)
+    ros.bus.publish("/tf", message(transforms=[transform("odom", "base_link", 2.0, 3.0, math.pi)]))
+    ros.step(1.0)
+    assert ros.namespace["log"] == [
+        "LookupException", "ExtrapolationException", (2.0, 0.5, "odom", "laser"), 1.5,
+    ]  # fmt: skip
+
+
+def test_broadcasters_and_listeners_of_two_nodes_meet(start: Start) -> None:
+    ros = start("""
+        import rospy, tf, tf2_ros
+        from geometry_msgs.msg import TransformStamped
+        rospy.init_node("a")
+        fixed = TransformStamped()
+        fixed.header.frame_id, fixed.child_frame_id = "map", "odom"
+        fixed.transform.translation.x, fixed.transform.rotation.w = 10.0, 1.0
+        tf2_ros.StaticTransformBroadcaster().sendTransform(fixed)
+        broadcaster = tf.TransformBroadcaster()
+        rate = rospy.Rate(10)
+        while not rospy.is_shutdown():
+            turn = tf.transformations.quaternion_from_euler(0, 0, 1.0)
+            broadcaster.sendTransform((1, 2, 0), turn, rospy.Time.now(), "base", "odom")
+            rate.sleep()
+    """)
+    start(
+        """
+        import rospy, tf
+        from geometry_msgs.msg import PoseStamped
+        rospy.init_node("b")
+        listener = tf.TransformListener()
+        try:
+            listener.lookupTransform("/map", "/base", rospy.Time(0))
+        except (tf.LookupException, tf.ConnectivityException, tf.ExtrapolationException):
+            early = True
+        listener.waitForTransform("map", "base", rospy.Time(0), rospy.Duration(2))
+        (trans, rot) = listener.lookupTransform("/map", "/base", rospy.Time(0))
+        yaw = tf.transformations.euler_from_quaternion(rot)[2]
+        pose = PoseStamped()
+        pose.header.frame_id, pose.pose.orientation.w = "base", 1.0
+        moved = listener.transformPose("map", pose).pose.position
+        try:
+            listener.waitForTransform("map", "nowhere", rospy.Time(0), rospy.Duration(0.5))
+        except tf.Exception as error:
+            said = str(error)
+    """,
+        ros=ros,
+    )
+    ros.step(2.0)
+    known = ros.namespace
+    assert known["early"]
+    assert (known["trans"], round(known["yaw"], 9)) == ([11.0, 2.0, 0.0], 1.0)
+    assert (known["moved"].x, known["moved"].y) == (11.0, 2.0)
+    assert '"nowhere" passed to lookupTransform argument does not exist' in known["said"]
+
+
+def test_transform_is_awaited_until_it_is_there(start: Start) -> None:
+    ros = start("""
+        import rclpy, tf2_ros
+        from rclpy.callback_groups import ReentrantCallbackGroup
+        from rclpy.time import Time
+        rclpy.init()
+        node = rclpy.create_node("n")
+        buffer = tf2_ros.Buffer()
+        tf2_ros.TransformListener(buffer, node)
+        log = []
+        async def ask():
+            timer.cancel()
+            found = await buffer.lookup_transform_async("odom", "base", Time())
+            log.append((found.transform.translation.x, node.get_clock().now().nanoseconds))
+        timer = node.create_timer(0.1, ask, callback_group=ReentrantCallbackGroup())
+        rclpy.spin(node)
+    """)
+    ros.step(0.5)
+    ros.bus.publish(
+        "/tf", message_type("tf2_msgs/msg/TFMessage")(transforms=[transform("odom", "base", 0.5, 4.0)])
+    )
+    ros.step(0.5)
+    assert ros.namespace["log"] == [(4.0, 500_000_000)]
