@@ -39,7 +39,7 @@ class Ros:
         self.remappings = dict(remappings or {})
         self.watchdog_limit = watchdog_limit
         self.scheduler = Scheduler()
-        self.bus = Bus(self, self.scheduler, self._run)
+        self.bus = Bus(self.scheduler, self._run, self)
         self.processes: list[Process] = []
         self._parts: dict[Any, Any] = {}
         self.closed = False
