@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
-from pytest_tarl.errors import RecordingError
+from pytest_tarl.errors import RecordingError, UnsupportedApiError
 from pytest_tarl.ros import services
 from pytest_tarl.ros.messages.snapshot import snapshot, stamp_if_unset, type_name
 from pytest_tarl.ros.messages.values import FieldError
@@ -53,8 +53,8 @@ class Topic:
 class Bus:
     """What the world publishes and hears. One per episode."""
 
-    def __init__(self, ros: Ros, scheduler: Scheduler, run: Callable[..., None]) -> None:
-        self._ros = ros
+    def __init__(self, scheduler: Scheduler, run: Callable[..., None], ros: Ros | None = None) -> None:
+        self._ros = ros  # None on a real ROS, where services are not ours
         self._scheduler = scheduler
         self._run = run
         self._topics: dict[str, Topic] = {}
@@ -96,7 +96,7 @@ class Bus:
 
     def serve(self, service: str, service_type: Any, handler: Callable[[Any], Any]) -> None:
         """Have the world answer a service: `handler(request)` returns the response."""
-        services.serve(self._ros, service, service_type, handler)
+        services.serve(self._embedded("serve"), service, service_type, handler)
 
     def call(self, service: str, request: Any) -> services.Reply:
         """Call a node's service from the world: the reply is `done` once the node has answered.
@@ -104,19 +104,26 @@ class Bus:
         A node that waits answers before this returns, one that is busy during a later `step`. Raises
         RecordingError when nobody serves it.
         """
+        ros = self._embedded("call")
         reply: list[services.Reply | None] = []
         if running_task() is not None:
-            reply.append(services.call(self._ros, service, request))
+            reply.append(services.call(ros, service, request))
         else:
-            self._run(lambda: reply.append(services.call(self._ros, service, request)))
+            self._run(lambda: reply.append(services.call(ros, service, request)))
         if reply[0] is None:
-            served = (
-                ", ".join(name for name, _ in self._ros.part(services.ServiceDirectory).names()) or "none"
-            )
+            names = [name for name, _ in ros.part(services.ServiceDirectory).names()]
             raise RecordingError(
-                f"No node serves {absolute(service)} now; services that are there: {served}."
+                f"No node serves {absolute(service)} now; services that are there: {', '.join(names) or 'none'}."
             )
         return reply[0]
+
+    def _embedded(self, what: str) -> Ros:
+        if self._ros is None:
+            raise UnsupportedApiError(
+                f"tarl.bus.{what} works with --tarl-ros=embedded only: on a real ROS let a small node of the test "
+                "call or answer the service."
+            )
+        return self._ros
 
     def topic(self, name: str) -> Topic:
         """Return the topic of that name, made at first use."""

@@ -169,12 +169,11 @@ def _same_layout(image: Any, wanted: str) -> bool:
 
 def _opencv(function: str) -> Any:
     try:
-        import cv2
+        return import_module("cv2")
     except ImportError as error:
         raise unsupported(
             f"CvBridge.{function} without OpenCV (pip install opencv-python-headless)"
         ) from error
-    return cv2
 
 
 def __getattr__(name: str) -> Any:
