@@ -15,6 +15,7 @@ from pytest_tarl.searching.accept import LOOKS, Acceptance, World, accept
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
 QUICK = 3  # seeds on which a guard is looked at before it is tested on fresh ones
+CLOSE = 0.01  # share of the loss within which two gains on the same seeds are equal
 MOST = 5  # candidates that are tested on fresh seeds
 
 
@@ -44,6 +45,7 @@ class Examiner:
         self.guards = guards
         self.tested = 0
         self.spent = 0
+        self.bar = float("-inf")  # what a candidate has to gain on known seeds, once one that did was refused
         self.refused = Refused(None, "no operand helps")
 
     def first(self, confirmed: Iterator[Candidate], trials: Trials) -> Accepted | None:
@@ -77,6 +79,9 @@ class Examiner:
         self.spent += len(found.drifted) + len(found.nominal)
         if found.accepted:
             return Accepted(candidate, found)
+        if found.reason == "gain too small":
+            close = CLOSE * (self.order.goal.enough - self.order.goal.online)
+            self.bar = max(self.bar, trials.gain(candidate, self.order.goal.pairs[:QUICK]) - close)
         self._refuse(Refused(candidate, found.reason, fmean(outcome.total for outcome in found.drifted)))
         return found.reason
 
@@ -88,6 +93,8 @@ class Examiner:
         for pair in goal.pairs[:QUICK]:
             if not goal.reached(trials(candidate, pair.seed)):
                 return "gain too small"
+        if trials.gain(candidate, goal.pairs[:QUICK]) < self.bar:
+            return "gain too small"
         for seed in self._firing(candidate)[:QUICK]:
             trials.charge()
             if self.mutants.run(candidate, seed, None).total < known[seed] - slack:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
@@ -16,6 +17,7 @@ from pytest_tarl.searching.units import NEAR, Unit
 
 MOST = 3  # parts of a joint repair
 PROMISING = 0.5  # a union that gains this share of the loss is worth balancing
+LEADERS = 4  # single ones that are joined with each other
 STEPS = (1.5, 0.65)  # by which the parts are moved
 
 
@@ -76,13 +78,18 @@ class Together:
             base, gain = yield from self._balanced(better, most)
 
     def unions(self, parts: Sequence[tuple[Unit, float]], guard: Guard) -> Iterator[Candidate]:
-        """Join the first two parts, then the first three, and balance what gains most."""
+        """Join the leading parts two by two, add a third to the best two, and balance what gains most."""
         best: tuple[Joint, float] | None = None
-        for size in range(2, min(MOST, len(parts)) + 1):
-            joint = Joint(tuple(parts[:size]), guard)
-            gained = yield from self.gain(joint)
-            if gained is not None and (best is None or gained > best[1]):
-                best = joint, gained
+        pairs = [Joint(both, guard) for both in combinations(parts[:LEADERS], 2)]
+        for _ in range(MOST - 1):
+            for joint in pairs:
+                gained = yield from self.gain(joint)
+                if gained is not None and (best is None or gained > best[1]):
+                    best = joint, gained
+            if best is None:
+                return
+            taken = best[0]
+            pairs = [taken.with_part(*part) for part in parts[:LEADERS] if part not in taken.parts]
         if best is not None and best[1] > PROMISING * max(self.goal.enough - self.goal.online, 0.0):
             yield from self._balanced(*best)
 
