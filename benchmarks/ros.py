@@ -1,13 +1,15 @@
-"""Episodes per CPU second of the in-process ROS: 100 control steps of a small rospy and a small rclpy node.
+"""Episodes per second, 100 control steps each, of a small rospy and a small rclpy node: embedded and on a real ROS.
 
-Run `python benchmarks/ros.py`. Every node is driven twice and must take the same path to the last bit.
+Run `python benchmarks/ros.py`, with the Python of `.venv-ros1` or `.venv-ros2` (`make setup-ros1 setup-ros2`) for the
+real ones. Every episode must take the same path to the last bit, on the real ROS that of the embedded one.
 """
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
-from time import process_time
+from importlib.machinery import PathFinder
+from time import perf_counter, process_time
 from typing import Any
 
 from pytest_tarl.ros import Ros, message_type
@@ -71,9 +73,8 @@ except ExternalShutdownException:
 """
 
 
-def episode(program: Callable[[], None], odometry_type: type[Any]) -> list[float]:
+def episode(program: Callable[[], None], odometry_type: type[Any], ros: Ros) -> list[float]:
     """Drive a node for `STEPS` steps; return where the robot was after each."""
-    ros = Ros()
     odometry = odometry_type()
     position, path = 0.0, []
     with ros.installed():
@@ -90,12 +91,40 @@ def episode(program: Callable[[], None], odometry_type: type[Any]) -> list[float
     return path
 
 
+def real(library: str) -> Callable[[], Ros] | None:
+    """Return what makes an episode's real ROS, None where it is not installed."""
+    if PathFinder.find_spec(library) is None:
+        return None
+    if library == "rospy":
+        from pytest_tarl.realros.rospy_ros import RospyRos
+
+        return RospyRos
+    from pytest_tarl.realros.rclpy_ros import RclpyRos
+
+    return RclpyRos
+
+
+def measured(
+    program: Callable[[], None],
+    odometry: type[Any],
+    make: Callable[[], Ros],
+    path: list[float],
+    seconds: float,
+) -> tuple[float, float, bool]:
+    """Return episodes per CPU second and per second of wall time, and whether each took this path."""
+    same, count, cpu, wall = True, 0, process_time(), perf_counter()
+    while process_time() - cpu < seconds:
+        same &= episode(program, odometry, make()) == path
+        count += 1
+    return count / (process_time() - cpu), count / (perf_counter() - wall), same
+
+
 def main() -> None:
-    """Print one row for each client library."""
+    """Print a row for each client library and each kind of ROS that is here."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=3.0, help="CPU seconds to measure each row")
     seconds = parser.parse_args().seconds
-    print(f"{'embedded':<10}{'episodes/s':>12}{'µs a step':>12}   reproducible")
+    print(f"{'':<16}{'episodes/CPU s':>16}{'episodes/s':>12}{'CPU µs a step':>15}   path")
     for name, source, odometry in (
         ("rospy", ROSPY_NODE, message_type("nav_msgs/Odometry")),
         ("rclpy", RCLPY_NODE, message_type("nav_msgs/msg/Odometry")),
@@ -105,13 +134,15 @@ def main() -> None:
         def program(code: Any = code) -> None:
             exec(code, {"__name__": "__main__"})  # noqa: S102 (the node above)
 
-        first = episode(program, odometry)
-        same, count, began = True, 0, process_time()
-        while process_time() - began < seconds:
-            same &= episode(program, odometry) == first
-            count += 1
-        rate = count / (process_time() - began)
-        print(f"{name:<10}{rate:>12.0f}{1e6 / rate / STEPS:>12.1f}   {'to the last bit' if same else 'NO'}")
+        path = episode(program, odometry, Ros())
+        for kind, make in (("embedded", Ros), ("real", real(name))):
+            if make is None:
+                print(f"real {name:<11}{'not installed here':>16}")
+                continue
+            episode(program, odometry, make())  # its connections are made once
+            cpu, wall, same = measured(program, odometry, make, path, seconds)
+            told = "that of the embedded ROS, to the last bit" if same else "ANOTHER"
+            print(f"{kind + ' ' + name:<16}{cpu:>16.1f}{wall:>12.1f}{1e6 / cpu / STEPS:>15.1f}   {told}")
 
 
 if __name__ == "__main__":

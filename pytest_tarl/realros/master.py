@@ -39,7 +39,8 @@ class Master:
     def answers(self) -> bool:
         """Tell whether it is there."""
         try:
-            return bool(xmlrpc.client.ServerProxy(self.uri).getPid("/tarl")[0] == 1)  # type: ignore[index]
+            with xmlrpc.client.ServerProxy(self.uri) as server:
+                return bool(server.getPid("/tarl")[0] == 1)  # type: ignore[index]
         except OSError:
             return False
 

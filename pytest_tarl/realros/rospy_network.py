@@ -48,6 +48,7 @@ class RospyNetwork:
         """Shut every node down, then the master."""
         for copy in (*self._kept.values(), self.world):
             copy.close()
+        self._server("close")()
         self.master.close()
 
     def begin(self, scheduler: WireScheduler, parameters: Mapping[str, Any]) -> None:

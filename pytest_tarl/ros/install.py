@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
 from importlib import import_module
 from importlib.machinery import ModuleSpec, PathFinder
 from types import CodeType, FrameType, ModuleType
@@ -121,6 +122,8 @@ class StandinFinder:
     ) -> ModuleSpec | None:
         """Find a stand-in; None leaves the name to the other finders."""
         root = name.partition(".")[0]
+        if root == "genpy" and _has_genpy():
+            return None  # what the installed messages are made of
         if name in STANDINS and root not in _STANDALONE:
             return self._spec(name)
         if root in _TALKING or root in _MISSING:
@@ -199,6 +202,11 @@ def _is_ordinary_package(root: str) -> bool:
     )
 
 
+@cache
+def _has_genpy() -> bool:
+    return PathFinder.find_spec("genpy") is not None
+
+
 def _kind_named_by(frame: FrameType | None) -> Kind | None:
     while frame is not None:
         named = _imports(frame.f_code)
@@ -223,7 +231,7 @@ def _is_import_data(key: str) -> bool:
 def standins_installed(ros: Ros) -> Iterator[None]:
     """Have imports find the stand-ins and nodes see the virtual clock as the host's; undo all of it on exit."""
     finder = StandinFinder()
-    finder.hidden = _hide(_TALKING)
+    finder.hidden = _hide(root for root in _TALKING if root != "genpy" or not _has_genpy())
     sys.meta_path.insert(0, finder)
     try:
         with virtual_host_time(ros.scheduler), threads_as_tasks():
