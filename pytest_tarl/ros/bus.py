@@ -148,7 +148,7 @@ class Bus:
         for listener in place.listeners:
             self._tell(listener, message)
         if place.subscriptions or self._observers:
-            self._scheduler.later(lambda: self._deliver(place, message, spare=False))
+            self._scheduler.later(lambda: self._deliver(place, message, False, publication))
         if running_task() is None:
             self._run(lambda: None)
 
@@ -166,9 +166,18 @@ class Bus:
         """Add a node's subscription; what was latched arrives as soon as the node waits."""
         self.subscribed.add(place.name)
         place.subscriptions.append(subscription)
+        for publication in place.publications:
+            changed = getattr(publication, "peers_changed", None)
+            if changed is not None:
+                self._scheduler.later(partial(changed, subscription, joined=True))
         if wants_kept:
             for message in place.kept.values():
                 self._scheduler.later(partial(self._hand, place, subscription, message))
+
+    def hand(self, place: Topic, subscription: Subscription, message: Any) -> None:
+        """Hand a copy of a message to one subscription only, when the running node waits."""
+        message = snapshot(message)
+        self._scheduler.later(lambda: self._hand(place, subscription, message))
 
     def disconnect(self, process: Process) -> None:
         """Forget the publications and subscriptions of a process that has ended."""
@@ -176,12 +185,14 @@ class Bus:
             place.subscriptions = [s for s in place.subscriptions if s.process is not process]
             place.publications = [p for p in place.publications if p.process is not process]
 
-    def _deliver(self, place: Topic, message: Any, spare: bool) -> None:
+    def _deliver(self, place: Topic, message: Any, spare: bool, origin: Publication | None = None) -> None:
         """Hand a message to everybody. If it is `spare`, nobody else holds it and the last one gets it itself."""
         for observer in self._observers:
             observer(place.name, message)
         last = place.subscriptions[-1] if spare and place.subscriptions else None
         for subscription in tuple(place.subscriptions):
+            if origin is not None and not _compatible(origin, subscription):
+                continue
             if subscription is last and subscription.message_type in (None, type(message)):
                 subscription.deliver(message)
             else:
@@ -196,3 +207,9 @@ class Bus:
                 f"subscribes to it as {type_name(subscription.message_type)}: {error}."
             ) from error
         subscription.deliver(own)
+
+
+def _compatible(publication: Publication, subscription: Subscription) -> bool:
+    """Tell whether the qualities of service of two ROS 2 ends allow a connection; others always connect."""
+    offered, wanted = getattr(publication, "qos_profile", None), getattr(subscription, "qos_profile", None)
+    return offered is None or wanted is None or bool(offered.satisfies(wanted))

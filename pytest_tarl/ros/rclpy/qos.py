@@ -94,6 +94,18 @@ class QoSProfile:
         """How many messages a queue of this profile holds; None for any number."""
         return None if self.history == HistoryPolicy.KEEP_ALL else max(self.depth, 1)
 
+    def satisfies(self, wanted: QoSProfile) -> bool:
+        """Tell whether a publisher of this profile and a subscription of the other one connect."""
+        lossy = (
+            self.reliability == ReliabilityPolicy.BEST_EFFORT
+            and wanted.reliability == ReliabilityPolicy.RELIABLE
+        )
+        forgetful = (
+            wanted.durability == DurabilityPolicy.TRANSIENT_LOCAL
+            and self.durability == DurabilityPolicy.VOLATILE
+        )
+        return not (lossy or forgetful)
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, QoSProfile) and vars(self) == vars(other)
 
@@ -121,6 +133,23 @@ qos_profile_services_default = QoSProfile(depth=10)
 qos_profile_parameters = QoSProfile(depth=1000)
 qos_profile_parameter_events = QoSProfile(depth=1000)
 qos_profile_action_status_default = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class QoSCompatibility(IntEnum):
+    """How two profiles go together."""
+
+    OK = 0
+    WARNING = 1
+    ERROR = 2
+
+
+def qos_check_compatible(
+    publisher_qos: QoSProfile, subscription_qos: QoSProfile
+) -> tuple[QoSCompatibility, str]:
+    """Tell whether a publisher and a subscription connect, and why not."""
+    if publisher_qos.satisfies(subscription_qos):
+        return QoSCompatibility.OK, ""
+    return QoSCompatibility.ERROR, "ERROR: the publisher offers less than the subscription asks for;"
 
 
 class QoSPresetProfiles(Enum):

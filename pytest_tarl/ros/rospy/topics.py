@@ -20,9 +20,10 @@ Callback = tuple[Callable[..., Any], Any]
 
 
 class AnyMsg:
-    """Subscribe with this class to get whatever is published."""
+    """Subscribe with this class to get whatever is published, as messages of their own class."""
 
     _type = "*"
+    _md5sum = "*"
     _slot_types: tuple[str, ...] = ()
 
 
@@ -141,6 +142,7 @@ class Publisher(Topic):
         super().__init__(name, data_class, "Publisher")
         self.process = self._process
         self._latch = int(latch)
+        self._listener = subscriber_listener
         self._process.bus.advertise(self, self._place)
 
     def publish(self, *args: Any, **kwds: Any) -> None:
@@ -154,6 +156,22 @@ class Publisher(Topic):
             self._process.bus.publish_from(self, self._place, message, keep=self._latch)
         except FieldError as error:
             raise ROSSerializationException(f"{error} (publishing {self.type} on {self.name})") from error
+
+    def peers_changed(self, subscription: Any, *, joined: bool) -> None:
+        """Tell the listener who came and who went, while its node waits."""
+        listener = self._listener
+        if listener is None or self.closed:
+            return
+        if joined:
+            arguments = (self.name, self.publish, lambda message: self._publish_to(subscription, message))
+            self._process.scheduler.spawn(self._process, listener.peer_subscribe, *arguments)
+        else:
+            self._process.scheduler.spawn(
+                self._process, listener.peer_unsubscribe, self.name, len(self._peers())
+            )
+
+    def _publish_to(self, subscription: Any, message: Any) -> None:
+        self._process.bus.hand(self._place, subscription, message)
 
     def unregister(self) -> None:
         """Stop publishing."""
@@ -204,7 +222,7 @@ class Subscriber(Topic):
 
 
 class SubscribeListener:
-    """Base class for those who want to know about subscribers. Nobody is announced here."""
+    """Base class for those who want to know about nodes that subscribe; the simulated world is not announced."""
 
     def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
         """Do nothing by default."""
