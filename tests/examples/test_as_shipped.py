@@ -11,7 +11,7 @@ import pytest
 from tests.examples.driving import EXAMPLES
 
 
-@pytest.mark.parametrize(("example", "tests"), [("shuttle", 3), ("line_follower", 1)])
+@pytest.mark.parametrize(("example", "tests"), [("shuttle", 3), ("line_follower", 1), ("quadrotor", 1)])
 def test_an_example_passes_without_flags_in_its_own_folder(example: str, tests: int) -> None:
     run = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"],
