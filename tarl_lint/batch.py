@@ -48,7 +48,8 @@ def examine(
         cache.put_plan(whole, keys)
     cache.save()
     errors = sorted((e for r in reports for e in r.errors), key=lambda e: (e.path, e.line, e.message))
-    return Report(tuple(f for r in reports for f in r.findings), tuple(errors))
+    findings = tuple(f for r in reports for f in r.findings)
+    return Report(findings, tuple(errors), sum(r.hurried for r in reports))
 
 
 def _tasks(scripts: Sequence[Script], config: Config) -> list[Task]:
@@ -121,8 +122,9 @@ def perform(task: Task, config: Config) -> Report:
             return Report((), errors)
         from tarl_lint import engine  # takes longer to import than most files to check
 
-        findings, failures = engine.examine(modules, config, isolate=not debugging())
-    return Report(findings, (*errors, *(failure(path, error) for path, error in failures.items())))
+        findings, failures, hurried = engine.examine(modules, config, isolate=not debugging())
+    mistakes = (failure(path, error) for path, error in failures.items())
+    return Report(findings, (*errors, *mistakes), len(modules) if hurried else 0)
 
 
 def _parsed(script: Script) -> Module | SourceError:

@@ -28,7 +28,7 @@ except ImportError:
 
 T = TypeVar("T")
 
-FORMAT: Final = 1
+FORMAT: Final = 2
 PLACE: Final = (".tarl", "cache", "lint")
 AFTERWARDS: Final = frozenset(
     ["root", "exclude", "baseline", "fail_on", "per_file_ignores", "file", "origins"]
@@ -37,10 +37,14 @@ AFTERWARDS: Final = frozenset(
 
 @dataclass(frozen=True)
 class Report:
-    """What was found in some files: findings without fingerprints, and files that could not be analysed."""
+    """What was found in some files: findings without fingerprints, and files that could not be analysed.
+
+    `hurried` counts the files in programs so large that not everything in them was followed to its end.
+    """
 
     findings: tuple[Finding, ...] = ()
     errors: tuple[SourceError, ...] = ()
+    hurried: int = 0
 
 
 class Cache:
@@ -61,13 +65,14 @@ class Cache:
         if packed is None:
             return None
         self._used[key] = packed
-        findings, errors = packed
-        return Report(tuple(_unpacked(Finding, f) for f in findings), tuple(SourceError(*e) for e in errors))
+        findings, errors, hurried = packed
+        found = tuple(_unpacked(Finding, f) for f in findings)
+        return Report(found, tuple(SourceError(*e) for e in errors), hurried)
 
     def put(self, key: str, report: Report) -> None:
         """Store a report, unless a mistake of ours is in it: the next version may do better."""
         if not any(error.bug for error in report.errors):
-            self._used[key] = [_packed(report.findings), _packed(report.errors)]
+            self._used[key] = [_packed(report.findings), _packed(report.errors), report.hurried]
 
     def plan(self, key: str) -> Sequence[str]:
         """Return the keys of the reports of a whole run, empty when one of them is missing."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import sys
@@ -26,7 +27,16 @@ INTERRUPTED: Final = 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run `tarl-lint` and return its exit code."""
+    """Run `tarl-lint` and return its exit code. Without arguments it is a process that ends with this."""
+    if arguments is not None:
+        return _guarded(arguments)
+    gc.disable()
+    code = _guarded(None)
+    gc.freeze()  # or Python walks all that is left when it ends
+    return code
+
+
+def _guarded(arguments: Sequence[str] | None) -> int:
     try:
         return _run(parser().parse_args(arguments))
     except LintError as error:

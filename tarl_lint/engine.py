@@ -28,8 +28,8 @@ def lint(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
 
 def examine(
     modules: Sequence[Module], config: Config, *, isolate: bool = False
-) -> tuple[tuple[Finding, ...], dict[str, Exception]]:
-    """Return the findings in modules that belong together, and on which files the analysis itself failed.
+) -> tuple[tuple[Finding, ...], dict[str, Exception], bool]:
+    """Return the findings in modules that belong together, on which files we failed, and whether it was too much.
 
     Unless isolated, failures are raised. The rest is found all the same, as if what failed did nothing.
     """
@@ -39,7 +39,7 @@ def examine(
         machine.link()
         flows = Tracer(machine).flows()
         found = (*findings(flows), *hazards(machine, flows, config))
-    return found, failures or {}
+    return found, failures or {}, machine.hurried
 
 
 def analyse(modules: Sequence[Module], config: Config) -> tuple[Flow, ...]:

@@ -28,11 +28,12 @@ UNREADABLE: Final = "TARL001"
 
 @dataclass(frozen=True)
 class Statistics:
-    """Counts of one run: files and lines analysed, what was left out."""
+    """Counts of one run: files and lines analysed, what was left out, files not followed in every detail."""
 
     files: int = 0
     lines: int = 0
     notes: Notes = field(default_factory=Notes)
+    hurried: int = 0
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,7 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
         kept=kept,
         unused=tuple(s for s in unused if config.enabled(s.code or "TARL")),
         texts=texts,
-        statistics=Statistics(len(texts), lines, discovery.notes),
+        statistics=Statistics(len(texts), lines, discovery.notes, report.hurried),
         baseline=config.baseline if known.entries else None,
         names_errors=config.enabled(UNREADABLE),
         reports_flows=any(map(config.enabled, CODES.values())),

@@ -94,6 +94,8 @@ def _missed(result: Result) -> Iterator[str]:
     if result.errors:
         verb = "is" if len(result.errors) == 1 else "are"
         yield f"{many(len(result.errors), 'file')} that {verb} not readable as Python 3 ({UNREADABLE})"
+    if hurried := result.statistics.hurried:
+        yield f"all details of {many(hurried, 'file')} of large programs"
     if notes.unreadable:
         yield f"{many(len(notes.unreadable), 'unreadable place')} ({', '.join(notes.unreadable[:3])})"
     if notes.cpp_nodes:

@@ -21,13 +21,18 @@ class Contents(Heap):
                 self.store.doubt(obj)
                 return NONE
             inside = self._deep(obj, known, 0)
-            self.spent += len(known) // LOOKS
+            self._count(len(known))
             return inside
         found = NONE
         for obj in in_order(objects):
             found |= self._deep(obj, known, 0)
-        self.spent += len(known) // LOOKS
+        self._count(len(known))
         return found
+
+    def _count(self, looks: int) -> None:
+        """Count looks into objects, and what was asked of the graph meanwhile, as work."""
+        self.spent += (looks + self.graph.asked) // LOOKS
+        self.graph.asked %= LOOKS
 
     def _deep(self, obj: Obj, known: dict[Obj, Nodes], depth: int) -> Nodes:
         """Return what is inside one object. What holds itself is left out at the second time."""

@@ -9,6 +9,7 @@ from itertools import islice
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.values import Branches, Frame, Nodes
 
+MAX_NODES = 15_000  # after which content is taken to arrive as it is, too
 MAX_CARRIED = 500  # content times carriers; beyond that, content is taken to arrive as it is
 
 
@@ -45,6 +46,7 @@ class Graph:
     arriving: dict[tuple[int, int], None] = field(
         default_factory=dict
     )  # (node of a carrier, what it carries)
+    asked: int = 0  # how much was looked at to tell through whom content arrives
     asking: set[tuple[int, int]] = field(default_factory=set)  # questions that are being answered
 
     def node(self, key: Hashable, place: Place, branches: Branches) -> int:
@@ -91,6 +93,9 @@ class Graph:
         """
         if not content or not carriers or len(content) * len(carriers) > MAX_CARRIED:
             return content
+        if len(self.places) > MAX_NODES:
+            return content
+        self.asked += len(content) + len(carriers)
         found: set[int] = set()
         rest = content
         for carrier in carriers:

@@ -12,7 +12,7 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import ROOT_CALL
 from tarl_lint.valueflow.execute import Execution
 from tarl_lint.valueflow.lower import lower_module
-from tarl_lint.valueflow.machine import HASTE, MAX_STATEMENTS
+from tarl_lint.valueflow.machine import HASTE, MAX_STATEMENTS, PATIENCE
 from tarl_lint.valueflow.store import Root, Store
 from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, ClassInfo, Frame, Obj, Value, lineage, pointer
 
@@ -103,7 +103,7 @@ class Linker(Execution):
                 return
             self.pending.clear()
             for root in batch:
-                if self.hurried and root in self.finished:
+                if self.hurried and (root in self.finished or self.total > 2 * PATIENCE):
                     continue
                 self._run(root, self.roots[root.key][1])
                 for news in self.shared.dirty:
@@ -153,9 +153,9 @@ class Linker(Execution):
         for key in own:
             value = self.store.get(key)
             before, version = self.store.exchanged.get(key, (BOTTOM, -1))
-            if version == self.shared.version and before is value:
+            if version == self.shared.versions.get(key, 0) and before is value:
                 continue
-            self.store.exchanged[key] = (value, self.shared.version)
+            self.store.exchanged[key] = (value, self.shared.versions.get(key, 0))
             if value is None:  # a field of a new object, which others may fill
                 news = self.shared.others(key, root)
                 if news is not None:

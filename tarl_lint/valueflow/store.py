@@ -30,7 +30,7 @@ class Shared:
     watchers: dict[Obj, set[Root]] = field(default_factory=dict)
     doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # roots that found no data inside an object
     dirty: set[Root] = field(default_factory=set)
-    version: int = 0  # grows with every news
+    versions: dict[Key, int] = field(default_factory=dict)  # how often there was news of a field
 
     def entry(self, key: Key, root: Root) -> Value | None:
         """Return what a root finds when it starts: the join of all that any other can have stored."""
@@ -88,7 +88,7 @@ class Shared:
             self._appeared(key[0])
         if before is None or after != before:
             owners[root] = after
-            self.version += 1
+            self.versions[key] = self.versions.get(key, 0) + 1
             self.dirty |= self.readers.get(key, set()) - ({root} if root.once else set())
 
 

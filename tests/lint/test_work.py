@@ -1,0 +1,107 @@
+"""How much work programs take: counted in statements of the analysis, not in seconds."""
+
+import ast
+from collections.abc import Callable
+
+import pytest
+
+from tarl_lint import engine
+from tarl_lint.cli import main
+from tarl_lint.config import Config
+from tarl_lint.source import Module
+from tarl_lint.valueflow.link import Linker
+from tarl_lint.valueflow.machine import PATIENCE
+
+MOST = 2.5 * PATIENCE  # statements that any program may take
+
+
+def work(text: str, *, thorough: bool = False) -> Linker:
+    machine = Linker([Module("node.py", "node", text, ast.parse(text))], Config(), thorough=thorough)
+    with engine.deep_recursion():
+        machine.link()
+    return machine
+
+
+def node(methods: str, subscriptions: int = 1) -> str:
+    names = range(subscriptions)
+    subscribed = "\n".join(
+        f"        self.sub{n} = self.create_subscription(Float64, 'in{n}', self.on_{n}, 10)" for n in names
+    )
+    callbacks = "\n".join(f"    def on_{n}(self, msg):\n        self.step_0(msg.data)\n" for n in names)
+    return f"""
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Float64
+
+class Big(Node):
+    def __init__(self):
+        super().__init__("big")
+        self.state = {{}}
+        self.pub = self.create_publisher(Float64, "out", 10)
+{subscribed}
+
+{callbacks}
+{methods}
+    def send(self, x):
+        self.pub.publish(Float64(data=x))
+
+def main():
+    rclpy.init()
+    rclpy.spin(Big())
+"""
+
+
+def chain(length: int, calls: int) -> str:
+    """Return methods each of which calls the next one several times: the paths through them grow as a power."""
+    bodies = []
+    for n in range(length):
+        called = "\n".join(f"        x += self.step_{n + 1}(x + {c})" for c in range(calls))
+        bodies.append(f"    def step_{n}(self, x):\n{called}\n        self.f{n} = x\n        return x\n")
+    return "".join(bodies) + f"    def step_{length}(self, x):\n        self.send(x)\n        return x\n"
+
+
+def branches(number: int) -> str:
+    """Return methods with many conditions, nested loops and handlers."""
+    arms = "\n".join(
+        f"        if x > {n}:\n            self.f{n} = x\n            self.state[{n}] = self.f{n - 1 if n else 0}"
+        for n in range(number)
+    )
+    loops = "        for a in range(9):\n            for b in range(9):\n                while x > b:\n"
+    loops += f"                    x -= self.f{number - 1}\n"
+    return f"    def step_0(self, x):\n{arms}\n{loops}        self.send(x)\n"
+
+
+PROGRAMS: dict[str, Callable[[], str]] = {
+    "deep chains of helpers": lambda: node(chain(40, 2)),
+    "wide chains of helpers": lambda: node(chain(8, 6)),
+    "many callbacks into the same chain": lambda: node(chain(180, 1), subscriptions=10),
+    "many branches": lambda: node(branches(150), subscriptions=10),
+}
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_no_program_takes_more_than_a_fixed_number_of_statements(name):
+    assert work(PROGRAMS[name]()).total < MOST
+
+
+def test_twice_as_many_methods_take_about_twice_as_much():
+    one, two = (work(node(chain(length, 1))).total for length in (10, 20))
+    assert two < 2.6 * one
+
+
+def test_flows_of_a_large_program_are_found_within_its_bounds():
+    text = node(chain(8, 6))
+    (flow,) = engine.analyse([Module("node.py", "node", text, ast.parse(text))], Config())
+    assert (flow.kind, flow.source.topics, flow.sink.topics) == ("explicit", ("in0",), ("out",))
+
+
+def test_the_same_flows_are_found_with_and_without_what_comes_from_no_source():
+    text = node(chain(4, 2), subscriptions=2)
+    module = Module("node.py", "node", text, ast.parse(text))
+    assert engine.trace([module], Config())[1] == engine.analyse([module], Config()) != ()
+
+
+def test_programs_that_are_not_followed_to_the_end_are_counted(in_directory, capsys):
+    in_directory({"node.py": node(chain(24, 6), subscriptions=30)})
+    main(["--no-cache"])
+    assert "Not analysed: all details of 1 file of large programs" in capsys.readouterr().out
