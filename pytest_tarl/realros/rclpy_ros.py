@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import Any
@@ -123,8 +124,10 @@ class RclpyRos(RealRos):
 @cache
 def rclpy_network() -> RclpyNetwork:
     """Return the network of this run, started at first use."""
-    network = RclpyNetwork()
-    patch(network)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of what rclpy imports; not the user's to mend
+        network = RclpyNetwork()
+        patch(network)
     return network
 
 
