@@ -106,6 +106,7 @@ def test_the_missions_of_a_real_node_are_on_file(
     folder.joinpath("test_tank.py").write_text(TEST)
     assert pytester.runpytest_subprocess(*RECORD).ret == 0
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")  # a kill leaves nothing in /dev/shm
     monkeypatch.setenv("ROS_DOMAIN_ID", str(SystemRandom().randrange(1, 100)))
     master = Master() if generation == "ros1" else None
     try:
