@@ -111,9 +111,11 @@ def _observe(arguments: argparse.Namespace) -> int:
 
 def _show(arguments: argparse.Namespace) -> int:
     from pytest_tarl.commands import show
-    from pytest_tarl.learning.fixture import load
+    from pytest_tarl.learning.fixture import load, sizes
 
-    print("\n".join(show.lines(load(arguments.fixture))))
+    path: Path = arguments.fixture
+    fixture = load(path)
+    print("\n".join(show.lines(fixture, path.stat().st_size, sizes(path, len(fixture.lists)))))
     return 0
 
 

@@ -14,11 +14,13 @@ from pytest_tarl.sensors import Sensor
 CODE = 60  # characters of a line of code
 
 
-def lines(fixture: Fixture) -> Iterator[str]:
-    """Yield the account of a fixture."""
+def lines(fixture: Fixture, size: int, sizes: Sequence[int]) -> Iterator[str]:
+    """Yield the account of a fixture of `size` bytes; `sizes` are those of its taint lists."""
     sample = fixture.sample
     yield f"{fixture.test}, seed {fixture.seed}"
     yield f"  episodes   {sample.episodes}, {int(sample.steps.sum())} steps, success {sample.passed.mean():.1%}"
+    lists = "list" if len(sizes) == 1 else "lists"
+    yield f"  size       {_kilobytes(size)}, of which {_kilobytes(sum(sizes))} for {len(sizes)} taint {lists}"
     least, most = sample.total.min(), sample.total.max()
     yield f"  reward     {sample.total.mean():.4g} per episode, from {least:.4g} to {most:.4g}"
     for i, name in enumerate(sample.part_names):
@@ -26,8 +28,8 @@ def lines(fixture: Fixture) -> Iterator[str]:
     yield f"  cells      {len(sample.cells)}"
     for i, sensor in enumerate(fixture.sensors):
         yield f"             {described(sensor, [cell[i] for cell in sample.cells])}"
-    for taint_list, recorded in zip(fixture.lists, sample.lists, strict=True):
-        yield from _list(taint_list, recorded)
+    for taint_list, recorded, own in zip(fixture.lists, sample.lists, sizes, strict=True):
+        yield from _list(taint_list, recorded, own)
 
 
 def described(sensor: Sensor, bins: Sequence[int]) -> str:
@@ -41,16 +43,20 @@ def described(sensor: Sensor, bins: Sequence[int]) -> str:
     return f"{sensor.name}: {origin}, {kind}"
 
 
-def _list(taint_list: TaintList, recorded: ListSample) -> Iterator[str]:
+def _list(taint_list: TaintList, recorded: ListSample, size: int) -> Iterator[str]:
     visits = recorded.visits
     events = visits.state != START
     site = (visits.state[events] - 1) % max(recorded.width, 1)
     counts = np.bincount(site, weights=visits.count[events], minlength=recorded.width)
     flows = recorded.flow.sum(axis=0)
-    yield f"  {taint_list.name}: {int(counts.sum())} events, mean |f| {recorded.mean_flow:.4g}"
+    yield f"  {taint_list.name}: {int(counts.sum())} events, mean |f| {recorded.mean_flow:.4g}, {_kilobytes(size)}"
     for place, count, flow in zip(taint_list.sites, counts.tolist(), flows.tolist(), strict=True):
         mean = flow / count if count else 0.0
         mark = "●" if place.dependence == "data" else "◆"
         code = " ".join(place.code.split())
         shown = code if len(code) <= CODE else f"{code[: CODE - 1]}…"
         yield f"    {place.path}:{place.line:<4} {mark} {shown:<{CODE}} {int(count):>7} × {mean:.4g}"
+
+
+def _kilobytes(size: int) -> str:
+    return f"{size / 1000:.1f} kB"

@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile
+from zipfile import BadZipFile, ZipFile
 
 import numpy as np
 
@@ -119,6 +119,20 @@ def load(path: Path) -> Fixture:
             f"The utility fixture {path} is damaged: its digest does not fit its content. {advice}"
         )
     return _fixture(header, columns)
+
+
+def sizes(path: Path, lists: int) -> tuple[int, ...]:
+    """Return the bytes on disk of the columns of each taint list."""
+    with ZipFile(path) as archive:
+        entries = archive.infolist()
+    return tuple(
+        sum(
+            one.compress_size
+            for one in entries
+            if one.filename.partition(".")[0] in (f"list{i}", f"sarsa{i}")
+        )
+        for i in range(lists)
+    )
 
 
 def _columns(fixture: Fixture) -> dict[str, np.ndarray[Any, Any]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -26,6 +27,17 @@ def test_show_tells_test_reward_sensors_and_sites(tmp_path: Path, capsys: pytest
     assert "terrain: observed" in told
     assert all(f"{site.path}:{site.line}" in told for one in fixture.lists for site in one.sites)
     assert "/in0 → /out:" in told
+
+
+def test_show_tells_what_the_lists_take_on_disk(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = saved(example(), tmp_path / "a.npz")
+    assert main(["show", path]) == 0
+    told = capsys.readouterr().out
+    whole, lists = (float(part.split()[-1]) for part in re.findall(r"size .*", told)[0].split(" kB")[:2])
+    own = [float(size) for size in re.findall(r"mean \|f\| .*, ([\d.]+) kB", told)]
+    assert whole == pytest.approx(Path(path).stat().st_size / 1000, abs=0.06)
+    assert 0 < lists < whole
+    assert sum(own) == pytest.approx(lists, abs=0.06 * len(own))
 
 
 def test_a_fixture_does_not_differ_from_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
