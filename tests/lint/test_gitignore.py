@@ -71,8 +71,6 @@ lines_of_patterns = st.text("ab*?/!.[]\\^", min_size=1, max_size=6).filter(
 
 @settings(
     max_examples=60,
-    derandomize=True,
-    deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 @given(st.lists(lines_of_patterns, min_size=1, max_size=3))

@@ -222,7 +222,7 @@ def test_many_small_files_are_linted_in_one_and_in_two_processes(lint):
 
 
 @given(st.binary(max_size=400))
-@settings(max_examples=2_000 if SLOW else 100, deadline=None)
+@settings(max_examples=2_000 if SLOW else 100)
 def test_random_bytes_are_read_or_refused(data):
     examined(b"import rospy\n" + data)
     examined(data + b"\nimport rospy\n")
@@ -248,8 +248,6 @@ def test_generated_programs_are_analysed():
     @given(hypothesmith.from_node(auto_target=False))
     @settings(
         max_examples=300 if SLOW else 4,
-        deadline=None,
-        derandomize=True,
         suppress_health_check=list(HealthCheck),
     )
     def programs(text):

@@ -168,7 +168,7 @@ LINES = st.one_of(
 ARGUMENTS = st.sampled_from(["1.0", "-2.5", "0.0", "3", "None", "1e308", "Odd(2.0)", "Wraps()"])
 
 
-@settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@settings(max_examples=150, suppress_health_check=list(HealthCheck))
 @given(st.lists(LINES, min_size=3, max_size=9), ARGUMENTS, ARGUMENTS)
 def test_arithmetic_that_nobody_wrote_does_the_same(lines, first, second):
     body = "\n".join(f"    {line}" for line in lines)

@@ -463,7 +463,7 @@ def is_program(source: str) -> bool:
     return True
 
 
-@settings(max_examples=200, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@settings(max_examples=200, suppress_health_check=list(HealthCheck))
 @given(st.lists(STATEMENTS, min_size=1, max_size=6))
 def test_programs_that_nobody_wrote_do_the_same(statements):
     source = PRELUDE + "\n".join(statements) + "\n"

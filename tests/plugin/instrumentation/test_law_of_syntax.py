@@ -42,8 +42,6 @@ def outcome(code: Any, **extra: Any) -> tuple[list[str], str, str]:
 
 @settings(
     max_examples=EXAMPLES,
-    deadline=None,
-    derandomize=True,
     suppress_health_check=list(HealthCheck),
     database=None,
 )

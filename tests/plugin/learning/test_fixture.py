@@ -77,7 +77,7 @@ def test_what_is_loaded_and_saved_again_has_the_same_bytes(tmp_path: Path) -> No
 
 
 @given(st.lists(st.integers(0, 40), min_size=1, max_size=6, unique=True), st.randoms(use_true_random=False))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_recordings_merged_in_any_order_give_the_same_file(seeds: list[int], random: object) -> None:
     singles = [random_sample(seed) for seed in seeds]
     random.shuffle(singles)  # type: ignore[attr-defined]

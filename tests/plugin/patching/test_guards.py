@@ -88,7 +88,7 @@ def test_limits_are_rounded_to_what_a_bin_can_tell() -> None:
     assert told(Conjunct(wide, *wide.interval(1, 1))) == "-16700.0 <= pos < 16700.0"
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=200)
 @given(
     low=st.floats(-100, 100),
     width=st.floats(0.01, 50),

@@ -387,7 +387,7 @@ class Log(list[float]):
     def __exit__(self, *_: object) -> None: ...
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=150)
 @given(
     statement=statements,
     expression=with_operand(),

@@ -239,7 +239,7 @@ line = st.sampled_from(
 content = st.tuples(st.lists(line, max_size=12), st.booleans())
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60)
 @given(before=content, after=content)
 def test_applying_gives_the_new_bytes(
     tmp_path_factory: pytest.TempPathFactory, before: tuple[list[str], bool], after: tuple[list[str], bool]
