@@ -6,6 +6,7 @@ import math
 import os
 import sys
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -91,19 +92,21 @@ def _drive(tarl: Any, steps: int, dt: float, feed: Callable[[int], None]) -> Non
 
 def absolute_move(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None:
     """Goals all around, typed at the prompt; the heading crosses ±180° both ways."""
+    here = (-0.4, 0.3)
     goals = [
-        (-0.4, 0.3, 170.0),
+        (*here, 170.0),
+        (*here, -170.0),
+        (*here, 170.0),
         (-0.4, -0.3, -170.0),
         (0.2, 0.2, 200.0),
         (0.4, -0.4, -200.0),
-        (-0.6, 0.1, 10.0),
-    ] * 40
-    typed = iter([str(number) for goal in goals for number in goal])
+    ]
+    typed = iter([str(number) for goal in [*goals, (-0.6, 0.1, 10.0)] * 40 for number in goal])
     monkeypatch.setattr("builtins.input", lambda _prompt="": next(typed))
     monkeypatch.setenv("ROS_DISTRO", "humble")
     tarl.start(node)
     robot = Robot("nav_msgs/msg/Odometry")
-    _drive(tarl, 2000, 0.05, lambda _: robot.move(tarl.bus, 0.05))
+    _drive(tarl, 3000, 0.05, lambda _: robot.move(tarl.bus, 0.05))
 
 
 def obstacle_detection(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
@@ -209,8 +212,11 @@ def wander(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
     )
 
 
-def line_follower(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
-    """A yellow stripe before the camera."""
+def line_follower(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None:
+    """A yellow stripe before the camera; windows are not opened."""
+    vision = import_module("cv2")
+    for window in ("namedWindow", "imshow", "waitKey"):
+        monkeypatch.setattr(vision, window, lambda *_: None)
     image = message_type("sensor_msgs/Image")
     tarl.start(node)
     picture = image(height=80, width=4, encoding="bgr8", step=12, data=bytes([0, 200, 200] * 320))
@@ -237,8 +243,14 @@ def ball(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
     _drive(tarl, 200, 0.1, feed)
 
 
-def sonar(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
-    """Commands from a driver and from the avoidance."""
+def sonar(tarl: Any, node: str, _monkeypatch: Any, folder: Path) -> None:
+    """Commands from a driver and from the avoidance; the servo board's messages are not in the repository."""
+    messages = folder / "i2cpwm_board" / "msg"
+    messages.mkdir(parents=True)
+    (messages / "Servo.msg").write_text("int16 servo\nfloat32 value\n")
+    (messages / "ServoArray.msg").write_text("Servo[] servos\n")
+    (folder / "i2cpwm_board" / "package.xml").write_text("<package><name>i2cpwm_board</name></package>")
+    tarl.ros.use_definitions_around(folder / "i2cpwm_board")
     twist = message_type("geometry_msgs/Twist")
     tarl.start(node)
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable
 from copy import deepcopy
 from io import BytesIO
 from typing import Any
 
 from pytest_tarl.ros.clock import NANOSECONDS
-from pytest_tarl.ros.messages.values import FieldError
+from pytest_tarl.ros.messages.values import FieldError, as_float32
 
 _COPIERS: dict[type, Callable[[Any], Any]] = {}  # by message class; filled at first use, never changed
 _STAMPED: dict[type, bool] = {}  # whether messages of a class have a header with a stamp; likewise
@@ -98,12 +99,44 @@ def _copier(own: type) -> Callable[[Any], Any]:
     if copier is not None:
         return copier
     if hasattr(own, "get_fields_and_field_types"):
-        return deepcopy
+        return _slot_copier(own)
     if hasattr(own, "_slot_types") and hasattr(own, "deserialize"):
         return _through_the_wire
     raise FieldError(
         f"{own.__name__} is not a ROS message (make one with message_type('std_msgs/Float64')(…))"
     )
+
+
+def _slot_copier(own: type) -> Callable[[Any], Any]:
+    """Return how messages of an installed ROS 2 are copied: slot by slot, as far as they can change."""
+    slots = [slot for base in reversed(own.__mro__) for slot in getattr(base, "__slots__", ())]
+    singles = {f"_{name}" for name, kind in own.get_fields_and_field_types().items() if kind == "float"}  # type: ignore[attr-defined]
+
+    def copy(message: Any) -> Any:
+        twin: Any = object.__new__(own)
+        for slot in slots:
+            value = getattr(message, slot)
+            if value.__class__ not in _UNCHANGEABLE:
+                value = _copied(value)
+            elif slot in singles:
+                value = as_float32(value, slot)
+            object.__setattr__(twin, slot, value)
+        return twin
+
+    return copy
+
+
+_UNCHANGEABLE = frozenset([int, float, bool, str, bytes])
+
+
+def _copied(value: Any) -> Any:
+    if is_message(value):
+        return snapshot(value)
+    if isinstance(value, list | tuple) and value and is_message(value[0]):
+        return [snapshot(item) for item in value]
+    if isinstance(value, list | array):
+        return value[:]
+    return value.copy() if hasattr(value, "dtype") else deepcopy(value)
 
 
 def _through_the_wire(message: Any) -> Any:
