@@ -127,7 +127,7 @@ def _why(output: str) -> str:
     """Return the sentence under pytest's headline of the failed test."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     headline = next((i for i, line in enumerate(lines) if line.strip("_ ") == "test_node"), -2)
-    return re.sub(r"\(?/\S*/", "", lines[headline + 1] if lines else "?")[:220].replace("|", "/")
+    return re.sub(r"/\S*/", "", lines[headline + 1] if lines else "?")[:220].replace("|", "/")
 
 
 def main() -> None:

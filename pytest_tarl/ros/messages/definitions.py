@@ -158,17 +158,19 @@ def _sections(text: str, count: int) -> list[str]:
 
 def type_names(kind: Kind, package: str, part: Part) -> tuple[str, ...]:
     """List the messages, services or actions of a package."""
-    shipped = [name.rpartition("/")[2] for name in _store(kind) if name.startswith(f"{package}/")]
-    own = [
-        name.partition("/")[2]
-        for table in (workspace_types(part), known_types(kind, part))
-        for name in table
-        if name.startswith(f"{package}/")
-    ]
-    names = {*own, *(shipped if part == "msg" else ())}
+    own = [name.partition("/")[2] for name in workspace_types(part) if name.startswith(f"{package}/")]
+    names = {*own, *_fixed_names(kind, package, part)}
     if kind == "ros1" and part == "msg":
         names |= {n + ending for n in type_names(kind, package, "action") for ending in _ACTION_MESSAGES}
     return tuple(sorted(names))
+
+
+@cache
+def _fixed_names(kind: Kind, package: str, part: Part) -> frozenset[str]:
+    """Return what does not depend on the user's workspace."""
+    shipped = _store(kind) if part == "msg" else {}
+    names = (name for table in (shipped, known_types(kind, part)) for name in table)
+    return frozenset(name.rpartition("/")[2] for name in names if name.startswith(f"{package}/"))
 
 
 def parse(kind: Kind, package: str, name: str, text: str) -> Definition:

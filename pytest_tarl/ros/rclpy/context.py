@@ -11,9 +11,15 @@ from pytest_tarl.ros.rclpy.exceptions import NotInitializedException, RCLError
 
 
 class Context:
-    """The rclpy context of a process; all contexts of a process are one."""
+    """The rclpy context of a process; all contexts of a process are one, which `Context()` returns."""
 
-    def __init__(self, process: Process) -> None:
+    def __new__(cls, process: Process | None = None) -> Context:
+        """Return the process's context, made at first use."""
+        return object.__new__(cls) if process is not None else this_context("Context")
+
+    def __init__(self, process: Process | None = None) -> None:
+        if process is None:
+            return
         self.process = process
         self.command_line = names.parse_ros2(process.argv[1:])
         self.initialised = False

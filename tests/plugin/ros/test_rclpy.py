@@ -301,6 +301,75 @@ def test_spin_in_a_thread_with_a_rate_in_the_main_program(start: Start) -> None:
     assert ros.shutdown_errors == ()
 
 
+def test_context_of_ones_own_is_the_context_of_the_program(start: Start) -> None:
+    ros = start("""
+        import rclpy
+        from rclpy.executors import SingleThreadedExecutor
+        context = rclpy.Context()
+        rclpy.init(context=context)
+        node = rclpy.create_node("n", context=context)
+        down = []
+        context.on_shutdown(lambda: down.append(True))
+        executor = SingleThreadedExecutor(context=context)
+        executor.add_node(node)
+        node.create_timer(0.1, lambda: rclpy.shutdown(context=context))
+        executor.spin()
+        state = (context.ok(), rclpy.ok(context=context), down)
+    """)
+    ros.step(0.2)
+    assert ros.namespace["state"] == (False, False, [True])
+
+
+def test_message_is_awaited_without_an_executor(start: Start) -> None:
+    ros = start("""
+        import rclpy
+        from rclpy.wait_for_message import wait_for_message
+        from std_msgs.msg import Float64
+        rclpy.init()
+        node = rclpy.create_node("n")
+        late = wait_for_message(Float64, node, "x", time_to_wait=0.5)
+        found, message = wait_for_message(Float64, node, "x")
+        rclpy.spin(node)
+    """)
+    ros.step(0.7)
+    ros.bus.publish("x", Float64(data=2.0))
+    assert ros.namespace["late"] == (False, None)
+    assert (ros.namespace["found"], ros.namespace["message"].data) == (True, 2.0)
+
+
+def test_nodes_look_around_in_the_graph(start: Start) -> None:
+    ros = start("""
+        import rclpy
+        from std_msgs.msg import Float64
+        from std_srvs.srv import Trigger
+        rclpy.init()
+        node = rclpy.create_node("talker", namespace="robot")
+        node.create_publisher(Float64, "x", 1)
+        node.create_service(Trigger, "go", lambda request, response: response)
+        seen = (node.get_node_names_and_namespaces(), node.get_topic_names_and_types(),
+                node.get_service_names_and_types(), node.count_services("go"),
+                node.get_publishers_info_by_topic("x")[0].topic_type,
+                node.get_publisher_names_and_types_by_node("talker", "/robot"), node.wait_for_node("/nobody", 0.2))
+        rclpy.spin(node)
+    """)
+    ros.step(0.5)
+    assert ros.namespace["seen"] == (
+        [("talker", "/robot")], [("/robot/x", ["std_msgs/msg/Float64"])],
+        [("/robot/go", ["std_srvs/srv/Trigger"])], 1, "std_msgs/msg/Float64",
+        [("/robot/x", ["std_msgs/msg/Float64"])], False,
+    )  # fmt: skip
+
+
+def test_durations_calculate(start: Start) -> None:
+    ros = start("""
+        import rclpy
+        from rclpy.duration import Duration
+        half = Duration(seconds=0.5)
+        seen = ((half + half).nanoseconds, (half - half * 3).nanoseconds, half < half * 2)
+    """)
+    assert ros.namespace["seen"] == (1_000_000_000, -1_000_000_000, True)
+
+
 def test_transient_local_reaches_later_subscribers_and_volatile_does_not(start: Start) -> None:
     ros = start("""
         import rclpy
