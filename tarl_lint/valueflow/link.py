@@ -234,16 +234,13 @@ class Linker(Execution):
     def _node_class(self, statement: ir.Class, program: ir.Program) -> None:
         """Make an instance of a class that registers something and that nothing instantiates."""
         for cls in self._values(self.module_objects[program.name], statement.name):
-            if cls.kind != "class" or cls.key in self.made or self._has_made_heir(cls):
+            if cls.kind != "class" or cls.key in self.made or not _registers(statement):
                 continue
-            if _registers(statement):
+            if not self._has_made_heir(cls):
                 self._start(cls, "node")
 
     def _has_made_heir(self, cls: Obj) -> bool:
-        return any(
-            obj.kind == "class" and obj.key in self.made and cls in lineage(obj)
-            for obj in self.objects.values()
-        )
+        return any(cls in lineage(self.objects["class", key]) for key in self.made)
 
     def _frameworks(self) -> None:
         """Run methods that a base class of a library may call: nothing in the files tells when."""

@@ -15,7 +15,8 @@ class Ros(Serving):
 
     def ros_call(self, it: Invocation) -> Value:
         """Do what the catalog says about a call."""
-        return ACTIONS[it.fact.kind](self, it)
+        action = ACTIONS.get(it.fact.kind)
+        return action(self, it) if action is not None else UNKNOWN  # a callback of what nothing is known of
 
     def _timer(self, it: Invocation) -> Value:
         for target in it.argument(it.fact.callback).pts:

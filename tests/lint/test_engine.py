@@ -182,3 +182,9 @@ def test_a_wrapper_may_be_like_a_method_of_a_node():
         """
     wrappers = Wrapper("bus.listen", "create_subscription"), Wrapper("bus.talk", "create_publisher")
     assert kinds(module("node", text), wrappers=wrappers) == [("explicit", ("a",), ("b",))]
+
+
+def test_a_callback_registered_with_what_nothing_is_known_of_is_no_failure():
+    text = "from elsewhere import sync\nfrom rospy import Subscriber\nsync.registerCallback(print)\n"
+    text += "def f(filters):\n    filters.registerCallback(f)\nf(None)\n"
+    assert analyse([module("node", text)], Config()) == ()
