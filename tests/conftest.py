@@ -1,5 +1,7 @@
 """Shared by all tests."""
 
+import signal
+
 from hypothesis import HealthCheck, settings
 
 pytest_plugins = ["pytester"]
@@ -12,3 +14,9 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("tarl")
+
+
+def pytest_configure() -> None:
+    """Heed Ctrl-C, and let the programs under test heed it, also where a script started us in the background."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
