@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -12,9 +13,10 @@ from pytest_tarl.instrumentation.magnitude import LIMIT
 from pytest_tarl.instrumentation.trace import Floats, Ints
 
 Starts = NDArray[np.int64]
+Pairs = tuple[Ints, Floats, Starts]
 
 
-def paired(entries: list[Any]) -> tuple[Ints, Floats, Starts]:
+def paired(entries: list[Any]) -> Pairs:
     """Split `[site, value, site, value, …]` into site, value and where each event starts; shape (events,).
 
     A signal handler that raises (a time-out, Ctrl-C) can leave a site without its value: such half events
@@ -26,6 +28,14 @@ def paired(entries: list[Any]) -> tuple[Ints, Floats, Starts]:
     starts: Starts = np.array(_whole(entries), np.int64)
     sites = np.array([entries[i] for i in starts], np.int32)
     return sites, np.array([entries[i + 1] for i in starts], np.float64), starts
+
+
+def joined(parts: Sequence[Pairs]) -> Pairs:
+    """Return several pieces as one, in order."""
+    if len(parts) == 1:
+        return parts[0]
+    site, flow, starts = zip(*parts, strict=True)
+    return np.concatenate(site), np.concatenate(flow), np.concatenate(starts)
 
 
 def sizes(flow: Floats) -> Floats:

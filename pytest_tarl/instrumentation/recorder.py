@@ -7,23 +7,23 @@ moment; so nobody but its thread ever writes to a buffer. Greenlets of one threa
 
 from __future__ import annotations
 
-import sys
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from types import FrameType
 from typing import Any, TypeVar
 
 import numpy as np
 
-from pytest_tarl.instrumentation.events import paired, sizes
+from pytest_tarl.instrumentation.events import Pairs, joined, paired, sizes
 from pytest_tarl.instrumentation.forms import Names
 from pytest_tarl.instrumentation.instrument import HOOK
 from pytest_tarl.instrumentation.magnitude import magnitude
+from pytest_tarl.instrumentation.threads import ThreadWatch
 from pytest_tarl.instrumentation.trace import Floats, Ints, Trace
 from pytest_tarl.sensors import Cell
 
 EXACT = 2**53  # integers below are floats without loss, which is all that the short way does
+MANY = 200_000  # entries of a buffer that are packed when a step ends, so that the list stays small
 _TOOLS = frozenset(
     {"pytest_tarl", "_pytest", "execnet", "pytest_rerunfailures", "pytest_timeout", "slipcover", "xdist"}
 )
@@ -33,10 +33,20 @@ Hook = Callable[[int, Any], Any]
 
 @dataclass
 class _Buffer:
-    """The events of one thread, and how many entries it had at each mark."""
+    """The events of one thread, and how many entries it had at each mark, those that were packed included."""
 
     entries: list[Any] = field(default_factory=list)
     lengths: list[int] = field(default_factory=list)
+    packed: list[Pairs] = field(default_factory=list)
+    gone: int = 0  # entries that were packed
+
+    def pack(self) -> None:
+        """Turn the entries into columns; in the thread that they are from, or at the very end."""
+        entries = self.entries[:]  # one step: another thread may still be appending
+        self.entries.clear()
+        site, flow, starts = paired(entries)
+        self.packed.append((site, flow, starts + self.gone if self.gone else starts))
+        self.gone += len(entries)
 
 
 class Recorder:
@@ -47,6 +57,8 @@ class Recorder:
     general ones before a second thread runs its first line. The general ones are bound at once where another
     thread is there already that may run code of the program, and with `threads=True`: for real ROS.
     """
+
+    _packing = True  # whether `reward` may take entries out of the buffer of the recorder's own thread
 
     def __init__(self, *, threads: bool = False) -> None:
         self._lock = threading.Lock()
@@ -62,14 +74,15 @@ class Recorder:
         own = self._entries()
         self._single = not threads and _alone()
         self._fast = _plain_hook(own), own
-        self._profile = threading.getprofile()
+        self._maker, self._own = threading.get_ident(), self._buffers[0]
+        self._watch = ThreadWatch(self._second_thread)
 
     def bind(self, namespace: dict[str, Any], hook: str = HOOK) -> None:
         """Put the globals of instrumented code into a module's namespace."""
         names = Names(hook)
         namespace[names.type], namespace[names.float] = type, float
         if self._single and not self._namespaces:
-            threading.setprofile(self._second_thread)
+            self._watch.begin()
         self._namespaces.append((namespace, names))
         self._put(namespace, names)
 
@@ -85,10 +98,12 @@ class Recorder:
             self._mark(self._latched[-1] if self._latched else -1)
             self._totals.append(float(total))
             self._parts.append(dict(parts or {}))
+        if self._packing and len(self._own.entries) > MANY and threading.get_ident() == self._maker:
+            self._own.pack()
 
     def finish(self) -> Trace:
         """End the episode and return what was recorded. Later events are dropped."""
-        self._release()
+        self._watch.end()
         parts = [self._columns(buffer, number) for number, buffer in enumerate(self._buffers)]
         columns = [np.concatenate(part) for part in zip(*parts, strict=True)]
         if len(self._buffers) > 1:
@@ -111,7 +126,7 @@ class Recorder:
     def _mark(self, cell: int) -> None:
         self._latched.append(cell)
         for buffer in self._buffers:
-            buffer.lengths.append(len(buffer.entries))
+            buffer.lengths.append(buffer.gone + len(buffer.entries))
 
     def _entries(self) -> list[Any]:
         """Return the buffer of the running thread."""
@@ -130,20 +145,16 @@ class Recorder:
         else:
             namespace[names.hook], namespace[names.buffer] = self.hook, _ThreadedList(self._entries)
 
-    def _second_thread(self, _frame: FrameType, _event: str, _argument: object) -> None:
-        """Exchange the names; runs in the new thread, before its first line."""
-        sys.setprofile(self._profile)
+    def _second_thread(self) -> None:
+        """Exchange the names, before the thread runs its first line."""
         self._single = False
         for namespace, names in self._namespaces:
             self._put(namespace, names)
 
-    def _release(self) -> None:
-        if threading.getprofile() == self._second_thread:
-            threading.setprofile(self._profile)
-
     def _columns(self, buffer: _Buffer, number: int) -> tuple[Ints, Floats, Ints, Ints, Ints]:
         """Return site, flow, cell, step and thread of every event of one thread."""
-        site, flow, starts = paired(buffer.entries)
+        buffer.pack()
+        site, flow, starts = joined(buffer.packed)
         before = np.searchsorted(starts, np.array(buffer.lengths, np.int64), side="left")
         between = np.diff(before, prepend=0, append=len(starts))  # events before each mark and after the last
         cells = np.array([-1, *self._latched], np.int32)

@@ -41,6 +41,8 @@ class Chunk:
 class Stream(Recorder):
     """Record without end: `drain` takes what is there."""
 
+    _packing = False  # from any thread, so no other may
+
     def __init__(self) -> None:
         super().__init__(threads=True)
         self.dropped = 0

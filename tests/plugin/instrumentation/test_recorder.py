@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import _thread
 import ast
 import math
 import threading
@@ -11,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pytest_tarl.instrumentation import recorder as recording
 from pytest_tarl.instrumentation.events import paired, sizes
 from pytest_tarl.instrumentation.instrument import instrument
 from pytest_tarl.instrumentation.magnitude import LIMIT, magnitude
@@ -198,6 +200,47 @@ def test_profilers_of_threads_come_back():
         assert threading.getprofile() is profile
     finally:
         threading.setprofile(None)  # type: ignore[arg-type]
+
+
+def test_a_thread_below_threading_has_a_sequence_of_its_own_too():
+    before = _thread.start_new_thread
+    recorder, done = Recorder(), threading.Event()
+    space = program(recorder)
+
+    def job(values: list[float]) -> None:
+        space["work"](values)
+        done.set()
+
+    space["work"]([3.0])
+    _thread.start_new_thread(job, ([5.0],))
+    assert done.wait(5)
+    trace = recorder.finish()
+    assert _thread.start_new_thread is before
+    assert trace.thread is not None
+    assert trace.flow[trace.thread == 0].tolist() == [3.0, 6.0, 1.0, 6.0]
+    assert trace.flow[trace.thread == 1].tolist() == [5.0, 10.0, 1.0, 10.0]
+
+
+@pytest.mark.parametrize("threads", [False, True])
+def test_a_long_episode_is_packed_between_its_steps_and_nothing_is_lost(monkeypatch, threads):
+    def recorded(most: int) -> tuple[list[Any], int]:
+        monkeypatch.setattr(recording, "MANY", most)
+        recorder = Recorder(threads=threads)
+        space, longest = program(recorder), 0
+        for step in range(30):
+            recorder.latch((step % 3,))
+            space["work"]([float(step), step % 5])
+            recorder.reward(float(step))
+            longest = max(longest, len(recorder._own.entries))
+        recorder.hook(9, 1.0)
+        trace = recorder.finish()
+        columns = (trace.site, trace.flow, trace.event_cell, trace.event_step, trace.step_cell)
+        return [column.tolist() for column in columns], longest
+
+    whole, all_of_it = recorded(10**9)
+    packed, most = recorded(40)
+    assert packed == whole
+    assert most <= 40 < all_of_it
 
 
 def test_a_recorder_that_nothing_is_bound_to_leaves_threading_alone():
