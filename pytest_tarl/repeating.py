@@ -150,6 +150,7 @@ class ItemRollout:
         episode = Episode(plan, self.designation, self.instruments if plan.record else NOTHING)
         self.item.stash[EPISODE] = episode
         self.item._report_sections.clear()  # else the output of all episodes would be kept, and shown
+        _forget_instance(self.item)
         try:
             # An item's parent keeps all that is wider than the item itself; pytest asks it for no more than that.
             with _heeding_interrupts(), _limited(self.item):
@@ -157,6 +158,13 @@ class ItemRollout:
         finally:
             del self.item.stash[EPISODE]
         return _outcome(episode, reports)
+
+
+def _forget_instance(item: pytest.Function) -> None:
+    """Let the method of a class have an object of its own in each episode, as every test has."""
+    if item.cls is not None:
+        for name in ("_instance", "_obj"):  # pytest makes them anew when they are asked for
+            vars(item).pop(name, None)
 
 
 def defer_limit(item: pytest.Item, settings: Any) -> bool | None:
