@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pytest_tarl import seeds
+from pytest_tarl.bagged import bagged
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.learning import localize
@@ -49,18 +50,12 @@ def run_online(
     progress: Progress,
 ) -> Online:
     """Run the on-line episodes of one scenario, or read the missions of a log, and compare them with the fixture."""
-    count = options.episodes or options.ONLINE_EPISODES
     members = current_members(fixture, plan)
     learner = _learner(fixture, options)
-    numbers: Sequence[int] = episode_seeds(options.seed, "online", count)
-    looks = options.most_looks
-    said: tuple[str, ...] = ()
-    if options.log is not None:
-        rollout = logged = read_log(options.log, fixture, plan, designation.judge)
-        count, looks, said = logged.count, 1, logged.notes
-        numbers = range(count)
-    watch = _Watch(fixture.sample, designation, options, planned(count, looks))
-    recorded = run_episodes(rollout, numbers, drift, members, progress, learner, watch)
+    side = _side(rollout, fixture, designation, options, plan)
+    count = len(side.seeds)
+    watch = _Watch(fixture.sample, designation, options, planned(count, side.looks))
+    recorded = run_episodes(side.rollout, side.seeds, drift, members, progress, learner, watch)
     difference = concluded(watch.seen, options.alpha)
     offline, online = aligned(fixture.sample, recorded.sample)
     learned = sarsa_tables(recorded, mean_flows(fixture.sample))
@@ -89,7 +84,7 @@ def run_online(
         totals={"offline": tuple(offline.total.tolist()), "online": tuple(online.total.tolist())},
         culprits=localize.culprits(ranked, {}, (), difference.verdict.loss),
         notes=(
-            *said,
+            *side.notes,
             *recorded.notes,
             *_early(recorded.sample, count),
             *lost_sites(fixture, plan),
@@ -99,6 +94,30 @@ def run_online(
         changes=difference.changes,
     )
     return Online(comparison, recorded, learned)
+
+
+@dataclass(frozen=True)
+class _Side:
+    """Where on-line episodes come from: by which seeds they are asked for, how often to look, what is to be said."""
+
+    rollout: Rollout
+    seeds: Sequence[int]
+    looks: int
+    notes: tuple[str, ...] = ()
+
+
+def _side(
+    rollout: Rollout, fixture: Fixture, designation: Designation, options: Options, plan: Plan
+) -> _Side:
+    """Return the test's own world, a log or bags, as asked for."""
+    if options.log is not None:
+        logged = read_log(options.log, fixture, plan, designation.judge)
+        return _Side(logged, range(logged.count), 1, logged.notes)
+    if options.bags:
+        missions = bagged(rollout, fixture, designation, options)
+        return _Side(missions, list(missions.bags), 1, missions.notes)
+    count = options.episodes or options.ONLINE_EPISODES
+    return _Side(rollout, episode_seeds(options.seed, "online", count), options.most_looks)
 
 
 def _learner(fixture: Fixture, options: Options) -> str:

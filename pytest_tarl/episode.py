@@ -15,6 +15,7 @@ from pytest_tarl.sensors import Cell, Sensor, as_number, reading
 if TYPE_CHECKING:
     import numpy as np
 
+    from pytest_tarl.bags.replay import Judgement, Replay
     from pytest_tarl.instrumentation.importhook import NodeImports
     from pytest_tarl.instrumentation.recorder import Recorder
     from pytest_tarl.ros import Bus, Ros
@@ -33,6 +34,7 @@ class Tarl:
         *,
         kind: str = "embedded",
         nodes: Sequence[str] = (),
+        replay: Replay | None = None,
     ) -> None:
         self.seed = seed
         self.topics: dict[str, str] = {}
@@ -44,6 +46,7 @@ class Tarl:
         self._folder = folder
         self._kind = kind
         self._nodes = tuple(nodes)
+        self._replay = replay
         self._recorder = recorder
         self._imports = imports
         self._rewards = 0
@@ -68,6 +71,8 @@ class Tarl:
             self._open.enter_context(self._ros.installed())
             self._open.callback(self._ros.close)
             self._ros.on_delivery(self._latch)
+            if self._replay is not None:
+                self._replay.begin(self._ros)
         return self._ros
 
     @property
@@ -112,7 +117,22 @@ class Tarl:
             raise SettingsError(
                 f"tarl.step got {dt!r}: time advances by a finite number of seconds, such as 0.1."
             )
+        if self._replay is not None:
+            self._replayed(self._replay, seconds)
         self.ros.step(seconds)
+
+    def _replayed(self, replay: Replay, dt: float) -> None:
+        """Let a recorded mission take the place of the rest of the test's body."""
+        from pytest_tarl.bags.replay import MissionReplayed
+
+        def reward(judgement: Judgement) -> None:
+            if isinstance(judgement, Mapping):
+                self.reward(**judgement)
+            else:
+                self.reward(judgement)
+
+        replay.run(self.ros, dt, lambda: self._situated, reward)
+        raise MissionReplayed("The recorded mission is over.")
 
     def message(self, topic: str, message: Any) -> None:
         """Tell what is being delivered to the node, in a test that delivers messages itself."""
@@ -157,10 +177,12 @@ class Tarl:
             "the slices there stay empty."
             for path, positions in self._imports.unrecorded.items()
         ]
-        return (*ended, *missing)
+        return (*ended, *missing, *(self._replay.notes if self._replay is not None else ()))
 
     def problem(self) -> RecordingError | None:
         """Return why the episode cannot be learned from: no reward, a silent sensor, a mute node; None when it can."""
+        if self._replay is not None:
+            return self._unplayed(self._replay)
         if not self._rewards:
             return RecordingError(
                 "The test never called tarl.reward: call it once a simulation step with the monitor's judgement, "
@@ -179,6 +201,19 @@ class Tarl:
             return RecordingError(
                 "The node published nothing in the whole episode, so nothing can be learned: look whether it gets "
                 f"the messages that it waits for (it subscribes to {heard})."
+            )
+        return None
+
+    def _unplayed(self, replay: Replay) -> RecordingError | None:
+        name = replay.bag.path.name
+        if not replay.begun:
+            return RecordingError(
+                f"{name} was not replayed: the test ended before it called tarl.step, at which the recorded mission "
+                "takes over. Only nodes that are run with tarl.start and tarl.step can be told what a bag holds."
+            )
+        if not self._rewards:
+            return RecordingError(
+                f"Nothing was learned from {name}: its sensors were never all known at the end of a step."
             )
         return None
 

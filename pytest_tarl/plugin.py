@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from pytest_tarl.settings import Options
 
 MARKER = (
-    "tarl(nodes, sensors, drifts={}, episodes=200, min_success=1.0, tolerance=None, judge=None): "
+    "tarl(nodes, sensors, drifts={}, episodes=200, min_success=1.0, tolerance=None, judge=None, monitor=None): "
     "a simulation test that TARL records off-line and compares on-line."
 )
 
@@ -84,6 +84,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         metavar="FILE",
         help="with --tarl-online: compare the missions in this log of `python -m pytest_tarl observe`",
     )
+    flag(
+        "--tarl-bag",
+        metavar="FILE",
+        action="append",
+        help="with --tarl-online: replay this recorded mission (.bag, .mcap, .db3, a ROS 2 bag's folder); may be given "
+        "several times",
+    )
     flag("--tarl-strict", action="store_true", help="with --tarl-online: a test without fixture fails")
 
 
@@ -141,6 +148,7 @@ def _asked(config: pytest.Config) -> bool:
         "--tarl-search",
         "--tarl-strict",
         "--tarl-log",
+        "--tarl-bag",
     )
     return any(config.getoption(flag) for flag in flags)
 
@@ -170,6 +178,7 @@ def _options(config: pytest.Config) -> Options:
                     "strict",
                     "ros",
                     "log",
+                    "bag",
                 )
             }
         )

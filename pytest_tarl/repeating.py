@@ -24,6 +24,7 @@ from pytest_tarl.seeds import episode_seed
 from pytest_tarl.settings import Designation, designation
 
 if TYPE_CHECKING:
+    from pytest_tarl.bags.replay import Replay
     from pytest_tarl.episode import Tarl
     from pytest_tarl.instrumentation.sites import Positions
     from pytest_tarl.instrumentation.trace import Trace
@@ -53,6 +54,7 @@ class Episode:
     topics: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     values: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    replayed: bool = False  # a bag, to its end
 
 
 EPISODE = pytest.StashKey[Episode]()
@@ -84,14 +86,17 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         publishes=episode.instruments.publishes,
         bind=recorder.bind,
     )
+    replay = _replay(episode)
+    kind = check_kind(item.config.getoption("--tarl-ros"))
     tarl = Tarl(
         episode.plan.seed,
         episode.designation.sensors,
         item.path.parent,
         recorder,
         imports,
-        kind=check_kind(item.config.getoption("--tarl-ros")),
+        kind="embedded" if replay else kind,
         nodes=episode.designation.nodes,
+        replay=replay,
     )
     try:
         yield tarl
@@ -100,9 +105,21 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
             episode.trace = recorder.finish()
             episode.topics, episode.values = dict(tarl.topics), tarl.values
             episode.problem = tarl.problem()
+            episode.replayed = replay is not None and replay.done
         finally:
             tarl.close()
             episode.notes = tarl.notes()
+
+
+def _replay(episode: Episode) -> Replay | None:
+    """Return the recorded mission that takes the place of the world, if there is one."""
+    if episode.plan.bag is None:
+        return None
+    from pytest_tarl.bags.reading import opened as opened_bag
+    from pytest_tarl.bags.replay import Replay
+
+    marked = episode.designation
+    return Replay(opened_bag(episode.plan.bag), marked.sensors, marked.monitor, marked.judge)
 
 
 def drift_value(item: pytest.Item) -> Any:
@@ -230,7 +247,7 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
     if episode.problem is not None and (episode.error is None or isinstance(episode.error, AssertionError)):
         raise episode.problem
     skipped = next((report for report in reports if report.skipped and not _expected(report)), None)
-    if skipped is not None:
+    if skipped is not None and not episode.replayed:
         pytest.skip(_reason(skipped))
     failed = [report for report in reports if _expected(report) or (report.failed and not _surprise(report))]
     broken = [report for report in failed if report.when != "call" or not mission]

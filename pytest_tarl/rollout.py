@@ -15,12 +15,16 @@ AHEAD = 2  # episodes per worker that are begun before anybody asks for them
 
 @dataclass(frozen=True)
 class EpisodePlan:
-    """One run of the designated test. `overlay` replaces the text of files; `record` instruments the nodes."""
+    """One run of the designated test. `overlay` replaces the text of files; `record` instruments the nodes.
+
+    With a `bag` the mission that it holds takes the place of the test's own world.
+    """
 
     seed: int
     drift: str | None = None
     overlay: Mapping[Path, str] = field(default_factory=dict)
     record: bool = False
+    bag: Path | None = None
 
 
 @dataclass(frozen=True)

@@ -45,8 +45,8 @@ class TarlSession:
         names = (
             list(drifts) if isinstance(drifts, Mapping) else []
         )  # what it is instead is told when the test runs
-        if self.options.log is not None:
-            names = []  # the world that the log comes from has no name
+        if self.options.log is not None or self.options.bags:
+            names = []  # the world that missions come from has no name
         if self.options.drift is not None:
             names = [name for name in names if name == self.options.drift]
         if "tarl_drift" in metafunc.fixturenames:

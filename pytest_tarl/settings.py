@@ -17,7 +17,7 @@ Mode = Literal["plain", "record", "online", "repair"]
 SEARCHES = ("sweep", "epsilon-greedy")
 UTILITIES = ("batch", "sarsa", "expected-sarsa", "td-lambda")
 ROS_KINDS = ("embedded", "real", "auto")
-MARKER_ARGUMENTS = ("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance", "judge")
+MARKER_ARGUMENTS = ("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance", "judge", "monitor")
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,7 @@ class Options:
     ros: str = "embedded"
     looks: int | None = None  # at the verdict, at most
     log: Path | None = None  # missions of a robot, instead of on-line episodes
+    bags: tuple[Path, ...] = ()  # recorded missions, likewise
 
     ONLINE_EPISODES = 40
     LOOKS = 3
@@ -64,9 +65,10 @@ class Options:
             "--tarl-ros": (self.ros, "embedded"),
             "--tarl-log": (self.log, None),
         }
-        return tuple(
+        plain = tuple(
             text for flag, (value, usual) in chosen.items() if value != usual for text in (flag, str(value))
         )
+        return (*plain, *(text for bag in self.bags for text in ("--tarl-bag", _typed(bag))))
 
 
 @dataclass(frozen=True)
@@ -82,12 +84,15 @@ class Designation:
     judge: Callable[[Mapping[str, Any], Mapping[str, Any]], float] | None = (
         None  # of steps that a log has no reward of
     )
+    monitor: Callable[[Any], float | Mapping[str, float]] | None = (
+        None  # of missions in a bag; or a class of such
+    )
 
 
 def options(given: Mapping[str, Any]) -> Options:
     """Check the flags of a run. Raises SettingsError with a sentence."""
     if not (given["record"] or given["online"] or given["repair"]):
-        stray = next((name for name in ("drift", "search", "strict", "log") if given[name]), "drift")
+        stray = next((name for name in ("drift", "search", "strict", "log", "bag") if given[name]), "drift")
         raise SettingsError(f"--tarl-{stray} goes with --tarl-online, and does nothing without it.")
     if given["record"] and given["online"]:
         raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
@@ -120,6 +125,7 @@ def options(given: Mapping[str, Any]) -> Options:
         ros=given["ros"],
         looks=given["looks"],
         log=_log(given),
+        bags=_bags(given),
     )
 
 
@@ -158,6 +164,7 @@ def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, A
         min_success=_number(where, "min_success", arguments.get("min_success", 1.0), float, 0, 1),
         tolerance=_tolerance(where, arguments.get("tolerance")),
         judge=_judge(where, arguments.get("judge")),
+        monitor=_monitor(where, arguments.get("monitor")),
     )
 
 
@@ -173,6 +180,36 @@ def _log(given: Mapping[str, Any]) -> Path | None:
                 "again in it. Model what it shows as a drift scenario of the marker, and repair that."
             )
     return Path(given["log"]).absolute()
+
+
+def _typed(path: Path) -> str:
+    """Return a path as it is typed in the working directory."""
+    return str(path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path)
+
+
+def _bags(given: Mapping[str, Any]) -> tuple[Path, ...]:
+    paths = given["bag"] or ()
+    if not paths:
+        return ()
+    if not given["online"]:
+        raise SettingsError("--tarl-bag goes with --tarl-online: its missions are the on-line side.")
+    for other in ("repair", "drift", "episodes", "log"):
+        if given[other]:
+            raise SettingsError(
+                f"--tarl-bag and --tarl-{other} exclude each other: a bag holds what happened, and nothing can be run "
+                "again in it. Model what it shows as a drift scenario of the marker, and repair that."
+            )
+    if given["ros"] == "real":
+        raise SettingsError("--tarl-bag replays on the embedded ROS: leave --tarl-ros=real out.")
+    return tuple(dict.fromkeys(Path(path).absolute() for path in paths))
+
+
+def _monitor(where: str, value: Any) -> Any:
+    if value is not None and not callable(value):
+        raise SettingsError(
+            f"{where}: monitor must be a function of the recorded messages, or a class of such, got {value!r}."
+        )
+    return value
 
 
 def _judge(where: str, value: Any) -> Any:

@@ -158,8 +158,13 @@ def next_steps(comparison: Comparison) -> Iterator[str]:
         yield shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record"])
     elif comparison.repair and comparison.repair.accepted and comparison.repair.patch:
         yield shlex.join(["git", "apply", comparison.repair.patch])
-    elif comparison.verdict.result == "degraded" and comparison.repair is None:
+    elif comparison.verdict.result == "degraded" and comparison.repair is None and not _happened(comparison):
         yield command(comparison, "--tarl-repair")
+
+
+def _happened(comparison: Comparison) -> bool:
+    """Tell whether the on-line side is missions that cannot be run again."""
+    return bool({"--tarl-log", "--tarl-bag"} & {*comparison.flags})
 
 
 def peak(slices: Iterable[Slice]) -> Slice | None:

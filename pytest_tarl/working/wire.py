@@ -41,16 +41,16 @@ def read(pipe: BinaryIO) -> bytes | None:
 def plan_message(plan: EpisodePlan) -> bytes:
     """Write a plan."""
     overlay = {str(path): text for path, text in plan.overlay.items()}
-    return _joined(
-        {"seed": str(plan.seed), "drift": plan.drift, "overlay": overlay, "record": plan.record}, {}
-    )
+    head = {"seed": str(plan.seed), "drift": plan.drift, "overlay": overlay, "record": plan.record}
+    return _joined({**head, "bag": str(plan.bag or "")}, {})
 
 
 def planned(message: bytes) -> EpisodePlan:
     """Read a plan."""
     head, _ = _parted(message)
     overlay = {Path(path): text for path, text in head["overlay"].items()}
-    return EpisodePlan(int(head["seed"]), head["drift"], overlay, head["record"])
+    bag = Path(head["bag"]) if head["bag"] else None
+    return EpisodePlan(int(head["seed"]), head["drift"], overlay, head["record"], bag)
 
 
 def run_message(run: EpisodeRun) -> bytes:

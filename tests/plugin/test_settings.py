@@ -26,6 +26,7 @@ FLAGS: dict[str, Any] = {
     "cluster": None,
     "ros": "embedded",
     "log": None,
+    "bag": None,
     "looks": None,
     "strict": False,
 }

@@ -1,0 +1,97 @@
+"""`--tarl-bag FILE`: recorded missions as the on-line side of a comparison."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from pytest_tarl.bags.reading import Bag, opened
+from pytest_tarl.bags.replay import NO_REWARDS
+from pytest_tarl.errors import LogError, SettingsError
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Pending, Rollout
+from pytest_tarl.ros.names import absolute
+from pytest_tarl.seeds import episode_seeds
+from pytest_tarl.settings import Designation, Options
+
+
+@dataclass(frozen=True)
+class BaggedMissions:
+    """A rollout in which each seed stands for a bag that is replayed in place of the test's own world."""
+
+    rollout: Rollout
+    bags: Mapping[int, Path]
+    notes: tuple[str, ...] = ()  # on those that take no part
+
+    @property
+    def workers(self) -> int:
+        """Return how many missions are replayed at a time."""
+        return self.rollout.workers
+
+    def __call__(self, plan: EpisodePlan) -> EpisodeRun:
+        """Replay one mission."""
+        return self.rollout(replace(plan, bag=self.bags[plan.seed]))
+
+    def begin(self, plan: EpisodePlan) -> Pending:
+        """Ask for a mission without waiting for it."""
+        return self.rollout.begin(replace(plan, bag=self.bags[plan.seed]))
+
+
+def bagged(rollout: Rollout, fixture: Fixture, designation: Designation, options: Options) -> BaggedMissions:
+    """Return the bags as episodes. Raises LogError or SettingsError where none can be compared."""
+    _check(designation)
+    taking_part: list[Path] = []
+    notes: list[str] = []
+    for path in options.bags:
+        if not path.exists():
+            raise LogError(f"There is no bag {path}.")
+        try:
+            problem = misfit(opened(path), fixture)
+        except LogError as unreadable:
+            problem = str(unreadable).rstrip(".")
+        if problem:
+            notes.append(f"{problem}: it took no part.")
+        else:
+            taking_part.append(path)
+    if not taking_part:
+        raise LogError("No bag can be compared. " + " ".join(notes))
+    seeds = episode_seeds(options.seed, "bag", len(taking_part))
+    return BaggedMissions(rollout, dict(zip(seeds, taking_part, strict=True)), tuple(notes))
+
+
+def misfit(bag: Bag, fixture: Fixture) -> str:
+    """Return why a bag cannot be held against the fixture, without a full stop; empty where it can."""
+    held = {absolute(topic): one for topic, one in bag.channels.items()}
+    for sensor in fixture.sensors:
+        if sensor.topic is None:
+            continue
+        channel = held.get(absolute(sensor.topic))
+        if channel is None:
+            return (
+                f"{bag.path.name} lacks {sensor.topic}, which the sensor {sensor.name!r} is read from (it holds "
+                f"{_listed(sorted(held))})"
+            )
+        designed = fixture.topics.get(sensor.topic, "")
+        if designed and designed != channel.type:
+            return (
+                f"{bag.path.name} has {channel.type} on {sensor.topic}, the sensor {sensor.name!r} is read from "
+                f"{designed}"
+            )
+    return ""
+
+
+def _check(designation: Designation) -> None:
+    if designation.monitor is None and designation.judge is None:
+        raise SettingsError(NO_REWARDS)
+    mute = next((sensor.name for sensor in designation.sensors if sensor.topic is None), None)
+    if mute is not None:
+        raise SettingsError(
+            f"Sensor {mute!r} has no topic, so no bag can hold it: give it a topic and a field in the marker and "
+            "record again."
+        )
+
+
+def _listed(topics: Sequence[str], most: int = 8) -> str:
+    more = f" and {len(topics) - most} more" if len(topics) > most else ""
+    return ", ".join(topics[:most]) + more

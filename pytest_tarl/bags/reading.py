@@ -1,0 +1,183 @@
+"""Open a bag of either generation, whole or cut off."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from pytest_tarl.bags.channels import Channel, Recorded
+from pytest_tarl.bags.salvage import walk
+from pytest_tarl.errors import LogError
+
+if TYPE_CHECKING:
+    from rosbags.rosbag1 import Reader as Reader1
+    from rosbags.rosbag2 import Reader as Reader2
+
+Kind = Literal["ros1", "ros2"]
+ENDINGS = (".bag", ".bag.active", ".mcap", ".db3")
+
+
+@dataclass
+class Bag:
+    """A recorded mission: its channels by topic, and how to go through its messages.
+
+    `notes` are what the user should hear about it; going through it may add to them.
+    """
+
+    path: Path
+    kind: Kind
+    channels: Mapping[str, Channel]
+    source: Callable[[], Iterator[Recorded]]
+    start: int  # when the first message was recorded, ns
+    notes: list[str] = field(default_factory=list)
+
+    def messages(self) -> Iterator[Recorded]:
+        """Yield the messages in the order of their times, as far as they can be read."""
+        last = self.start
+        try:
+            for one in self.source():
+                last = one.time
+                yield one
+        except _unreadable() as problem:
+            seconds = (last - self.start) / 1e9
+            self.notes.append(
+                f"{self.path.name} cannot be read after {seconds:.1f} s ({problem}); what is before counts."
+            )
+
+    def decode(self, topic: str, data: bytes) -> Any:
+        """Return a message as `rosbags` reads it. Raises KeyError for a type that nobody has defined."""
+        name = self.channels[topic].type
+        store = self._stores[0] if name in self._stores[0].fielddefs else self._stores[1]
+        return (
+            store.deserialize_ros1(data, name) if self.kind == "ros1" else store.deserialize_cdr(data, name)
+        )
+
+    @cached_property
+    def _stores(self) -> tuple[Any, Any]:
+        """Return the definitions that the bag holds, and those that it may count on."""
+        from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
+
+        own, usual = (
+            get_typestore(Stores.EMPTY),
+            get_typestore(Stores.ROS1_NOETIC if self.kind == "ros1" else Stores.LATEST),
+        )
+        types: dict[str, Any] = {}
+        for one in self.channels.values():
+            if one.definition:
+                types |= (
+                    get_types_from_idl(one.definition)
+                    if one.idl
+                    else get_types_from_msg(one.definition, one.type)
+                )
+        own.register(types)
+        return own, usual
+
+
+def opened(path: Path) -> Bag:
+    """Open a bag. Raises LogError where nothing of it can be read, with a sentence that says why."""
+    if not path.exists():
+        raise LogError(f"There is no bag {path}.")
+    if not path.is_dir() and not path.name.endswith(ENDINGS):
+        raise LogError(
+            f"{path} is no bag: --tarl-bag takes .bag, .mcap, .db3 and the folder of a ROS 2 recording."
+        )
+    _require()
+    kind: Kind = "ros1" if path.name.endswith((".bag", ".bag.active")) else "ros2"
+    try:
+        bag = _whole(path, kind)
+    except _unreadable() as problem:
+        bag = _salvaged(path, kind, str(problem).replace(str(path), path.name).rstrip("."))
+    if not bag.channels:
+        raise LogError(f"{path.name} holds no messages.")
+    return bag
+
+
+def _require() -> None:
+    try:
+        import rosbags.rosbag2  # noqa: F401
+    except ImportError as error:
+        raise LogError('Bags are read with `rosbags`: run pip install "tarl[ros]".') from error
+
+
+def _unreadable() -> tuple[type[Exception], ...]:
+    """Return what reading a damaged bag can end in."""
+    import apsw
+    from rosbags.rosbag1 import ReaderError as Error1
+    from rosbags.rosbag2 import ReaderError as Error2
+
+    return (Error1, Error2, apsw.Error, OSError, EOFError, ValueError, AssertionError, IndexError, KeyError,
+            TypeError, struct.error, RuntimeError)  # fmt: skip
+
+
+def _reader(path: Path, kind: Kind) -> Reader1 | Reader2:
+    if kind == "ros1":
+        from rosbags.rosbag1 import Reader as Reader1
+
+        return Reader1(path)
+    from rosbags.rosbag2 import Reader as Reader2
+
+    return Reader2(path)
+
+
+def _whole(path: Path, kind: Kind) -> Bag:
+    """Open a bag with its index."""
+    with _reader(path, kind) as reader:
+        channels = {one.topic: _channel(one) for one in reader.connections if one.msgcount}
+        start = reader.start_time
+
+    def source() -> Iterator[Recorded]:
+        with _reader(path, kind) as reader:
+            for connection, time, data in reader.messages():
+                yield Recorded(time, connection.topic, bytes(data))
+
+    return Bag(path, kind, channels, source, start)
+
+
+def _channel(connection: Any) -> Channel:
+    definition, offered = connection.msgdef, getattr(connection.ext, "offered_qos_profiles", ())
+    return Channel(
+        connection.topic,
+        connection.msgtype,
+        definition.data,
+        definition.format.name == "IDL",
+        bool(getattr(connection.ext, "latching", 0))
+        or any(one.durability.name == "TRANSIENT_LOCAL" for one in offered),
+    )
+
+
+def _salvaged(path: Path, kind: Kind, reason: str) -> Bag:
+    """Open what is left of a bag. Raises LogError where that is nothing."""
+    files = (
+        [path] if not path.is_dir() else sorted(one for one in path.iterdir() if one.name.endswith(ENDINGS))
+    )
+    channels: dict[str, Channel] = {}
+    times: list[int] = []
+    heard: set[str] = set()
+    for one in _walked(files):
+        if isinstance(one, Channel):
+            channels.setdefault(one.topic, one)
+        else:
+            times.append(one.time)
+            heard.add(one.topic)
+    if not times:
+        raise LogError(f"{path.name} cannot be read ({reason}), and no whole message was found in it.")
+    span = (max(times) - min(times)) / 1e9
+    return Bag(
+        path,
+        kind,
+        {topic: one for topic, one in channels.items() if topic in heard},
+        lambda: iter(
+            sorted((one for one in _walked(files) if isinstance(one, Recorded)), key=lambda one: one.time)
+        ),
+        min(times),
+        [f"{path.name} was cut off: its first {span:.1f} s with {len(times)} messages count."],
+    )
+
+
+def _walked(files: Sequence[Path]) -> Iterator[Channel | Recorded]:
+    for file in files:
+        yield from walk(file)

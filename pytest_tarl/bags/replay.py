@@ -1,0 +1,181 @@
+"""A recorded mission in the place of the simulated world: its sensor topics go through the node, a monitor judges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from _pytest.outcomes import Skipped
+
+from pytest_tarl.bags.channels import Recorded
+from pytest_tarl.bags.converting import class_named, converted
+from pytest_tarl.bags.reading import Bag
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.ros.clock import nanoseconds, seconds
+from pytest_tarl.ros.messages.snapshot import type_name
+from pytest_tarl.ros.messages.values import FieldError
+from pytest_tarl.ros.names import absolute
+from pytest_tarl.sensors import Sensor, reading
+
+if TYPE_CHECKING:
+    from pytest_tarl.ros import Ros
+
+Judgement = float | Mapping[str, float]
+Monitor = Callable[["Moment"], Judgement]
+Judge = Callable[[Mapping[str, Any], Mapping[str, Any]], float]
+NO_REWARDS = (
+    "A bag holds no rewards: give the marker monitor=, a function that reads the newest recorded messages, "
+    "moment.latest('/odom'), and returns the reward of a step."
+)
+ALWAYS_THERE = {"/clock", "/rosout", "/parameter_events", "/tf", "/tf_static"}  # that nobody misses in a bag
+
+
+class MissionReplayed(Skipped):
+    """Leaves the test's body once the recorded mission has been replayed: the rest of it is for its own world."""
+
+
+class Moment:
+    """What a monitor reads at the end of a step: the newest recorded message of every topic."""
+
+    def __init__(self, bag: Bag) -> None:
+        self.now = 0.0  # seconds since the bag began
+        self.over = False  # whether this is the last step
+        self._bag = bag
+        self._data: dict[str, bytes] = {}
+        self._read: dict[str, Any] = {}
+        self._spelled = {absolute(topic): topic for topic in bag.channels}
+
+    def latest(self, topic: str) -> Any | None:
+        """Return the newest message on the topic, with the fields that its type has; None before the first."""
+        name = self._spelled.get(absolute(topic), topic)
+        if name not in self._read and name in self._data:
+            self._read[name] = self._bag.decode(name, self._data[name])
+        return self._read.get(name)
+
+    def take(self, message: Recorded) -> None:
+        """Hold a message; it is read when somebody asks for it."""
+        self._data[message.topic] = message.data
+        self._read.pop(message.topic, None)
+
+
+class Replay:
+    """One bag on its way through the nodes of an episode.
+
+    Replayed are the topics that sensors are read from and those that a node subscribes to, but none that a node of the
+    episode publishes itself. `notes` are what the user should hear.
+    """
+
+    def __init__(
+        self, bag: Bag, sensors: Sequence[Sensor], monitor: Monitor | None, judge: Judge | None
+    ) -> None:
+        self.bag = bag
+        self.begun = self.done = False
+        self.notes: list[str] = bag.notes
+        self._sensed = {absolute(sensor.topic) for sensor in sensors if sensor.topic is not None}
+        self._moment = Moment(bag)
+        self._monitor = _made(monitor) if monitor is not None else _judging(judge, sensors)
+        self._refused: set[str] = set()
+
+    def begin(self, ros: Ros) -> None:
+        """Set the clock to the mission's, and let nothing that the test's own world publishes reach the nodes."""
+        ros.scheduler.time = self.bag.start
+        ros.bus.muted = True
+
+    def run(
+        self, ros: Ros, dt: float, ready: Callable[[], bool], reward: Callable[[Judgement], None]
+    ) -> None:
+        """Replay the mission in steps of `dt` seconds; each from when `ready` on, which is asked, has its reward."""
+        step = nanoseconds(dt)
+        if step <= 0:
+            raise SettingsError(
+                "tarl.step(0) is how this test advances time; a bag is replayed in steps that last."
+            )
+        self.begun = True
+        ros.bus.muted, moment, end = False, self._moment, self.bag.start + step
+        for message in self.bag.messages():
+            while message.time >= end:
+                self._close(ros, end, ready, reward)
+                end += step
+            moment.take(message)
+            self._deliver(ros, message)
+        moment.over = True
+        self._close(ros, end, ready, reward)
+        self.done = True
+        self._conclude(ros)
+
+    def _close(
+        self, ros: Ros, end: int, ready: Callable[[], bool], reward: Callable[[Judgement], None]
+    ) -> None:
+        ros.step(seconds(end - ros.scheduler.time))
+        self._moment.now = seconds(end - self.bag.start)
+        if ready():
+            reward(self._monitor(self._moment))
+
+    def _deliver(self, ros: Ros, message: Recorded) -> None:
+        place, channel = ros.bus.topic(message.topic), self.bag.channels[message.topic]
+        wanted = bool(place.subscriptions) or channel.latched or place.name in self._sensed
+        if place.publications or not wanted or place.name in self._refused:
+            return
+        try:
+            told = converted(self.bag.decode(message.topic, message.data), self._class(ros, message.topic))
+        except (FieldError, KeyError) as problem:
+            self._refused.add(place.name)
+            self.notes.append(f"{self.bag.path.name}: {place.name} was not replayed: {_sentence(problem)}.")
+            return
+        if message.time > ros.scheduler.time:
+            ros.step(seconds(message.time - ros.scheduler.time))
+        ros.bus.publish(place.name, told, latch=channel.latched)
+
+    def _class(self, ros: Ros, topic: str) -> type[Any]:
+        """Return the class of the messages that the nodes expect. Raises FieldError where they expect another type."""
+        name = self.bag.channels[topic].type
+        expected = [
+            one.message_type for one in ros.bus.topic(topic).subscriptions if one.message_type is not None
+        ]
+        for one in expected:
+            if type_name(one) != name.replace("/msg/", "/"):
+                raise FieldError(f"the bag has {name} there, the node subscribes to it as {type_name(one)}")
+        found = expected[0] if expected else class_named(name, self.bag.kind)
+        if found is None:
+            raise FieldError(f"nobody here knows the type {name}")
+        return found
+
+    def _conclude(self, ros: Ros) -> None:
+        """Tell what the nodes waited for in vain."""
+        held = {absolute(topic) for topic in self.bag.channels}
+        own = {place.name for place in ros.bus.topics() if place.publications}
+        for topic in sorted(ros.subscribed - held - own - ALWAYS_THERE):
+            self.notes.append(
+                f"{self.bag.path.name} lacks {topic}, which the node subscribes to: it heard nothing there."
+            )
+        if not ros.published:
+            self.notes.append(f"the node published nothing while {self.bag.path.name} was replayed.")
+
+
+def _sentence(problem: Exception) -> str:
+    return f"nobody has defined {problem.args[0]}" if isinstance(problem, KeyError) else str(problem)
+
+
+def _made(monitor: Any) -> Monitor:
+    """Return the monitor of one mission: a class is one to make an instance of."""
+    made: Monitor = monitor() if isinstance(monitor, type) else monitor
+    return made
+
+
+def _judging(judge: Judge | None, sensors: Sequence[Sensor]) -> Monitor:
+    """Return a monitor that asks the marker's `judge`, which is told the sensors before and after each step."""
+    if judge is None:
+        raise SettingsError(NO_REWARDS)
+    before: dict[str, Any] = {}
+
+    def monitor(moment: Moment) -> float:
+        after = {
+            sensor.name: reading(moment.latest(sensor.topic), sensor.field)
+            for sensor in sensors
+            if sensor.topic is not None and sensor.field is not None
+        }
+        amount = judge(dict(before or after), dict(after))
+        before.update(after)
+        return amount
+
+    return monitor

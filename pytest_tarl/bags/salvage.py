@@ -1,0 +1,180 @@
+"""What can still be read of a bag that was cut off: its records from the first one to the last whole one.
+
+A recorder that is killed writes no index, and without one `rosbags` reads nothing. Formats: rosbag 2.0
+(wiki.ros.org/Bags/Format/2.0), MCAP (mcap.dev/spec), SQLite.
+"""
+
+from __future__ import annotations
+
+import bz2
+import sqlite3
+import struct
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing, suppress
+from importlib import import_module
+from io import BytesIO
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from pytest_tarl.bags.channels import Channel, Recorded
+
+Walk = Iterator[Channel | Recorded]
+_ROS1_MAGIC = b"#ROSBAG V2.0\n"
+_MCAP_MAGIC = b"\x89MCAP0\r\n"
+_MESSAGE, _CHUNK, _CONNECTION = 2, 5, 7  # operations of rosbag 2.0 that matter here
+_SCHEMA, _CHANNEL, _MCAP_MESSAGE, _MCAP_CHUNK = 3, 4, 5, 6  # of MCAP
+
+
+class CutOffError(Exception):
+    """The file ends within a record."""
+
+
+def walk(path: Path) -> Walk:
+    """Yield the channels and messages of a file, each channel before its messages, until it cannot be read on."""
+    walks: dict[str, Callable[[Path], Walk]] = {".bag": _walk_bag, ".mcap": _walk_mcap, ".db3": _walk_db3}
+    found = walks.get(".bag" if path.name.endswith(".bag.active") else path.suffix)
+    if found is not None:
+        with suppress(
+            CutOffError, sqlite3.Error, OSError, EOFError, ValueError, KeyError, struct.error, RuntimeError
+        ):
+            yield from found(path)
+
+
+def _take(file: BinaryIO, size: int) -> bytes:
+    data = file.read(size)
+    if len(data) < size:
+        raise CutOffError
+    return data
+
+
+def _sized(file: BinaryIO, length: str = "<I") -> bytes:
+    (size,) = struct.unpack(length, _take(file, struct.calcsize(length)))
+    return _take(file, size)
+
+
+def _walk_bag(path: Path) -> Walk:
+    with path.open("rb") as file:
+        if file.read(len(_ROS1_MAGIC)) == _ROS1_MAGIC:
+            yield from _bag_records(file, {})
+
+
+def _bag_records(file: BinaryIO, topics: dict[bytes, str]) -> Walk:
+    while True:
+        header = _fields(_sized(file))
+        operation = header["op"][0]
+        if operation == _CHUNK:
+            yield from _bag_chunk(file, header["compression"].decode(), topics)
+            continue
+        data = _sized(file)
+        if operation == _CONNECTION:
+            about = _fields(data)
+            topics[header["conn"]] = topic = header["topic"].decode()
+            yield Channel(
+                topic,
+                about["type"].decode().replace("/", "/msg/", 1),
+                about["message_definition"].decode(),
+                latched=about.get("latching") == b"1",
+            )
+        elif operation == _MESSAGE:
+            seconds, rest = struct.unpack("<II", header["time"])
+            yield Recorded(seconds * 10**9 + rest, topics[header["conn"]], data)
+
+
+def _bag_chunk(file: BinaryIO, compression: str, topics: dict[bytes, str]) -> Walk:
+    (size,) = struct.unpack("<I", _take(file, 4))
+    data = file.read(size)
+    with suppress(CutOffError):
+        yield from _bag_records(BytesIO(_inflated(data, compression)), topics)
+    if len(data) < size:
+        raise CutOffError
+
+
+def _fields(text: bytes) -> Mapping[str, bytes]:
+    """Return the fields of a header of rosbag 2.0."""
+    file, found = BytesIO(text), {}
+    while file.tell() < len(text):
+        name, _, value = _sized(file).partition(b"=")
+        found[name.decode()] = value
+    return found
+
+
+def _walk_mcap(path: Path) -> Walk:
+    with path.open("rb") as file:
+        if file.read(len(_MCAP_MAGIC)) == _MCAP_MAGIC:
+            yield from _mcap_records(file, {}, {})
+
+
+def _mcap_records(
+    file: BinaryIO, schemas: dict[int, tuple[str, str, str]], channels: dict[int, Channel]
+) -> Walk:
+    while True:
+        operation = _take(file, 1)[0]
+        (size,) = struct.unpack("<Q", _take(file, 8))
+        data = file.read(size)
+        if len(data) < size and operation != _MCAP_CHUNK:  # of a chunk the beginning can be read
+            raise CutOffError
+        record = BytesIO(data)
+        if operation == _SCHEMA:
+            (key,) = struct.unpack("<H", _take(record, 2))
+            name, encoding, text = (_sized(record).decode() for _ in range(3))
+            schemas[key] = name, encoding, text
+        elif operation == _CHANNEL:
+            key, schema = struct.unpack("<HH", _take(record, 4))
+            topic, _ = (_sized(record).decode() for _ in range(2))
+            name, encoding, text = schemas.get(schema, ("", "", ""))
+            latched = _transient(_sized(record).decode(errors="replace"))
+            channels[key] = Channel(topic, name, text, encoding.endswith("idl"), latched)
+            yield channels[key]
+        elif operation == _MCAP_MESSAGE:
+            key, _, time, _ = struct.unpack("<HIQQ", _take(record, 22))
+            yield Recorded(time, channels[key].topic, record.read())
+        elif operation == _MCAP_CHUNK:
+            _take(record, 28)  # times, size and checksum
+            compression = _sized(record).decode()
+            _take(record, 8)  # size of what follows
+            with suppress(CutOffError):
+                yield from _mcap_records(BytesIO(_inflated(record.read(), compression)), schemas, channels)
+
+
+def _transient(profiles: str) -> bool:
+    """Tell whether the publisher of a ROS 2 topic kept its messages, from the text of its quality of service."""
+    flat = profiles.replace(" ", "")
+    return "durability:1" in flat or "durability:transient_local" in flat
+
+
+def _inflated(data: bytes, compression: str) -> bytes:
+    """Decompress as much as there is: the rest of a chunk may be missing."""
+    if compression in ("", "none"):
+        return data
+    return bytes(_decompressor(compression).decompress(data))
+
+
+def _decompressor(compression: str) -> Any:
+    """Return what decompresses bit by bit, of the libraries that some version of `rosbags` comes with."""
+    if compression == "bz2":
+        return bz2.BZ2Decompressor()
+    homes = {
+        "lz4": (("lz4.frame", "LZ4FrameDecompressor"),),
+        "zstd": (("compression.zstd", "ZstdDecompressor"), ("backports.zstd", "ZstdDecompressor")),
+    }
+    for module, name in homes.get(compression, ()):
+        with suppress(ImportError):
+            return getattr(import_module(module), name)()
+    raise ValueError(f"nothing here reads {compression}")
+
+
+def _walk_db3(path: Path) -> Walk:
+    """Walk through a database in the order in which messages were written."""
+    with closing(sqlite3.connect(f"{path.resolve().as_uri()}?immutable=1", uri=True)) as database:
+        database.execute("PRAGMA writable_schema=ON")  # else nothing is read of a file that is too short
+        texts: dict[str, tuple[str, str]] = {}
+        with suppress(sqlite3.Error):  # recordings before 2023 have no definitions
+            query = "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
+            texts = {name: (encoding, text) for name, encoding, text in database.execute(query)}
+        topics = {}
+        for number, topic, kind in database.execute("SELECT id, name, type FROM topics"):
+            topics[number] = topic
+            encoding, text = texts.get(kind, ("", ""))
+            yield Channel(topic, kind, text, encoding.endswith("idl"))
+        for number, time, data in database.execute("SELECT topic_id, timestamp, data FROM messages"):
+            yield Recorded(time, topics[number], data)
