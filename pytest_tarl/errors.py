@@ -41,3 +41,7 @@ class UnsupportedApiError(TarlError):
 
 class RepairError(TarlError):
     """A mutation cannot be written into the source."""
+
+
+class RefusedError(TarlError):
+    """A command can be understood but would do harm as things are, so nothing was changed."""

@@ -142,6 +142,7 @@ class Mission:
                 self.options,
                 self.progress,
                 self.tarl / "patches",
+                self.fixture_path,
             )
             repaired = repair(order)
             comparison = repaired.comparison

@@ -1,4 +1,4 @@
-"""The command line of `tarl`."""
+"""The command line of `tarl`: fixtures to look at, robots to observe, patches to apply."""
 
 from __future__ import annotations
 
@@ -8,14 +8,17 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from pytest_tarl.errors import TarlError
+from pytest_tarl.errors import RefusedError, TarlError
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command; return 0, 1 where `diff` found what it was told to fail on, 2 for what cannot be done."""
+    """Run a command; return 0, 1 where it found what it was told to fail on or refused, 2 for what cannot be done."""
     arguments = _parser().parse_args(argv)
     try:
         return int(arguments.run(arguments))
+    except RefusedError as refused:
+        print(f"tarl: {refused}", file=sys.stderr)
+        return 1
     except TarlError as problem:
         print(f"tarl: {problem}", file=sys.stderr)
         return 2
@@ -28,7 +31,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="tarl", description="Look at what TARL recorded.")
+    parser = argparse.ArgumentParser(
+        prog="tarl", description="Look at what TARL recorded, apply what it found."
+    )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     show = commands.add_parser("show", help="tell in a screenful what a fixture holds")
     show.add_argument("fixture", type=Path, help="a file below .tarl/utility or .tarl/online")
@@ -58,7 +63,60 @@ def _parser() -> argparse.ArgumentParser:
     )
     diff.set_defaults(run=_diff)
     _add_observe(commands)
+    _add_patches(commands)
     return parser
+
+
+def _add_patches(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    apply = commands.add_parser("apply", help="apply patches of repairs, after checking that they still fit")
+    apply.add_argument(
+        "--force", action="store_true", help="where the file has changed, or has changes to lose"
+    )
+    revert = commands.add_parser("revert", help="undo patches of repairs, and nothing else")
+    suggest = commands.add_parser(
+        "suggest", help="print a patch as suggestions for a review, or as a SARIF fix"
+    )
+    suggest.add_argument(
+        "--format",
+        choices=("markdown", "github", "sarif"),
+        default="markdown",
+        help="suggestion blocks to read and paste (default), a review for GitHub's API, or SARIF 2.1.0",
+    )
+    for command in (apply, revert):
+        command.add_argument("patch", type=Path, nargs="+", help="a file below .tarl/patches")
+        command.add_argument(
+            "--directory",
+            type=Path,
+            metavar="DIR",
+            help="where the paths of a patch begin; known as long as the patch is below .tarl",
+        )
+    suggest.add_argument("patch", type=Path, help="a file below .tarl/patches")
+    apply.set_defaults(run=_apply)
+    revert.set_defaults(run=_revert)
+    suggest.set_defaults(run=_suggest)
+
+
+def _apply(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.commands import applying
+
+    print("\n".join(applying.apply(arguments.patch, arguments.directory, force=arguments.force)))
+    return 0
+
+
+def _revert(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.commands import applying
+
+    print("\n".join(applying.revert(arguments.patch, arguments.directory)))
+    return 0
+
+
+def _suggest(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.patching import suggesting
+    from pytest_tarl.patching.reading import read
+
+    forms = {"markdown": suggesting.markdown, "github": suggesting.review, "sarif": suggesting.sarif}
+    sys.stdout.write(forms[arguments.format](read(arguments.patch)))
+    return 0
 
 
 def _add_observe(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

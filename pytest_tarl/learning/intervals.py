@@ -22,6 +22,12 @@ def difference_bounds(first: Sequence[float], second: Sequence[float], risk: flo
     return difference - reach, difference + reach
 
 
+def mean_bounds(values: Sequence[float], confidence: float) -> tuple[float, float]:
+    """Return the two-sided interval of a mean (Student)."""
+    reach = student_quantile((1 + confidence) / 2, max(len(values) - 1, 1)) * sqrt(_spread(values))
+    return fmean(values) - reach, fmean(values) + reach
+
+
 def effect_size(first: Sequence[float], second: Sequence[float]) -> float:
     """Return Hedges' g: mean(first) - mean(second) in pooled standard deviations; NaN where nothing varies."""
     degrees = len(first) + len(second) - 2

@@ -18,7 +18,8 @@ from pytest_tarl.files import write_atomically
 
 Opcode = tuple[str, int, int, int, int]
 CONTEXT = 3  # unchanged lines around a change
-_BASE = "# paths are relative to: "
+BASE = "paths are relative to"  # the fact of the header that says so
+TITLE = "Repair by tarl "
 _FILE = re.compile(r"^--- a/([^\t\n]+)", re.MULTILINE)
 _NO_NEWLINE = "\\ No newline at end of file\n"
 
@@ -33,12 +34,18 @@ def unified_diff(
     Raises RepairError when the files have no common base, or cannot hold the new text in their encoding.
     """
     base = _base([path.resolve() for path in changed], root.resolve())
+    texts = {
+        path.resolve().relative_to(base).as_posix(): (originals[path], _encoded(path, originals[path], text))
+        for path, text in sorted(changed.items())
+    }
+    return bytes_diff(texts, _shown(base, root.resolve()), header)
+
+
+def bytes_diff(texts: Mapping[str, tuple[bytes, bytes]], base: str, header: Sequence[str]) -> str:
+    """Return the diff of files whose old and new bytes are known; `base` is what their names are relative to."""
     comments = [f"# {line}".rstrip() + "\n" for text in header for line in text.splitlines() or [""]]
-    comments.append(f"{_BASE}{_shown(base, root.resolve())}\n")
-    for path, text in sorted(changed.items()):
-        name = path.resolve().relative_to(base).as_posix()
-        comments.append(_file_diff(name, originals[path], _encoded(path, originals[path], text)))
-    return "".join(comments)
+    diffs = [_file_diff(name, before, after) for name, (before, after) in texts.items()]
+    return "".join((*comments, f"# {BASE}: {base}\n", *diffs))
 
 
 def readable(diff: str) -> str:
@@ -61,6 +68,7 @@ def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
     for older in folder.glob(f"{name}-????????.patch"):
         if older != path:
             older.unlink()
+            older.with_suffix(".sarif").unlink(missing_ok=True)
     return path
 
 
@@ -77,6 +85,16 @@ def apply_command(patch: Path, cwd: Path) -> str:
     if within or base == here:
         return shlex.join(["git", "apply", _shown(patch.resolve(), here)])
     return shlex.join(["git", "-C", _shown(base, here), "apply", _shown(patch.resolve(), base)])
+
+
+def blob_id(content: bytes) -> str:
+    """Return git's name of a content: which text a patch was made for, and which one it makes."""
+    return hashlib.sha1(b"blob %d\0" % len(content) + content, usedforsecurity=False).hexdigest()
+
+
+def split_lines(content: bytes) -> list[bytes]:
+    """Split where git does: behind line feeds only."""
+    return re.findall(rb"[^\n]*\n|[^\n]+", content)
 
 
 def slug(text: str) -> str:
@@ -111,7 +129,8 @@ def _shown(path: Path, start: Path) -> str:
 
 def _stated_base(text: str) -> str:
     """Return what the header says that the paths are relative to."""
-    stated = (line.removeprefix(_BASE) for line in text.split("\n") if line.startswith(_BASE))
+    start = f"# {BASE}: "
+    stated = (line.removeprefix(start) for line in text.split("\n") if line.startswith(start))
     return next(stated, ".")
 
 
@@ -145,10 +164,15 @@ def _with_endings(original: str, text: str) -> str:
 
 
 def _file_diff(name: str, before: bytes, after: bytes) -> str:
-    """Return the diff of one file, with its two header lines and the one that git reads."""
+    """Return the diff of one file; with the line `index`, git can merge it into another state of the file."""
     old, new = (_lines(content.decode("utf-8", "surrogateescape")) for content in (before, after))
     end = "\t" if " " in name else ""
-    lines = [f"diff --git a/{name} b/{name}\n", f"--- a/{name}{end}\n", f"+++ b/{name}{end}\n"]
+    lines = [
+        f"diff --git a/{name} b/{name}\n",
+        f"index {blob_id(before)}..{blob_id(after)}\n",
+        f"--- a/{name}{end}\n",
+        f"+++ b/{name}{end}\n",
+    ]
     matcher = difflib.SequenceMatcher(None, old, new, autojunk=False)
     for group in matcher.get_grouped_opcodes(CONTEXT):
         lines.append(_hunk_header(group))

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from statistics import fmean
 
+from pytest_tarl.files import write_atomically
 from pytest_tarl.model import Edit, Repair
 from pytest_tarl.patching import patch
 from pytest_tarl.patching.mutate import Mutation, guard_text
+from pytest_tarl.patching.reading import read
+from pytest_tarl.patching.suggesting import sarif
 from pytest_tarl.patching.verify import nothing_lost
 from pytest_tarl.repairing.accepting import Accepted, Refused
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
+from pytest_tarl.report import words
 from pytest_tarl.searching.search import Candidate, effective_value
+from tarl_lint import __version__
 
 
 def delivered(mutants: Mutants, accepted: Accepted, search: int, acceptance: int) -> Repair:
@@ -23,12 +29,10 @@ def delivered(mutants: Mutants, accepted: Accepted, search: int, acceptance: int
     changed = mutants.source(candidate)
     _verify(order, candidate, changed)
     originals = {path: path.read_bytes() for path in changed}
-    header = [
-        *_evidence(order, accepted, guard),
-        f"episodes spent: search {search}, acceptance {acceptance}",
-    ]
+    header = _evidence(order, accepted, guard, search, acceptance)
     diff = patch.unified_diff(originals, changed, order.root, header)
     written = patch.write(diff, order.patches, order.fixture.test, order.drift)
+    write_atomically(written.with_suffix(".sarif"), sarif(read(written)).encode())
     place = written.relative_to(order.root).as_posix()
     return Repair(True, guard, _edits(candidate), patch.readable(diff), place)
 
@@ -61,23 +65,44 @@ def _edits(candidate: Candidate) -> tuple[Edit, ...]:
 
 def _edit(mutation: Mutation) -> Edit:
     operand = mutation.operand
-    value = effective_value(mutation)
+    value = words.expected(effective_value(mutation))
     return Edit(operand.span.path, operand.span.line, operand.code, value, operand.value is None)
 
 
-def _evidence(order: Order, accepted: Accepted, guard: str) -> list[str]:
-    """Return what the patch's header tells: test, drift, seed, rewards before and after."""
+def _evidence(order: Order, accepted: Accepted, guard: str, search: int, acceptance: int) -> list[str]:
+    """Return what the patch's header tells: what changes, and why it was accepted."""
     totals = order.comparison.totals
     repaired = [outcome.total for outcome in accepted.acceptance.drifted]
     nominal = [outcome.total for outcome in accepted.acceptance.nominal]
+    change = words.repair_words(Repair(True, guard, _edits(accepted.candidate)))
     return [
-        f"Repair of {order.fixture.test} under the drift {order.drift or 'on-line'}, seed {order.options.seed}",
-        f"when: {guard or 'always'}",
-        (
-            f"reward per episode: off-line {fmean(totals['offline']):.4g}, on-line {fmean(totals['online']):.4g}, "
-            f"repaired {fmean(repaired):.4g} ({len(repaired)} fresh episodes)"
-        ),
-        f"designed world: {fmean(nominal):.4g} ({len(nominal)} fresh episodes)"
+        f"{patch.TITLE}{__version__}: {words.one_line(change)}",
+        f"test: {order.fixture.test}",
+        f"drift: {words.one_line(order.drift or 'none, an on-line world without a name')}",
+        f"seed: {order.options.seed}",
+        f"designed: {words.average(totals['offline'])}",
+        f"drifted: {words.average(totals['online'])}",
+        f"drifted and repaired: {words.average(repaired)}, of seeds that nothing was chosen by",
+        f"designed and repaired: {words.average(nominal)}, of seeds that nothing was chosen by"
         if nominal
-        else "designed world: the guard never holds there",
+        else "designed and repaired: as designed, since the condition never holds there",
+        f"episodes spent: search {search}, acceptance {acceptance}",
+        *_recorded(order),
+        f"again: {_again(order)}",
     ]
+
+
+def _recorded(order: Order) -> list[str]:
+    """Name the fixture that the repair was accepted against."""
+    path = order.recorded
+    if path is None:
+        return []
+    return [
+        f"fixture: {hashlib.sha256(path.read_bytes()).hexdigest()} {path.relative_to(order.root).as_posix()}"
+    ]
+
+
+def _again(order: Order) -> str:
+    """Return the command that compares again, to be run in the root."""
+    test = order.fixture.test.partition("[")[0]
+    return words.command(replace(order.comparison, target=test, flags=order.options.flags))

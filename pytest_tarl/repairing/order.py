@@ -31,6 +31,7 @@ class Order:
     options: Options
     progress: Progress
     patches: Path
+    recorded: Path | None = None  # the file of the fixture
 
     @property
     def comparison(self) -> Comparison:

@@ -9,7 +9,7 @@ from itertools import accumulate
 from pathlib import Path
 from statistics import fmean
 
-from pytest_tarl.learning.intervals import difference_bounds, effect_size
+from pytest_tarl.learning.intervals import difference_bounds, effect_size, mean_bounds
 from pytest_tarl.model import Comparison, Edit, OperandEffect, Reason, Repair, Slice
 from pytest_tarl.report.regions import Vocabulary
 
@@ -32,6 +32,20 @@ def amount(value: float | None) -> str:
     if value == 0 or 0.1 <= abs(value) < 1000:
         return f"{value:.2f}"
     return f"{value:.0f}" if 1000 <= abs(value) < 1e6 else f"{value:.3g}"
+
+
+def expected(value: float) -> float:
+    """Return a number without the noise of its last binary digits: 12.0 for 11.999999999999998."""
+    return float(f"{value:.10g}")
+
+
+def average(totals: Sequence[float]) -> str:
+    """Tell an average total reward, how surely it is known, and of how many episodes."""
+    if len(totals) < 2:
+        return f"{amount(fmean(totals)) if totals else 'n/a'} an episode, of {len(totals)}"
+    low, high = mean_bounds(totals, CONFIDENCE)
+    interval = f"{CONFIDENCE:.0%} confidence {amount(low)} to {amount(high)}"
+    return f"{amount(fmean(totals))} an episode, {interval}, {len(totals)} episodes"
 
 
 def signed(value: float | None) -> str:

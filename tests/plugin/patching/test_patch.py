@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.mutate import Mutation, rewrite
-from pytest_tarl.patching.patch import apply_command, readable, unified_diff, write
+from pytest_tarl.patching.patch import apply_command, blob_id, readable, unified_diff, write
 from tests.plugin.patching.repairs import MUD, TOPICS, HandMade, TinyRos, odometry, subscribing, terrain
 
 HEADER = [
@@ -230,7 +230,11 @@ def test_the_header_is_comment_only(tmp_path: Path) -> None:
     )
     head, _, body = diff.partition("diff --git ")
     assert all(line.startswith("#") for line in head.splitlines())
-    assert body == "a/node.py b/node.py\n--- a/node.py\n+++ b/node.py\n@@ -1,1 +1,1 @@\n-a = 5\n+a = 7\n"
+    index = f"index {blob_id(b'a = 5' + bytes([10]))}..{blob_id(b'a = 7' + bytes([10]))}"
+    assert (
+        body
+        == f"a/node.py b/node.py\n{index}\n--- a/node.py\n+++ b/node.py\n@@ -1,1 +1,1 @@\n-a = 5\n+a = 7\n"
+    )
 
 
 line = st.sampled_from(

@@ -1,0 +1,96 @@
+"""Several patches of one file, all made for the same text: one patch, or the lines that they disagree on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.patch import BASE, bytes_diff, split_lines
+from pytest_tarl.patching.reading import Patch, Replacement
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """Two patches that want different things of the same lines; `line` counts from 1."""
+
+    file: str
+    line: int
+    first: Patch
+    second: Patch
+
+    def __str__(self) -> str:
+        """Say which lines of which patches."""
+        return (
+            f"{self.file}:{self.line} is changed in two ways, by {self.first.name} and by {self.second.name}"
+        )
+
+
+def conflicts(patches: Sequence[Patch]) -> list[Conflict]:
+    """Return where patches that were made for the same text do not go together."""
+    found: list[Conflict] = []
+    for at, first in enumerate(patches):
+        for second in patches[at + 1 :]:
+            theirs = {(file.name, file.before): file.replacements for file in second.files}
+            for file in first.files:
+                others = theirs.get((file.name, file.before), ())
+                clashing = [
+                    (mine, other) for mine in file.replacements for other in others if _clash(mine, other)
+                ]
+                lines = dict.fromkeys(max(mine.start, other.start) + 1 for mine, other in clashing)
+                found += [Conflict(file.name, line, first, second) for line in lines]
+    return found
+
+
+def combined(content: bytes, wanted: Sequence[Replacement]) -> bytes:
+    """Return a text with all replacements in it; what is put at the same place stands in the given order."""
+    lines, result, at = split_lines(content), list[bytes](), 0
+    for one in _in_order(wanted):
+        if tuple(lines[one.start : one.end]) != one.old or one.start < at:
+            raise RepairError(f"Line {one.start + 1} is not what it was, so the patches cannot be combined.")
+        result += [*lines[at : one.start], *one.new]
+        at = one.end
+    return b"".join((*result, *lines[at:]))
+
+
+def separated(content: bytes, wanted: Sequence[Replacement]) -> bytes | None:
+    """Return the text that `combined` made a content of; None where it does not hold all replacements."""
+    lines, result, at, shift = split_lines(content), list[bytes](), 0, 0
+    for one in _in_order(wanted):
+        start = one.start + shift
+        end = start + len(one.new)
+        if tuple(lines[start:end]) != one.new or start < at:
+            return None
+        result += [*lines[at:start], *one.old]
+        at, shift = end, shift + len(one.new) - len(one.old)
+    return b"".join((*result, *lines[at:]))
+
+
+def combined_diff(patches: Sequence[Patch], originals: Mapping[str, bytes]) -> str:
+    """Return one diff in place of several; `originals` are the texts that they were made for, by name."""
+    texts = {}
+    for name, original in originals.items():
+        files = [file for patch in patches for file in patch.files if file.name == name]
+        texts[name] = (original, combined(original, [one for file in files for one in file.replacements]))
+    header = [f"{patches[0].title.partition(':')[0]}: {len(patches)} repairs in one, each accepted by itself"]
+    for patch in patches:
+        header.append(f"part {patch.name}")
+        header += [f"  {key}: {value}" for key, value in patch.facts if key != BASE]
+    return bytes_diff(texts, patches[0].base, header)
+
+
+def same_change(first: Patch, second: Patch) -> bool:
+    """Tell whether two patches do the same."""
+    return first.files == second.files
+
+
+def _in_order(wanted: Sequence[Replacement]) -> list[Replacement]:
+    """Return each replacement once, from the top of the file down."""
+    return sorted(dict.fromkeys(wanted), key=lambda one: (one.start, one.end))
+
+
+def _clash(one: Replacement, other: Replacement) -> bool:
+    """Tell whether two replacements overlap; what is only put in does not take the place of anything."""
+    if one == other:
+        return False
+    return one.start < other.end and other.start < one.end

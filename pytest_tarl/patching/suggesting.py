@@ -1,0 +1,165 @@
+"""A patch as reviewers read it: a SARIF fix, `suggestion` blocks of GitHub, a review to be posted."""
+
+from __future__ import annotations
+
+import codecs
+import io
+import json
+import re
+import tokenize
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from pytest_tarl.patching.reading import FilePatch, Patch, Replacement
+
+SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+RULE = "TARL301"
+ROOT = "%SRCROOT%"  # known to GitHub as the top of the repository
+_TOLD = ("designed", "drifted", "drifted and repaired", "designed and repaired")
+
+
+def sarif(patch: Patch) -> str:
+    """Return SARIF 2.1.0 with one result, whose fix is the patch; paths are those of the patch."""
+    rule = {
+        "id": RULE,
+        "name": "RepairFound",
+        "shortDescription": {"text": "A change that restores what the software earns in a drifted world"},
+        "fullDescription": {
+            "text": "Found by simulation and accepted on seeds that nothing was chosen by, in the drifted world and in "
+            "the designed one."
+        },
+        "defaultConfiguration": {"level": "warning"},
+    }
+    driver = {"name": "tarl", "version": _version(patch), "rules": [rule]}
+    changes = [_artifact_change(file, _encoding(patch, file)) for file in patch.files]
+    result = {
+        "ruleId": RULE,
+        "ruleIndex": 0,
+        "level": "warning",
+        "message": {"text": _message(patch)},
+        "locations": [_location(file, one) for file, one in _main(patch)],
+        "partialFingerprints": {"tarlRepair/v1": " ".join(file.after for file in patch.files)},
+        "fixes": [{"description": {"text": patch.title.partition(": ")[2]}, "artifactChanges": changes}],
+    }
+    base = {ROOT: {"description": {"text": "The folder that the paths of the patch are relative to."}}}
+    run = {
+        "tool": {"driver": driver},
+        "columnKind": "unicodeCodePoints",
+        "originalUriBaseIds": base,
+        "results": [result],
+    }
+    return json.dumps({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}, indent=1) + "\n"
+
+
+def markdown(patch: Patch) -> str:
+    """Return the evidence and one `suggestion` block a change, each under the lines it is for."""
+    parts = [_evidence(patch)]
+    for path, first, last, text in _suggestions(patch):
+        lines = f"line {last}" if first == last else f"lines {first} to {last}"
+        parts.append(f"`{path}`, {lines}:\n\n{_block(text)}")
+    return "\n\n".join(parts) + "\n"
+
+
+def review(patch: Patch) -> str:
+    """Return a review as GitHub's REST API takes it: one comment a change, with its `suggestion` block."""
+    comments = [
+        {
+            "path": path,
+            "side": "RIGHT",
+            "line": last,
+            **({"start_line": first, "start_side": "RIGHT"} if first < last else {}),
+            "body": _block(text),
+        }
+        for path, first, last, text in _suggestions(patch)
+    ]
+    return json.dumps({"event": "COMMENT", "body": _evidence(patch), "comments": comments}, indent=1) + "\n"
+
+
+def _message(patch: Patch) -> str:
+    tests = " and ".join(patch.told("test"))
+    drifts = " and ".join(dict.fromkeys(patch.told("drift")))
+    figures = "; ".join(f"{key}: {value}" for key, value in patch.facts if key in _TOLD)
+    return f"{tests} earns less than designed under the drift {drifts}. Reward {figures}."
+
+
+def _evidence(patch: Patch) -> str:
+    told = [
+        f"- {key}: {_escaped(value)}"
+        for key, value in patch.facts
+        if key not in ("fixture", "paths are relative to")
+    ]
+    return "\n".join((f"**{_escaped(patch.title)}**", "", *told))
+
+
+def _escaped(text: str) -> str:
+    return re.sub(r"([\\`*_<>\[\]])", r"\\\1", text)
+
+
+def _suggestions(patch: Patch) -> Iterator[tuple[str, int, int, str]]:
+    """Yield path, first and last line (from 1) and the text in their place; what is only put in takes a line along."""
+    for file in patch.files:
+        encoding = _encoding(patch, file)
+        around = {hunk.start + at: line for hunk in file.hunks for at, line in enumerate(hunk.old)}
+        for one in file.replacements:
+            first, new, old = one.start, one.new, one.old
+            if not old and first - 1 in around:
+                first, old, new = first - 1, (around[first - 1],), (around[first - 1], *new)
+            elif not old:
+                old, new = (around[first],), (*new, around[first])
+            text = b"".join(new).decode(encoding, "replace").replace("\r\n", "\n").removesuffix("\n")
+            yield file.name, first + 1, first + len(old), text
+
+
+def _block(text: str) -> str:
+    """Fence a suggestion; the fence is longer than any in the text."""
+    longest = max((len(found) for found in re.findall(r"`+", text)), default=0)
+    fence = "`" * max(3, longest + 1)
+    return f"{fence}suggestion\n{text}\n{fence}"
+
+
+def _artifact_change(file: FilePatch, encoding: str) -> dict[str, Any]:
+    replacements = [
+        {
+            "deletedRegion": _region(one),
+            "insertedContent": {"text": b"".join(one.new).decode(encoding, "replace")},
+        }
+        for one in file.replacements
+    ]
+    return {"artifactLocation": _artifact(file), "replacements": replacements}
+
+
+def _region(one: Replacement) -> dict[str, int]:
+    """Return whole lines; of what is only put in, the empty place before the line."""
+    return {"startLine": one.start + 1, "startColumn": 1, "endLine": one.end + 1, "endColumn": 1}
+
+
+def _artifact(file: FilePatch) -> dict[str, str]:
+    return {"uri": quote(file.name), "uriBaseId": ROOT}
+
+
+def _main(patch: Patch) -> list[tuple[FilePatch, Replacement]]:
+    """Return the last change that takes lines away: imports and subscriptions, which come before it, only add."""
+    taking = [(file, one) for file in patch.files for one in file.replacements if one.old]
+    return (taking or [(file, one) for file in patch.files for one in file.replacements])[-1:]
+
+
+def _location(file: FilePatch, one: Replacement) -> dict[str, Any]:
+    return {"physicalLocation": {"artifactLocation": _artifact(file), "region": _region(one)}}
+
+
+def _version(patch: Patch) -> str:
+    return patch.title.partition(":")[0].rpartition(" ")[2]
+
+
+def _encoding(patch: Patch, file: FilePatch) -> str:
+    """Return the encoding of the file where it is at hand, else UTF-8."""
+    path = (patch.root or Path.cwd()) / (patch.base if patch.root else "") / file.name
+    try:
+        content = path.read_bytes()
+        if content.startswith(codecs.BOM_UTF8):
+            return "utf-8"
+        return tokenize.detect_encoding(io.BytesIO(content).readline)[0]
+    except (OSError, SyntaxError):
+        return "utf-8"
