@@ -1,9 +1,15 @@
 from __future__ import annotations
 
+import ast
+import contextlib
+import doctest
+import importlib
 import inspect
 import linecache
+import pickle
 import sys
 import traceback
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -120,6 +126,101 @@ def test_a_test_may_import_its_node_inside_the_episode(project, monkeypatch):
         node.callback(0.0)
     assert "node" not in sys.modules
     assert recorded(recorder) == [(2, 10.0), (0, 20.0), (1, 20.0)]
+
+
+LIBRARY = '''\
+"""Numbers of a robot.
+
+>>> half(3.0)
+1.5
+"""
+import enum
+from dataclasses import dataclass
+from typing import NamedTuple
+
+
+def half(x):
+    """
+    >>> half("x")
+    Traceback (most recent call last):
+    TypeError: unsupported operand type(s) for /: 'str' and 'int'
+    """
+    y = x / 2
+    return y
+
+
+@dataclass
+class Pose:
+    x: float
+
+    class Part:
+        def __init__(self, n):
+            self.n = half(n)
+
+    def moved(self):
+        """
+        >>> Pose(1.0).moved()
+        Pose(x=2.0)
+        """
+        return Pose(self.x + 1.0)
+
+
+class Mode(enum.Enum):
+    AUTO = 1
+
+
+class Pair(NamedTuple):
+    a: float
+    b: float = 2.0
+'''
+
+
+@contextlib.contextmanager
+def library(project: Path, recorder: Recorder) -> Iterator[Any]:
+    """Import a module of which every statement is recorded."""
+    file = project / "numbers_of_a_robot.py"
+    file.write_text(LIBRARY)
+    every = {
+        (node.lineno, node.col_offset + 1): n
+        for n, node in enumerate(ast.walk(ast.parse(LIBRARY)))
+        if isinstance(node, ast.stmt)
+    }
+    with imports(project, recorder, plan={file: every}):
+        yield importlib.import_module(file.stem)
+
+
+def test_functions_classes_and_their_objects_are_pickled_as_ever(project, monkeypatch):
+    monkeypatch.syspath_prepend(project)
+    recorder = Recorder()
+    with library(project, recorder) as module:
+        objects = [
+            module.half,
+            module.Pose,
+            module.Pose.Part,
+            module.Pose.moved,
+            module.Mode.AUTO,
+            module.Mode,
+        ]
+        for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+            stored = pickle.dumps(objects, protocol)
+            assert b"tarl" not in stored
+            assert all(a is b for a, b in zip(pickle.loads(stored), objects, strict=True))
+            values = [module.Pose(1.5), module.Pair(1.0)]
+            assert pickle.loads(pickle.dumps(values, protocol)) == values
+            assert pickle.loads(pickle.dumps(module.Pose.Part(3.0), protocol)).n == 1.5
+        in_recorded = pickle.dumps([module.Pose(1.5), module.Pair(1.0), module.half])
+    assert len(recorder.finish().site) > 10
+    plain = importlib.import_module("numbers_of_a_robot")  # what was stored is read by the program as it is
+    try:
+        assert pickle.loads(in_recorded) == [plain.Pose(1.5), plain.Pair(1.0), plain.half]
+    finally:
+        del sys.modules["numbers_of_a_robot"]
+
+
+def test_doctests_of_a_recorded_module_pass(project, monkeypatch):
+    monkeypatch.syspath_prepend(project)
+    with library(project, Recorder()) as module:
+        assert doctest.testmod(module) == (0, 3)
 
 
 def test_modules_in_packages_are_found_and_forgotten(project, monkeypatch):

@@ -3,6 +3,7 @@ from __future__ import annotations
 import ast
 import inspect
 import linecache
+import sys
 import textwrap
 from typing import Any
 
@@ -297,6 +298,23 @@ f(
     "unpacking that fails": "a, b = 1, 2, 3",
     "a name that is not there": "def f():\n    return x\nf()",
     "deleted and unbound": "def f():\n    x = 1.0\n    del x\n    x += 1\nf()",
+    "exec and eval in functions": """
+def f(a):
+    b = a * 2.0
+    exec("c = b + 1; out.append(c)", globals(), locals())
+    names = {"b": 5.0}
+    exec("b = b * 2", names)
+    return eval("b - a"), names["b"]
+out = []
+x = f(1.5)
+exec("def g(m):\\n    return m / 0")
+try: g(1)
+except ZeroDivisionError as e: line = e.__traceback__.tb_next.tb_lineno
+class A:
+    exec("z = 3.0")
+    w = eval("z + 1")
+y = A.z, A.w
+""",
     "match": """
 def f(v):
     match v, 1:
@@ -333,10 +351,63 @@ out = [f(x, y) for x in (0, 1) for y in (0, 1)]
 """,
 }
 
+if sys.version_info >= (3, 12):
+    PROGRAMS["type parameters"] = """
+def first[T: (int, float), *Ts, **P](items: list[T], *rest: *Ts) -> T:
+    x = items[0]
+    return x
+class Box[T]:
+    item: T
+    def __init__(self, item: T):
+        self.item = item
+    def get[S](self, other: S) -> T | S:
+        y = self.item or other
+        return y
+type Pair[T] = tuple[T, T]
+type Later = Nowhere
+a, b = first([1.0, 2.0]), Box[float](3.0).get("s")
+c = [str(p) for p in (*first.__type_params__, *Box.__type_params__, *Pair.__type_params__)]
+d = str(Pair.__value__), str(Box[int].__origin__.__name__), first.__annotations__["items"].__args__[0].__name__
+Later.__value__
+"""
+
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_same_values_errors_and_lines(name):
     assert_same(PROGRAMS[name], trace=True)
+
+
+def monitored(source: str, sites: dict[Offset, int] | None, *, inline: bool) -> list[tuple[str, str, int]]:
+    """Return what tools on `sys.monitoring` (coverage.py, debuggers) are told of a program."""
+    monitoring, seen = sys.monitoring, list[tuple[str, str, int]]()
+    kinds = monitoring.events
+    monitoring.use_tool_id(monitoring.DEBUGGER_ID, "test")
+
+    def told(what: str) -> Any:
+        def callback(code: Any, at: int, *_: object) -> None:
+            if code.co_filename == FILE:
+                seen.append((what, code.co_name, at if what == "line" else 0))
+
+        return callback
+
+    try:
+        for what, kind in (("line", kinds.LINE), ("start", kinds.PY_START), ("return", kinds.PY_RETURN)):
+            monitoring.register_callback(monitoring.DEBUGGER_ID, kind, told(what))
+        monitoring.set_events(monitoring.DEBUGGER_ID, kinds.LINE | kinds.PY_START | kinds.PY_RETURN)
+        run(source, sites, inline=inline)
+    finally:
+        monitoring.set_events(monitoring.DEBUGGER_ID, 0)
+        monitoring.free_tool_id(monitoring.DEBUGGER_ID)
+    return seen
+
+
+@pytest.mark.skipif(sys.version_info < (3, 12), reason="sys.monitoring came with Python 3.12")
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_monitoring_is_told_the_same(name):
+    source = PROGRAMS[name]
+    for inline in MODES:
+        sites = everywhere(ast.parse(source))
+        assert monitored(source, sites, inline=inline) == monitored(source, None, inline=inline)
 
 
 @pytest.mark.parametrize("inline", MODES)
