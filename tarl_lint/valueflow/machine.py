@@ -22,9 +22,9 @@ Kind = Literal["topic", "service", "action", "transform"]
 MAX_CALLS = 24  # nested calls that are told apart; deeper ones are taken for library calls
 MAX_FRAMES = 20_000  # activations in all
 MAX_STATEMENTS = 20_000  # executed in one run of a root; then calls are taken for library calls
-MANY = 2_000  # statements in one run of a root, after which no function runs often
-OFTEN = 6  # runs of one function in one run of a root that is as long as that
-PATIENCE = 40_000  # statements in all; then what did not run yet runs once, and at twice as many nothing more
+MANY = 4_000  # statements in one run of a root, after which no function runs often
+OFTEN = 8  # runs of one function in one run of a root that is as long as that
+PATIENCE = 80_000  # statements in all; then what did not run yet runs once, and at twice as many nothing more
 HASTE = 400  # statements in one run of a root after that
 
 
