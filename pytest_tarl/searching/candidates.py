@@ -74,7 +74,8 @@ def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Gua
 
     Ordered by the share of the change that falls under the guard less the share of off-line steps that do (Youden's
     J), better where it never holds off-line and so can do no harm there, worse with two conditions. None at all has
-    the second place; the first where the drift is everywhere, so that no guard tells much.
+    the second place; the first where the drift is everywhere, so that no guard tells much, and where the best guard
+    holds wherever the robot came on-line: it then says nothing of the places that only a repaired robot reaches.
     """
     shares, designed = evidence.shares(), evidence.offline
 
@@ -88,7 +89,7 @@ def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Gua
     if not best or merit(best[0]) < EVERYWHERE:
         return (ALWAYS, *best)
     if share(best[0], evidence.online, evidence.sensors) >= COVERED:
-        return (best[0],)  # in the drifted world it is as good as none at all, and the other way round
+        return (ALWAYS, best[0])  # the designed world decides later whether it is needed
     return (best[0], ALWAYS, *best[1:])
 
 

@@ -5,7 +5,7 @@ A search yields confirmed candidates, best first; whether one is accepted is dec
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from statistics import fmean
 from typing import Protocol
@@ -19,6 +19,7 @@ Mutate = Callable[[Operand, float], Mutation | None]
 
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
 CONFIRMATIONS = 5  # further seeds that a promising candidate must hold on
+PAIRED = 2  # seeds on which a candidate is compared with one that fell short
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,7 @@ class Trials:
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
+    _short: list[dict[int, float]] = field(default_factory=list)  # totals by seed, of each that fell short
 
     def __call__(self, candidate: Candidate, seed: int) -> Outcome:
         """Run one episode, or remember it. Raises BudgetSpentError, or RepairError from writing the candidate."""
@@ -93,6 +95,28 @@ class Trials:
         """Return what a candidate gained over the unmutated runs of the same seeds, on average; it was run on one."""
         known = ((self._known.get((candidate, pair.seed)), pair.total) for pair in pairs)
         return fmean(outcome.total - total for outcome, total in known if outcome is not None)
+
+    def fell_short(self, candidate: Candidate, pairs: Iterable[Pair]) -> None:
+        """Remember a candidate that came near on every seed, and yet earned too little."""
+        self._short.append(self._totals(candidate, pairs))
+
+    def falls_short(self, candidate: Candidate, pairs: Sequence[Pair], enough: float) -> bool:
+        """Tell whether a candidate will earn too little, as one did that it is paired with on at least two seeds.
+
+        What the other earned in all, and by how much this one differs from it on the seeds of both (control variate).
+        """
+        totals = self._totals(candidate, pairs)
+        for other in self._short:
+            both = totals.keys() & other.keys()
+            if len(both) >= PAIRED:
+                differs = fmean(totals[seed] - other[seed] for seed in sorted(both))
+                if fmean(other.values()) + differs < enough:
+                    return True
+        return False
+
+    def _totals(self, candidate: Candidate, pairs: Iterable[Pair]) -> dict[int, float]:
+        known = ((pair.seed, self._known.get((candidate, pair.seed))) for pair in pairs)
+        return {seed: outcome.total for seed, outcome in known if outcome is not None}
 
     @property
     def spent(self) -> int:
@@ -115,14 +139,22 @@ def label(candidate: Candidate) -> str:
 
 
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
-    """Try further seeds, beginning after the pair `first`; drop the candidate at its second miss."""
+    """Try further seeds, beginning after the pair `first`.
+
+    A candidate is dropped at its second miss, and as soon as it does no better than one that earned too little.
+    """
     others = [goal.pairs[(first + i) % len(goal.pairs)] for i in range(1, len(goal.pairs))][:CONFIRMATIONS]
     outcomes: list[Outcome] = []
     for pair in others:
         outcomes.append(trials(candidate, pair.seed))
         if sum(not goal.reached(outcome) for outcome in outcomes) > 1:
             return False
-    return not outcomes or fmean(outcome.total for outcome in outcomes) >= goal.enough
+        if trials.falls_short(candidate, goal.pairs, goal.enough):
+            return False
+    holds = not outcomes or fmean(outcome.total for outcome in outcomes) >= goal.enough
+    if not holds and all(goal.reached(outcome) for outcome in outcomes):
+        trials.fell_short(candidate, goal.pairs)
+    return holds
 
 
 class Strategy(Protocol):

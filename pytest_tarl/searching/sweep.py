@@ -7,6 +7,7 @@ the way there, the most gaining first. Where no operand suffices, those that gai
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from math import sqrt
 from typing import TYPE_CHECKING
@@ -26,9 +27,13 @@ FURTHER = ((5.0, 2.2), (0.15, 0.4))  # ... and those beyond, each behind the one
 OUTWARD = 2.3  # by how much the outermost factor is exceeded where it is the best
 BLOCK = 20  # units that are swept together after a screening
 FLIP = -1.0
-LAST = (1.5, 0.65, 10.0, 0.05)
+BETWEEN = (1.5, 0.65)
+LAST = (10.0, 0.05)
+FLIPPED = 3  # units that gained when made smaller, and so may have the wrong sign
 REFINEMENTS = 3  # of one operand in a row ...
-PROMISING = 0.4  # ... while it gains at least this share of the loss
+PROMISING = 0.4  # ... while it gains at least this share of the loss ...
+REFINED = 8  # ... and runs that refine one operand in all
+FINEST = 1.1  # ratio of two factors between which there is nothing to find
 SLACK = 0.1  # share of the loss that may be lost on the way further out
 
 
@@ -57,6 +62,7 @@ class Sweep:
         self.slack = SLACK * self.goal_gain
         self._gains: dict[tuple[Unit, Guard], dict[float, float]] = {}  # factor → gain in reward
         self._tried: set[Candidate] = set()
+        self._refined: Counter[tuple[Unit, Guard]] = Counter()
         self._turn = 0
 
     def candidates(self) -> Iterator[Candidate]:
@@ -66,15 +72,19 @@ class Sweep:
             self.units = yield from screened(self._joining({}), self.guards[0], self.generator)
         for block in _blocks(self.units):
             for guard in chief:
+                moving = self._moving(block)
                 for factor in NEAR:
-                    yield from self._all(factor, guard, block)
-            yield from self._leaders_together()
+                    yield from self._all(factor, guard, moving)
+                yield from self._leaders_together(guard)
         for factor, before in FURTHER:
             for guard in chief:
                 yield from self._all(factor, guard, self._leading(before, guard))
-        yield from self._all(FLIP, self.guards[0], self.units)
+                yield from self._leaders_together(guard)
+        for factor in (*BETWEEN, FLIP):
+            for guard in chief:
+                yield from self._all(factor, guard, self._moving(self.units))
         yield from self._together()
-        for factor in (*LAST, *NEAR, *(factor for factor, _ in FURTHER), FLIP):
+        for factor in (*BETWEEN, *LAST, *NEAR, *(factor for factor, _ in FURTHER), FLIP):
             for guard in self.guards:
                 yield from self._all(factor, guard, self.units)
 
@@ -98,12 +108,23 @@ class Sweep:
         self._turn += 1
         for unit in among:
             yield from self._try(unit, guard, factor, pair)
+        if 0.0 < factor < 1.0:
+            for unit in self._leading(factor, guard, self.slack)[:FLIPPED]:
+                yield from self._try(unit, guard, FLIP, pair)
         yield from self._refine(pair)
 
-    def _leading(self, before: float, guard: Guard) -> list[Unit]:
-        """Return what did not lose under a factor, the most gaining first."""
-        gains = {unit: self._gains.get((unit, guard), {}).get(before) for unit in self.units}
-        kept = [(gain, unit) for unit, gain in gains.items() if gain is not None and gain >= -self.slack]
+    def _moving(self, among: Sequence[Unit]) -> list[Unit]:
+        """Leave out what was moved both ways, under one guard or another, and never changed a reward."""
+        gains: dict[Unit, list[float]] = {}
+        for (unit, _), by_factor in self._gains.items():
+            gains.setdefault(unit, []).extend(gain for factor, gain in by_factor.items() if factor != 1.0)
+        return [unit for unit in among if len(gains.get(unit, ())) < len(NEAR) or any(gains[unit])]
+
+    def _leading(self, before: float, guard: Guard, least: float | None = None) -> list[Unit]:
+        """Return what gained at least so much under a factor, else what did not lose, the most gaining first."""
+        least = -self.slack if least is None else least
+        gains = {unit: self._gains.get((unit, guard), {}).get(before) for unit in self._moving(self.units)}
+        kept = [(gain, unit) for unit, gain in gains.items() if gain is not None and gain >= least]
         return [unit for _, unit in sorted(kept, key=lambda one: -one[0])]
 
     def _try(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
@@ -133,7 +154,8 @@ class Sweep:
     def _refine(self, pair: int) -> Iterator[Candidate]:
         """Refine the most improving operand, and go on as long as it comes closer to what is needed."""
         for _ in range(REFINEMENTS):
-            best = max(self._gains, key=lambda tried: max(self._gains[tried].values()), default=None)
+            open_to = [tried for tried in self._gains if self._refined[tried] < REFINED]
+            best = max(open_to, key=lambda tried: max(self._gains[tried].values()), default=None)
             if best is None:
                 return
             before = max(self._gains[best].values())
@@ -150,7 +172,9 @@ class Sweep:
         ordered = [min(gains) / OUTWARD**2, *sorted(gains), max(gains) * OUTWARD**2]
         place = ordered.index(factor)
         for neighbour in (ordered[place - 1], ordered[place + 1]):
-            yield from self._try(*best, round(sqrt(factor * neighbour), 3), pair)
+            if max(factor, neighbour) > FINEST * min(factor, neighbour):
+                self._refined[best] += 1
+                yield from self._try(*best, round(sqrt(factor * neighbour), 3), pair)
 
     def _together(self) -> Iterator[Candidate]:
         """Add others to what gains most."""
@@ -161,18 +185,17 @@ class Sweep:
         gains = {unit: gains for (unit, held), gains in self._gains.items() if held == guard}
         yield from self._joining(gains).candidates(Joint(((unit, factor),), guard))
 
-    def _leaders_together(self) -> Iterator[Candidate]:
+    def _leaders_together(self, guard: Guard) -> Iterator[Candidate]:
         """Join what gained most at different places, each as it was best: main effects that add up."""
-        for guard in self.guards[:2]:
-            leaders: dict[SiteId, tuple[float, Unit, float]] = {}
-            for (unit, held), gains in self._gains.items():
-                gain, factor = max((gain, factor) for factor, gain in gains.items())
-                site = unit.operands[0].site
-                if held == guard and gain > self.slack and gain > leaders.get(site, (0.0,))[0]:
-                    leaders[site] = gain, unit, factor
-            ranked = sorted(leaders.values(), key=lambda leader: -leader[0])
-            parts = tuple((unit, factor) for _, unit, factor in ranked)
-            yield from self._joining({}).unions(parts, guard)
+        leaders: dict[SiteId, tuple[float, Unit, float]] = {}
+        for (unit, held), gains in self._gains.items():
+            gain, factor = max((gain, factor) for factor, gain in gains.items())
+            site = unit.operands[0].site
+            if held == guard and gain > leaders.get(site, (0.0,))[0]:
+                leaders[site] = gain, unit, factor
+        ranked = sorted(leaders.values(), key=lambda leader: -leader[0])
+        if ranked and ranked[0][0] > self.slack:
+            yield from self._joining({}).unions([(unit, factor) for _, unit, factor in ranked], guard)
 
     def _joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> Together:
         return Together(self.units, self.mutate, self.trials, self.goal, gains, self.slack)

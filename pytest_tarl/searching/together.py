@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
@@ -17,7 +16,7 @@ from pytest_tarl.searching.units import NEAR, Unit
 
 MOST = 3  # parts of a joint repair
 PROMISING = 0.5  # a union that gains this share of the loss is worth balancing
-LEADERS = 4  # single ones that are joined with each other
+LEADERS = 5  # those that are added to the first, of which one may have too little to show alone
 STEPS = (1.5, 0.65)  # by which the parts are moved
 
 
@@ -78,18 +77,16 @@ class Together:
             base, gain = yield from self._balanced(better, most)
 
     def unions(self, parts: Sequence[tuple[Unit, float]], guard: Guard) -> Iterator[Candidate]:
-        """Join the leading parts two by two, add a third to the best two, and balance what gains most."""
+        """Join the leading part with the next ones, the best two with a third, and balance what gains most."""
+        base: Joint | None = Joint(tuple(parts[:1]), guard)
         best: tuple[Joint, float] | None = None
-        pairs = [Joint(both, guard) for both in combinations(parts[:LEADERS], 2)]
-        for _ in range(MOST - 1):
-            for joint in pairs:
+        while base is not None and len(base.parts) < MOST:
+            joints = [base.with_part(*part) for part in parts[: LEADERS + 1] if part not in base.parts]
+            base = None
+            for joint in joints:
                 gained = yield from self.gain(joint)
                 if gained is not None and (best is None or gained > best[1]):
-                    best = joint, gained
-            if best is None:
-                return
-            taken = best[0]
-            pairs = [taken.with_part(*part) for part in parts[:LEADERS] if part not in taken.parts]
+                    best, base = (joint, gained), joint
         if best is not None and best[1] > PROMISING * max(self.goal.enough - self.goal.online, 0.0):
             yield from self._balanced(*best)
 

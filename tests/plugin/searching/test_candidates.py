@@ -90,6 +90,15 @@ def test_changes_propose_a_guard_where_the_region_spans_everything() -> None:
     assert candidate_guards(evidence(spread)) == (ALWAYS,)
 
 
+def test_a_guard_that_holds_wherever_the_robot_came_has_none_at_all_before_it() -> None:
+    stuck = world(3, [(2, 0)] * 10)
+    cells = [(2, 0)]
+    seen = evidence(Region(tuple(cells)), worlds=(OFFLINE, stuck), changes={(2, 0): 5.0})
+    first, second = telling(candidate_guards(seen), seen, most=3)
+    assert first == ALWAYS
+    assert share(second, stuck, (X, WET)) == 1.0
+
+
 def test_without_a_telling_guard_the_search_runs_without_one() -> None:
     seen = evidence(REGION, changes={})
     assert telling(candidate_guards(seen), seen, most=3) == (ALWAYS,)

@@ -21,6 +21,7 @@ from pytest_tarl.searching.search import (
     Goal,
     Pair,
     Trials,
+    confirmed,
     label,
 )
 from pytest_tarl.searching.sweep import Sweep
@@ -127,6 +128,41 @@ def test_an_episode_is_run_once_for_a_candidate_and_seed() -> None:
     candidate = Candidate((mutation,), ALWAYS)
     assert trials(candidate, 1) == trials(candidate, 1)
     assert trials.spent == 1
+
+
+def test_what_does_no_better_than_one_that_earned_too_little_is_dropped_early() -> None:
+    def plateau(candidate: Candidate, seed: int) -> Outcome:
+        return Outcome(9.1 + 0.01 * seed, True)
+
+    goal = replace(GOAL, near=9.0, enough=9.5)
+    trials = Trials(plateau, 100)
+    first, second = (Candidate((m,), ALWAYS) for m in map(mutations, (GAIN, GAIN), (2.2, 5.0)) if m)
+    for candidate, runs in ((first, CONFIRMATIONS), (second, 2)):
+        before = trials.spent
+        assert not confirmed(candidate, trials, goal, 0)
+        assert trials.spent - before == runs
+
+
+def test_what_does_better_than_one_that_earned_too_little_is_confirmed() -> None:
+    def rising(candidate: Candidate, seed: int) -> Outcome:
+        return Outcome(7.0 + float(candidate.mutations[0].value), True)
+
+    goal = replace(GOAL, near=9.0, enough=11.5)
+    trials = Trials(rising, 100)
+    low, high = (Candidate((m,), ALWAYS) for m in map(mutations, (GAIN, GAIN), (2.0, 2.4)) if m)
+    assert not confirmed(low, trials, goal, 0)
+    assert confirmed(high, trials, goal, 0)
+
+
+def test_what_never_changes_a_reward_is_not_moved_further_before_all_else() -> None:
+    def helpless(candidate: Candidate, seed: int) -> Outcome:
+        (mutation,) = candidate.mutations
+        return Outcome(reward(None, seed) - 0.1 * (mutation.operand == GAIN), True)
+
+    trials = Trials(helpless, 6)
+    with pytest.raises(BudgetSpentError):
+        list(Sweep((LIMIT, GAIN), mutations, (ALWAYS,), trials, GOAL).candidates())
+    assert [label for label in trials.labels if "40" in label] == trials.labels[0:1] + trials.labels[2:3]
 
 
 def test_an_operand_that_cannot_be_written_is_passed_over() -> None:

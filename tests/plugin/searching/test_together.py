@@ -69,3 +69,31 @@ def test_a_sign_that_turned_is_turned_back() -> None:
     goal = Goal(tuple(Pair(seed, 0.0) for seed in range(6)), near=9.0, enough=9.5, online=0.0)
     found = next(Sweep(GAINS, mutations, (ALWAYS,), Trials(turned, 300), goal).candidates())
     assert [(m.operand, m.value) for m in found.mutations] == [(GAINS[4], -1.0)]
+
+
+def test_what_gains_when_made_smaller_is_turned_before_anything_goes_further() -> None:
+    def turned(candidate: Candidate, seed: int) -> Outcome:
+        factors = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
+        total = 5.0 - 5.0 * factors.get(GAINS[4], 1.0)
+        return Outcome(total, total > 9.0)
+
+    goal = Goal(tuple(Pair(seed, 0.0) for seed in range(6)), near=9.0, enough=9.5, online=0.0)
+    trials = Trials(turned, 300)
+    found = next(Sweep(GAINS, mutations, (ALWAYS,), trials, goal).candidates())
+    assert [(m.operand, m.value) for m in found.mutations] == [(GAINS[4], -1.0)]
+    assert trials.spent <= 3 * len(GAINS)
+
+
+def test_a_second_culprit_that_hardly_shows_alone_is_joined_first() -> None:
+    def world(candidate: Candidate, seed: int) -> Outcome:
+        factors = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
+        steered = factors.get(GAINS[3], 1.0) > 2.0
+        pulled = factors.get(GAINS[6], 1.0) > 2.0
+        total = 10.0 if steered and pulled else 4.0 * steered + 0.1 * pulled
+        return Outcome(total, total > 9.0)
+
+    goal = Goal(tuple(Pair(seed, 0.0) for seed in range(6)), near=9.0, enough=9.5, online=0.0)
+    trials = Trials(world, 300)
+    found = next(Sweep(GAINS, mutations, (ALWAYS,), trials, goal).candidates())
+    assert {mutation.operand for mutation in found.mutations} == {GAINS[3], GAINS[6]}
+    assert trials.spent < 40
