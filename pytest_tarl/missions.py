@@ -41,6 +41,7 @@ class Account:
     lines: tuple[str, ...]
     problem: str = ""
     patch: Path | None = None
+    interrupted: bool = False
 
 
 @dataclass(frozen=True)
@@ -132,6 +133,7 @@ class Mission:
         )
         comparison = online.comparison
         episodes = {"offline": fixture.sample.episodes, "online": online.recorded.sample.episodes}
+        interrupted = False
         if self.options.mode == "repair" and comparison.verdict.result == "degraded":
             order = Order(
                 rollout,
@@ -147,8 +149,9 @@ class Mission:
             repaired = repair(order)
             comparison = repaired.comparison
             episodes |= repaired.episodes
+            interrupted = repaired.interrupted
         told = replace(comparison, target=self.target, flags=self.options.flags)
-        return self._told(told, online, episodes)
+        return replace(self._told(told, online, episodes), interrupted=interrupted)
 
     def _told(self, comparison: Comparison, online: Online, episodes: Mapping[str, int]) -> Account:
         name = f"{patch.slug(self.test)}-{patch.slug(self.drift or 'online')}"

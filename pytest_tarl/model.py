@@ -16,7 +16,18 @@ if TYPE_CHECKING:
     Matrix = NDArray[np.float64]
 
 Result = Literal["degraded", "drifted", "no difference"]
-Reason = Literal["", "no operand helps", "gain too small", "nominal gets worse", "budget"]
+Reason = Literal[
+    "",
+    "no operand helps",
+    "gain too small",
+    "nominal gets worse",
+    "budget",
+    "time",
+    "interrupted",
+    "not confirmed",
+    "worse than unrepaired",
+    "another test gets worse",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,8 +141,25 @@ class Edit:
 
 
 @dataclass(frozen=True, slots=True)
+class Attempt:
+    """A candidate that came near, and what became of it; `reason` is empty for the one that was accepted.
+
+    `mean` is its reward per episode over `episodes`, which were `fresh` where nothing had been chosen by them.
+    """
+
+    what: str
+    reason: Reason
+    mean: float
+    episodes: int
+    fresh: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Repair:
-    """What the search ended with. `guard` is Python as written in the patch; `diff` is empty when not accepted."""
+    """What the search ended with. `guard` is Python as written in the patch; `diff` is empty when not accepted.
+
+    `mean` is the reward per episode of what was refused, in `episodes`; `history` is what was tried, in order.
+    """
 
     accepted: bool
     guard: str
@@ -139,6 +167,9 @@ class Repair:
     diff: str = ""
     patch: str = ""  # path of the patch file, relative to the root
     reason: Reason = ""
+    mean: float | None = None
+    episodes: int = 0
+    history: tuple[Attempt, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

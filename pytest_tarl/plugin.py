@@ -56,9 +56,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     flag(
         "--tarl-budget",
         metavar="N",
-        type=int,
-        default=300,
-        help="episodes that a search may spend (default 300)",
+        default="300",
+        help="what a search may spend: episodes (default 300), or a time such as 90s or 5min",
     )
     flag(
         "--tarl-utility",

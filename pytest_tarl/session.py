@@ -99,6 +99,8 @@ class TarlSession:
         for one in (_phase(item, "setup"), report, finish(item, nextitem)):
             item.ihook.pytest_runtest_logreport(report=one)
         item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
+        if account is not None and account.interrupted:
+            raise KeyboardInterrupt  # what was found until then is told; no further test is begun
         return True
 
     @pytest.hookimpl(optionalhook=True, tryfirst=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import os
+import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,6 +18,7 @@ Mode = Literal["plain", "record", "online", "repair"]
 SEARCHES = ("sweep", "epsilon-greedy")
 UTILITIES = ("batch", "sarsa", "expected-sarsa", "td-lambda")
 ROS_KINDS = ("embedded", "real", "auto")
+MOST_EPISODES = 10**6  # that a search may spend
 MARKER_ARGUMENTS = ("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance", "judge", "monitor")
 
 
@@ -31,6 +33,7 @@ class Options:
     alpha: float = 0.05
     searches: tuple[str, ...] = ("sweep",)
     budget: int = 300  # episodes that a search may spend
+    seconds: float | None = None  # that a search may take instead
     strict: bool = False
     utility: str = "batch"
     workers: int = 1  # episodes at a time, each in a process of its own when more than one
@@ -60,7 +63,7 @@ class Options:
             "--tarl-episodes": (self.episodes, None),
             "--tarl-alpha": (self.alpha, 0.05),
             "--tarl-looks": (self.looks, None),
-            "--tarl-budget": (self.budget, 300),
+            "--tarl-budget": (self.budget if self.seconds is None else f"{self.seconds:g}s", 300),
             "--tarl-utility": (self.utility, "batch"),
             "--tarl-ros": (self.ros, "embedded"),
             "--tarl-log": (self.log, None),
@@ -109,6 +112,7 @@ def options(given: Mapping[str, Any]) -> Options:
         _number("--tarl-episodes", "it", given["episodes"], int, 2, 10**6)
     if given["looks"] is not None:
         _number("--tarl-looks", "it", given["looks"], int, 1, 5)
+    budget = _budget(str(given["budget"]))
     mode: Mode = "record" if given["record"] else "repair" if given["repair"] else "online"
     return Options(
         mode=mode,
@@ -117,7 +121,8 @@ def options(given: Mapping[str, Any]) -> Options:
         episodes=given["episodes"],
         alpha=_number("--tarl-alpha", "it", given["alpha"], float, 1e-6, 0.5),
         searches=searches,
-        budget=_number("--tarl-budget", "it", given["budget"], int, 1, 10**6),
+        budget=budget[0],
+        seconds=budget[1],
         strict=given["strict"],
         utility=given["utility"],
         workers=_workers(given["workers"]),
@@ -127,6 +132,19 @@ def options(given: Mapping[str, Any]) -> Options:
         log=_log(given),
         bags=_bags(given),
     )
+
+
+def _budget(text: str) -> tuple[int, float | None]:
+    """Return how many episodes, or else how many seconds, a search may take: `300`, `90s`, `5min`, `1h`."""
+    found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*(s|min|h)?", text.strip())
+    unit = found[2] if found else None
+    if found is None or float(found[1]) <= 0 or (unit is None and not found[1].isdecimal()):
+        raise SettingsError(
+            f"--tarl-budget: it must be a number of episodes such as 300, or a time such as 90s or 5min, got {text!r}."
+        )
+    if unit is None:
+        return int(_number("--tarl-budget", "it", int(found[1]), int, 1, MOST_EPISODES)), None
+    return MOST_EPISODES, float(found[1]) * {"s": 1, "min": 60, "h": 3600}[unit]
 
 
 def _workers(text: str) -> int:

@@ -34,6 +34,17 @@ class Refused:
     candidate: Candidate | None
     reason: Reason
     mean: float = float("-inf")
+    episodes: int = 0
+
+
+@dataclass(frozen=True)
+class Tried:
+    """A candidate that was confirmed and then examined, and what became of it; accepted without a reason."""
+
+    candidate: Candidate
+    reason: Reason
+    totals: tuple[float, ...]
+    fresh: bool
 
 
 class Examiner:
@@ -47,6 +58,8 @@ class Examiner:
         self.spent = 0
         self.bar = float("-inf")  # what a candidate has to gain on known seeds, once one that did was refused
         self.refused = Refused(None, "no operand helps")
+        self.tried: list[Tried] = []
+        self.cut = False  # whether the budget ended it
 
     def first(self, confirmed: Iterator[Candidate], trials: Trials) -> Accepted | None:
         """Take candidates until one is accepted, no more may be tested or the budget of the trials is spent."""
@@ -61,6 +74,7 @@ class Examiner:
                     if examined == "gain too small" and guard in (candidate.guard, candidates.ALWAYS):
                         break  # where the guard is as wide as the search had it, no other one makes more of it
         except BudgetSpentError:
+            self.cut = True
             if self.refused.candidate is None:
                 self.refused = replace(self.refused, reason="budget")
         return None
@@ -72,18 +86,27 @@ class Examiner:
         except RepairError:
             return ""
         if problem:
+            self.tried.append(Tried(candidate, problem, (), fresh=False))
             self._refuse(Refused(candidate, problem))
             return ""
         self.tested += 1
         found = self._tested(candidate)
         self.spent += len(found.drifted) + len(found.nominal)
+        totals = tuple(outcome.total for outcome in found.drifted)
+        reason = self._named(found.reason, totals)
+        self.tried.append(Tried(candidate, reason, totals, fresh=True))
         if found.accepted:
             return Accepted(candidate, found)
         if found.reason == "gain too small":
             close = CLOSE * (self.order.goal.enough - self.order.goal.online)
             self.bar = max(self.bar, trials.gain(candidate, self.order.goal.pairs[:QUICK]) - close)
-        self._refuse(Refused(candidate, found.reason, fmean(outcome.total for outcome in found.drifted)))
+        self._refuse(Refused(candidate, reason, fmean(totals), len(totals)))
         return found.reason
+
+    def _named(self, reason: Reason, totals: Sequence[float]) -> Reason:
+        """Tell what gained too little from what made the drifted world worse than it is without a repair."""
+        worse = reason == "gain too small" and fmean(totals) < self.order.goal.online
+        return "worse than unrepaired" if worse else reason
 
     def _known_to_fail(self, candidate: Candidate, trials: Trials) -> Reason:
         """Say why not, from on-line episodes that lost and off-line ones in which the candidate acts; "" if neither."""

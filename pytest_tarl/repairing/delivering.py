@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from math import nan
 from pathlib import Path
+from statistics import fmean
 
 from pytest_tarl.files import write_atomically
-from pytest_tarl.model import Edit, Repair
+from pytest_tarl.model import Attempt, Edit, Repair
 from pytest_tarl.patching import patch
 from pytest_tarl.patching.mutate import Mutation, guard_text
 from pytest_tarl.patching.reading import read
 from pytest_tarl.patching.suggesting import sarif
 from pytest_tarl.patching.verify import nothing_lost
-from pytest_tarl.repairing.accepting import Accepted, Refused
+from pytest_tarl.repairing.accepting import Accepted, Refused, Tried
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
 from pytest_tarl.report import words
@@ -22,7 +24,9 @@ from pytest_tarl.searching.search import Candidate, effective_value
 from tarl_lint import __version__
 
 
-def delivered(mutants: Mutants, accepted: Accepted, search: int, acceptance: int) -> Repair:
+def delivered(
+    mutants: Mutants, accepted: Accepted, search: int, acceptance: int, history: tuple[Attempt, ...]
+) -> Repair:
     """Write the patch of an accepted repair; the counts are the episodes that it took to find it."""
     order, candidate = mutants.order, accepted.candidate
     guard = _guard(order, candidate)
@@ -34,7 +38,7 @@ def delivered(mutants: Mutants, accepted: Accepted, search: int, acceptance: int
     written = patch.write(diff, order.patches, order.fixture.test, order.drift)
     write_atomically(written.with_suffix(".sarif"), sarif(read(written)).encode())
     place = written.relative_to(order.root).as_posix()
-    return Repair(True, guard, _edits(candidate), patch.readable(diff), place)
+    return Repair(True, guard, _edits(candidate), patch.readable(diff), place, history=history)
 
 
 def _verify(order: Order, candidate: Candidate, changed: Mapping[Path, str]) -> None:
@@ -47,12 +51,34 @@ def _verify(order: Order, candidate: Candidate, changed: Mapping[Path, str]) -> 
             nothing_lost(shown, original, text, lines)
 
 
-def withheld(order: Order, refused: Refused) -> Repair:
+def withheld(order: Order, refused: Refused, history: tuple[Attempt, ...]) -> Repair:
     """Tell the best candidate that was refused, and why."""
     candidate = refused.candidate
     if candidate is None:
-        return Repair(False, "", (), reason=refused.reason)
-    return Repair(False, _guard(order, candidate), _edits(candidate), reason=refused.reason)
+        return Repair(False, "", (), reason=refused.reason, history=history)
+    return Repair(
+        False,
+        _guard(order, candidate),
+        _edits(candidate),
+        reason=refused.reason,
+        mean=refused.mean if refused.episodes else None,
+        episodes=refused.episodes,
+        history=history,
+    )
+
+
+def attempts(order: Order, tried: Iterable[Tried]) -> tuple[Attempt, ...]:
+    """Tell what became of the candidates that came near, in words."""
+    return tuple(
+        Attempt(
+            words.repair_words(Repair(False, _guard(order, one.candidate), _edits(one.candidate))),
+            one.reason,
+            fmean(one.totals) if one.totals else nan,
+            len(one.totals),
+            one.fresh,
+        )
+        for one in tried
+    )
 
 
 def _guard(order: Order, candidate: Candidate) -> str:

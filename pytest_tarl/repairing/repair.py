@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from time import monotonic
 
 from pytest_tarl import seeds
 from pytest_tarl.learning import localize
 from pytest_tarl.model import Comparison, Guard, OperandEffect, SearchTrace, SitePlace
-from pytest_tarl.repairing.accepting import Accepted, Examiner
-from pytest_tarl.repairing.delivering import delivered, withheld
+from pytest_tarl.repairing.accepting import Accepted, Examiner, Refused
+from pytest_tarl.repairing.delivering import attempts, delivered, withheld
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.watching import Watch
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
@@ -30,6 +32,7 @@ class Repaired:
     comparison: Comparison
     accepted: Accepted | None
     episodes: Mapping[str, int]
+    interrupted: bool = False
 
 
 @dataclass
@@ -41,6 +44,8 @@ class _Findings:
     method: str = ""
     curves: tuple[SearchTrace, ...] = ()
     episodes: int = 0
+    interrupted: bool = False
+    late: bool = False  # the time of a search was up
 
 
 def repair(order: Order) -> Repaired:
@@ -49,19 +54,25 @@ def repair(order: Order) -> Repaired:
     hints = evidence(order)
     guards = candidates.candidate_guards(hints)
     examiner = Examiner(mutants, guards)
+    watch = Watch(order)
     found = _Findings()
     for method in order.options.searches:
-        trials = _trials(mutants, method)
+        trials = _trials(mutants, method, watch, found)
         strategy = _strategy(mutants, method, candidates.telling(guards, hints, MOST_GUARDS), trials)
-        if found.accepted is None:
-            found.accepted = examiner.first(strategy.candidates(), trials)
-        else:
-            _exhibit(strategy)
+        try:
+            if found.accepted is None:
+                found.accepted = examiner.first(strategy.candidates(), trials)
+            else:
+                _exhibit(strategy)
+        except KeyboardInterrupt:
+            found.interrupted = True
         if not found.effects:
             found.effects, found.method = strategy.effects(), method
         found.curves += (SearchTrace(method, tuple(trials.totals), tuple(trials.labels)),)
         found.episodes += trials.spent
-    return _concluded(mutants, examiner, found)
+        if found.interrupted:
+            break
+    return _concluded(mutants, examiner, found, watch)
 
 
 def operands(order: Order) -> tuple[Operand, ...]:
@@ -83,12 +94,20 @@ def evidence(order: Order) -> candidates.Evidence:
     )
 
 
-def _trials(mutants: Mutants, method: str) -> Trials:
-    order = mutants.order
+def _trials(mutants: Mutants, method: str, watch: Watch, found: _Findings) -> Trials:
+    order, seconds = mutants.order, mutants.order.options.seconds
+    begun = monotonic()
 
     def run(candidate: Candidate, seed: int) -> Outcome:
-        order.progress(trials.spent, trials.budget, method)
-        return mutants.run(candidate, seed, order.drift)
+        passed = monotonic() - begun
+        if seconds is not None and passed > seconds:
+            found.late = True
+            raise BudgetSpentError
+        done, total = (trials.spent, trials.budget) if seconds is None else (int(passed), int(seconds))
+        order.progress(done, total, watch.progress(method))
+        outcome = mutants.run(candidate, seed, order.drift)
+        watch.saw(candidate, seed, outcome)
+        return outcome
 
     trials = Trials(run, order.options.budget)
     return trials
@@ -116,8 +135,10 @@ def _exhibit(strategy: Strategy) -> None:
         next(strategy.candidates(), None)
 
 
-def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings) -> Repaired:
+def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Watch) -> Repaired:
     order, accepted = mutants.order, found.accepted
+    refused = watch.best_so_far(_ended(examiner, found))
+    history = attempts(order, [*watch.unconfirmed(examiner.tried), *examiner.tried])
     chosen = accepted.candidate if accepted else examiner.refused.candidate
     totals = dict(order.comparison.totals)
     if accepted:
@@ -135,11 +156,37 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings) -> Repair
         ),
         searches=found.curves,
         totals=totals,
-        repair=delivered(mutants, accepted, found.episodes, examiner.spent)
+        repair=delivered(mutants, accepted, found.episodes, examiner.spent, history)
         if accepted
-        else withheld(order, examiner.refused),
+        else withheld(order, refused, history),
+        notes=(*order.comparison.notes, *_cut_short(order, examiner, found)),
     )
-    return Repaired(comparison, accepted, {"search": found.episodes, "acceptance": examiner.spent})
+    episodes = {"search": found.episodes, "acceptance": examiner.spent}
+    return Repaired(comparison, accepted, episodes, found.interrupted)
+
+
+def _ended(examiner: Examiner, found: _Findings) -> Refused:
+    """Return the best that was refused; what ended the search is the reason where nothing was tested."""
+    if found.interrupted:
+        return replace(examiner.refused, reason="interrupted")
+    if found.late and examiner.refused.reason == "budget":
+        return replace(examiner.refused, reason="time")
+    return examiner.refused
+
+
+def _cut_short(order: Order, examiner: Examiner, found: _Findings) -> Iterator[str]:
+    """Say when the search did not get to its end, and how to let it."""
+    accepted = found.accepted is not None
+    if found.late:
+        yield (
+            f"the search was cut after {order.options.seconds:g} s, in which it ran {found.episodes} episodes; the "
+            f"clock is not in the seed, so another run may get elsewhere: --tarl-budget {found.episodes} gets as far"
+        )
+    elif examiner.cut and not accepted and examiner.tested:
+        yield (
+            f"the search ended because its {order.options.budget} episodes were spent: "
+            f"--tarl-budget {2 * order.options.budget} goes on for as long again"
+        )
 
 
 def _ranked(order: Order) -> list[tuple[SitePlace, float]]:

@@ -140,6 +140,10 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
         "curves": _curves_in_words(drawn["curves"]),
         "clipped": _clipped(drawn["curves"]),
         "repair_words": words.repair_words(comparison.repair) if comparison.repair else "",
+        "best_words": words.best_words(comparison.repair) if comparison.repair else "",
+        "history": [words.attempt_words(one) for one in comparison.repair.history]
+        if comparison.repair
+        else [],
         "refusal": words.refusal(comparison.repair) if comparison.repair else "",
         "command": words.repeat(comparison),
         "next_steps": list(words.next_steps(comparison)),

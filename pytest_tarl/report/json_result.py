@@ -13,7 +13,7 @@ from pytest_tarl.errors import TarlError
 from pytest_tarl.files import write_atomically
 from pytest_tarl.model import Comparison, Culprit, Repair, SitePlace, Slice
 from pytest_tarl.report.regions import boxes
-from pytest_tarl.report.words import atr
+from pytest_tarl.report.words import atr, expected
 from pytest_tarl.sensors import Cell, Sensor
 
 FORMAT_VERSION = 1  # 1: first version
@@ -123,7 +123,7 @@ def _culprit(culprit: Culprit) -> dict[str, Any]:
         {
             "code": one.code,
             "value": _finite(one.value),
-            "best": _finite(one.best),
+            "best": _finite(expected(one.best)),
             "effect": _finite(one.effect),
         }
         for one in culprit.operands

@@ -109,7 +109,10 @@ def _repair(comparison: Comparison) -> Iterator[str]:
     else:
         yield f"none accepted: {words.refusal(repair)}"
         if repair.edits:
-            yield f"best so far: {words.repair_words(repair)}"
+            yield f"best so far: {words.best_words(repair)}"
+    dropped = [one for one in repair.history if one.reason]
+    if dropped:
+        yield from _some([f"tried {words.attempt_words(one)}" for one in dropped[::-1]])
 
 
 def _some(texts: list[str]) -> Iterator[str]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from statistics import fmean
 
 from pytest_tarl.learning.intervals import difference_bounds, effect_size, mean_bounds
-from pytest_tarl.model import Comparison, Edit, OperandEffect, Reason, Repair, Slice
+from pytest_tarl.model import Attempt, Comparison, Edit, OperandEffect, Reason, Repair, Slice
 from pytest_tarl.report.regions import Vocabulary
 
 SIGNIFICANT = 0.05  # p from which a loss is not spoken of
@@ -22,6 +22,21 @@ REASONS: dict[Reason, str] = {
     "gain too small": "the best change found gains too little",
     "nominal gets worse": "the best change found makes the designed world worse",
     "budget": "the search used up its episodes",
+    "time": "the search used up its time",
+    "interrupted": "the search was interrupted",
+    "not confirmed": "it came near once, and not on further seeds",
+    "worse than unrepaired": "on fresh seeds the best change found earns less than no repair",
+    "another test gets worse": "the best change found makes another recorded test of the node worse",
+}
+
+
+ENDS: dict[Reason, str] = {
+    "": "accepted",
+    "gain too small": "dropped, it gains too little",
+    "nominal gets worse": "dropped, the designed world gets worse",
+    "not confirmed": "dropped, not confirmed on further seeds",
+    "worse than unrepaired": "dropped, worse than no repair",
+    "another test gets worse": "dropped, another test of the node gets worse",
 }
 
 
@@ -147,6 +162,23 @@ def repair_words(repair: Repair) -> str:
 def refusal(repair: Repair) -> str:
     """Say why no repair was accepted."""
     return REASONS.get(repair.reason, repair.reason)
+
+
+def best_words(repair: Repair) -> str:
+    """Tell the best that was refused, and what it earned."""
+    if repair.mean is None:
+        return repair_words(repair)
+    earned = f"{amount(repair.mean)} an episode, mean of {repair.episodes}"
+    return f"{repair_words(repair)} ({earned})"
+
+
+def attempt_words(attempt: Attempt) -> str:
+    """Tell what was tried, what it earned, and what became of it."""
+    outcome = ENDS.get(attempt.reason, attempt.reason)
+    if not attempt.episodes:
+        return f"{attempt.what}: {outcome}"
+    kind = "fresh" if attempt.fresh else "known"
+    return f"{attempt.what}: {outcome}, {amount(attempt.mean)} in {attempt.episodes} {kind} episodes"
 
 
 def command(comparison: Comparison, *flags: str) -> str:

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+from itertools import count
+from typing import Any
+
 import pytest
 
+from pytest_tarl.repairing import accepting
 from tests.plugin.tank import ONLINE, RECORD, changed, result
 
 REPAIR = (*ONLINE, "--tarl-repair")
@@ -48,3 +54,73 @@ def test_a_site_that_is_new_since_the_recording_can_be_the_culprit(tank: pytest.
     assert found["repair"]["accepted"]
     edited = {(edit["path"], edit["line"]) for edit in found["repair"]["edits"]}
     assert (found["culprits"][0]["path"], found["culprits"][0]["line"]) in edited
+
+
+def test_a_search_that_is_out_of_time_says_that_the_clock_is_not_in_the_seed(
+    tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = count()
+    monkeypatch.setattr("pytest_tarl.repairing.repair.monotonic", lambda: float(next(clock)))
+    tank.runpytest(*RECORD)
+    done = tank.runpytest(*REPAIR, "--tarl-budget=3s")
+    done.assert_outcomes(failed=1, deselected=1)
+    told = " ".join(done.stdout.str().split())
+    assert "none accepted: the search used up its time" in told
+    assert "the search was cut after 3 s, in which it ran 3 episodes; the clock is not in the seed" in told
+    assert re.search(r"best so far: .+ an episode, mean of \d", told)
+    assert "--tarl-budget 3s" in told
+    assert not list(tank.path.glob(".tarl/patches/*.patch"))
+
+
+@pytest.mark.parametrize("budget", ["0", "5 eggs", "-3", "2.5", "s"])
+def test_a_budget_is_a_number_or_a_time(tank: pytest.Pytester, budget: str) -> None:
+    done = tank.runpytest(*REPAIR, f"--tarl-budget={budget}")
+    assert done.ret == pytest.ExitCode.USAGE_ERROR
+    done.stderr.fnmatch_lines(["*--tarl-budget*"])
+
+
+def test_an_interrupted_search_tells_its_best_and_ends_the_run(tank: pytest.Pytester) -> None:
+    interrupt = "    import os, signal\n    if tarl_drift:\n        with open('runs', 'a+') as runs:\n"
+    interrupt += "            runs.write('.')\n            if runs.tell() == 17:\n                os.kill(os.getpid(), signal.SIGINT)\n"
+    changed(tank, "test_tank", "    draws = ", f"{interrupt}    draws = ")
+    tank.runpytest(*RECORD)
+    done = tank.runpytest_subprocess(*REPAIR)
+    assert done.ret == pytest.ExitCode.INTERRUPTED
+    told = " ".join(done.stdout.str().split())
+    assert "none accepted: the search was interrupted" in told
+    assert re.search(r"best so far: .+ an episode, mean of \d", told)
+    assert result(tank)["episodes"]["search"] == 4
+    assert not list(tank.path.glob(".tarl/patches/*.patch"))
+
+
+def test_what_was_dropped_and_what_came_next_is_told(
+    tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first, accept = [], accepting.accept
+
+    def refusing(*given: Any) -> Any:
+        found = accept(*given)
+        if first:
+            return found
+        first.append(found)
+        return replace(found, accepted=False, reason="nominal gets worse")
+
+    monkeypatch.setattr(accepting, "accept", refusing)
+    tank.runpytest(*RECORD)
+    done = tank.runpytest(*REPAIR)
+    assert result(tank)["repair"]["accepted"]
+    told = " ".join(done.stdout.str().split())
+    assert re.search(
+        r"tried .+: dropped, the designed world gets worse, -?[\d.]+ in \d+ fresh episodes", told
+    )
+    (page,) = tank.path.glob(".tarl/report/*.html")
+    text = page.read_text()
+    history = text[text.index("What was tried, in order") :]
+    assert history.index("the designed world gets worse") < history.index("accepted,")
+
+
+def test_edits_are_numbers_that_people_expect(tank: pytest.Pytester) -> None:
+    tank.runpytest(*RECORD)
+    tank.runpytest(*REPAIR)
+    for edit in result(tank)["repair"]["edits"]:
+        assert len(repr(edit["value"])) <= 8
