@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -15,11 +15,12 @@ from pytest_tarl.files import write_atomically
 from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.binning import learned_edges
+from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison
 from pytest_tarl.patching import patch
 from pytest_tarl.recording import Progress, read_values, record
-from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.order import Neighbour, Order
 from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repeating import Instruments
 from pytest_tarl.report import json_result, terminal, words
@@ -45,6 +46,16 @@ class Account:
 
 
 @dataclass(frozen=True)
+class Other:
+    """Another designated test of the run."""
+
+    test: str
+    folder: Path
+    designation: Designation
+    rollout: Rollout
+
+
+@dataclass(frozen=True)
 class Mission:
     """A designated test, where it stands, and how it is to be run."""
 
@@ -57,6 +68,7 @@ class Mission:
     drift: str | None
     width: int
     progress: Progress
+    others: tuple[Other, ...] = ()
 
     def run(self, rollout_with: RolloutWith) -> Account:
         """Do the mode's work. Raises TarlError with a sentence where it cannot be done."""
@@ -145,6 +157,7 @@ class Mission:
                 self.progress,
                 self.tarl / "patches",
                 self.fixture_path,
+                self._neighbours,
             )
             repaired = repair(order)
             comparison = repaired.comparison
@@ -171,6 +184,20 @@ class Mission:
         problem = f"degraded: {words.verdict_sentence(comparison)}" if degraded else ""
         written = comparison.repair.patch if comparison.repair else ""
         return Account((*lines, *notes), problem, self.root / written if written else None)
+
+    def _neighbours(self) -> list[Neighbour]:
+        """Return the other tests of the run that have a recorded utility which can be read."""
+        found = []
+        for other in self.others:
+            with suppress(FixtureError):
+                path = replace(self, test=other.test).fixture_path
+                if not path.exists():
+                    continue
+                fixture = fixtures.load(path)
+                nodes = tuple((other.folder / node).resolve() for node in other.designation.nodes)
+                margin = tolerated(fixture.sample, other.designation.tolerance)
+                found.append(Neighbour(other.test, nodes, other.rollout, fixture, margin))
+        return found
 
     def _fixture(self) -> Fixture:
         if not self.fixture_path.exists():

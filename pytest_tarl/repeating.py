@@ -184,6 +184,22 @@ def _forget_instance(item: pytest.Function) -> None:
             vars(item).pop(name, None)
 
 
+@dataclass(frozen=True)
+class BesideRollout(ItemRollout):
+    """Runs episodes of another item while one is at work: what the two do not share is set up anew."""
+
+    at_work: pytest.Function
+
+    def __call__(self, plan: EpisodePlan) -> EpisodeRun:
+        """Run one episode of the other item."""
+        state = self.item.session._setupstate
+        state.teardown_exact(self.item)
+        try:
+            return ItemRollout.__call__(self, plan)
+        finally:
+            state.teardown_exact(self.at_work)
+
+
 def defer_limit(item: pytest.Item, settings: Any) -> bool | None:
     """Keep a limit that pytest-timeout is about to set, for each episode anew; None where one is running."""
     if EPISODE in item.stash:

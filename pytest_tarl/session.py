@@ -11,14 +11,23 @@ from typing import TYPE_CHECKING, Literal
 import pytest
 
 from pytest_tarl.errors import FixtureError, SettingsError, TarlError
-from pytest_tarl.repeating import INTERRUPTS, Instruments, ItemRollout, defer_limit, designated, finish
+from pytest_tarl.repeating import (
+    INTERRUPTS,
+    NOTHING,
+    BesideRollout,
+    Instruments,
+    ItemRollout,
+    defer_limit,
+    designated,
+    finish,
+)
 from pytest_tarl.sensors import Sensor
 from pytest_tarl.settings import Options
 
 if TYPE_CHECKING:
     from _pytest.terminal import TerminalReporter
 
-    from pytest_tarl.missions import Account
+    from pytest_tarl.missions import Account, Other
     from pytest_tarl.recording import Progress
     from pytest_tarl.rollout import Rollout
 
@@ -35,6 +44,7 @@ class TarlSession:
         self.options = options
         self._accounts: list[list[str]] = []
         self._patches: list[str] = []
+        self._designated: tuple[pytest.Item, ...] = ()
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
         """Make an id of every drift scenario: `test_delivers[mud]`, `[online]` without one."""
@@ -55,6 +65,7 @@ class TarlSession:
     def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Item]) -> None:
         """Deselect what TARL has nothing to do with."""
         marked = [item for item in items if item.get_closest_marker("tarl") is not None]
+        self._designated = tuple(marked)
         if self.options.drift is not None:
             self._check_drift(marked)
             marked = [item for item in marked if self._chosen(item)]
@@ -153,6 +164,7 @@ class TarlSession:
             drift=scenario(item),
             width=self._width(),
             progress=self._progress(item),
+            others=self._others(item),
         )
         try:
             with ExitStack() as crews:
@@ -169,6 +181,18 @@ class TarlSession:
             if self.options.strict:
                 raise
             pytest.skip(str(missing))
+
+    def _others(self, item: pytest.Function) -> tuple[Other, ...]:
+        """Return the other designated tests of the run, each once, whatever drifts it has."""
+        from pytest_tarl.missions import Other
+
+        found: dict[str, Other] = {}
+        for other in self._designated if self.options.mode == "repair" else ():
+            marked, name = designated(other), _without_drift(other)
+            if marked is not None and isinstance(other, pytest.Function) and name != _without_drift(item):
+                rollout = BesideRollout(other, marked, NOTHING, item)
+                found.setdefault(name, Other(name, other.path.parent, marked, rollout))
+        return tuple(found.values())
 
     def _width(self) -> int:
         return self.config.get_terminal_writer().fullwidth if self._has_terminal() else PLAIN_WIDTH

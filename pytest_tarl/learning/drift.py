@@ -38,6 +38,11 @@ class Difference:
     changes: Mapping[Cell, float]
 
 
+def tolerated(offline: Sample, stated: float | None) -> float:
+    """Return δ, the loss per episode that nobody minds: 5 % of the off-line reward, or what the marker states."""
+    return max(0.05 * abs(float(offline.total.mean())), stated or 0.0)
+
+
 def compare(
     offline: Sample,
     online: Sample,
@@ -52,7 +57,7 @@ def compare(
     `sensors` tell which of them are tiled; without them utility is a table.
     """
     offline, online = aligned(offline, online)
-    margin = max(0.05 * abs(float(offline.total.mean())), tolerance or 0.0)
+    margin = tolerated(offline, tolerance)
     p_loss = permuted_loss(offline.total, online.total, generator)
     loss = float(offline.total.mean() - online.total.mean())
     p_drift, region, changes = _drift(offline, online, alpha, generator, sensors)

@@ -10,6 +10,7 @@ from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.repairing.neighbours import NOTHING_BESIDE, Beside, beside
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import LOOKS, Acceptance, World, accept
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
@@ -25,6 +26,7 @@ class Accepted:
 
     candidate: Candidate
     acceptance: Acceptance
+    beside: Beside = NOTHING_BESIDE
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,7 @@ class Examiner:
         self.bar = float("-inf")  # what a candidate has to gain on known seeds, once one that did was refused
         self.refused = Refused(None, "no operand helps")
         self.tried: list[Tried] = []
+        self.lost: tuple[str, ...] = ()  # what other tests lost under candidates
         self.cut = False  # whether the budget ended it
 
     def first(self, confirmed: Iterator[Candidate], trials: Trials) -> Accepted | None:
@@ -92,11 +95,16 @@ class Examiner:
         self.tested += 1
         found = self._tested(candidate)
         self.spent += len(found.drifted) + len(found.nominal)
+        others = beside(self.mutants, candidate) if found.accepted else NOTHING_BESIDE
+        self.spent += others.episodes
+        if others.lost:
+            self.lost += others.lost
+            found = replace(found, accepted=False, reason="another test gets worse")
         totals = tuple(outcome.total for outcome in found.drifted)
         reason = self._named(found.reason, totals)
         self.tried.append(Tried(candidate, reason, totals, fresh=True))
         if found.accepted:
-            return Accepted(candidate, found)
+            return Accepted(candidate, found, others)
         if found.reason == "gain too small":
             close = CLOSE * (self.order.goal.enough - self.order.goal.online)
             self.bar = max(self.bar, trials.gain(candidate, self.order.goal.pairs[:QUICK]) - close)

@@ -112,6 +112,7 @@ def _evidence(order: Order, accepted: Accepted, guard: str, search: int, accepta
         f"designed and repaired: {words.average(nominal)}, of seeds that nothing was chosen by"
         if nominal
         else "designed and repaired: as designed, since the condition never holds there",
+        *(f"other test: {words.one_line(told)}" for told in accepted.beside.held),
         f"episodes spent: search {search}, acceptance {acceptance}",
         *_recorded(order),
         f"again: {_again(order)}",

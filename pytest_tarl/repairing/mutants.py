@@ -9,7 +9,7 @@ from pytest_tarl.errors import TarlError
 from pytest_tarl.patching.mutate import Mutation, is_integral, mutations, rewrite
 from pytest_tarl.recording import sound
 from pytest_tarl.repairing.order import Order
-from pytest_tarl.rollout import EpisodePlan
+from pytest_tarl.rollout import EpisodePlan, Rollout
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate
 from tarl_lint.model import Operand
@@ -39,7 +39,13 @@ class Mutants:
         return self._sources[candidate]
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
-        """Run one episode of a candidate. Raises RepairError when it cannot be written into the source.
+        """Run one episode of a candidate. Raises RepairError when it cannot be written into the source."""
+        return self.run_at(self.order.rollout, self.order.worst, candidate, seed, drift)
+
+    def run_at(
+        self, rollout: Rollout, worst: float, candidate: Candidate, seed: int, drift: str | None
+    ) -> Outcome:
+        """Run one episode of a test with a candidate in its nodes; `worst` is what it earns that breaks the test.
 
         The test ran before, so whatever breaks it now (a node that fell silent, a reward that is no number) is the
         candidate's doing. Such an episode, or one that the node did not live to see the end of, earns as little as the
@@ -47,8 +53,8 @@ class Mutants:
         """
         source = self.source(candidate)
         try:
-            run = sound(self.order.rollout(EpisodePlan(seed, drift, source)))
+            run = sound(rollout(EpisodePlan(seed, drift, source)))
         except TarlError:
-            return Outcome(self.order.worst, passed=False)
+            return Outcome(worst, passed=False)
         total = float(run.trace.reward.sum())
-        return Outcome(min(total, self.order.worst) if run.crashed else total, run.passed)
+        return Outcome(min(total, worst) if run.crashed else total, run.passed)

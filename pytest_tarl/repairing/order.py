@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -20,6 +20,17 @@ from tarl_lint.api import Analysis
 
 
 @dataclass(frozen=True)
+class Neighbour:
+    """Another recorded test: its nodes' files, how to run it, the loss per episode that nobody minds."""
+
+    test: str
+    nodes: tuple[Path, ...]
+    rollout: Rollout
+    fixture: Fixture
+    margin: float
+
+
+@dataclass(frozen=True)
 class Order:
     """One degraded test under one drift: how to run it, what was recorded of it, where patches go."""
 
@@ -32,6 +43,7 @@ class Order:
     progress: Progress
     patches: Path
     recorded: Path | None = None  # the file of the fixture
+    neighbours: Callable[[], Sequence[Neighbour]] = tuple  # asked for when a candidate has held otherwise
 
     @property
     def comparison(self) -> Comparison:

@@ -177,6 +177,7 @@ def _ended(examiner: Examiner, found: _Findings) -> Refused:
 def _cut_short(order: Order, examiner: Examiner, found: _Findings) -> Iterator[str]:
     """Say when the search did not get to its end, and how to let it."""
     accepted = found.accepted is not None
+    yield from (f"a candidate was dropped since another test loses: {told}" for told in examiner.lost)
     if found.late:
         yield (
             f"the search was cut after {order.options.seconds:g} s, in which it ran {found.episodes} episodes; the "

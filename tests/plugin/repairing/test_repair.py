@@ -10,9 +10,17 @@ from typing import Any
 import pytest
 
 from pytest_tarl.repairing import accepting
-from tests.plugin.tank import ONLINE, RECORD, changed, result
+from tests.plugin.tank import ONLINE, RECORD, TEST, changed, result
 
 REPAIR = (*ONLINE, "--tarl-repair")
+INTERRUPT = """
+    import os, signal
+    if tarl_drift:
+        with open("runs", "a+") as runs:
+            runs.write(".")
+            if runs.tell() == 17:
+                os.kill(os.getpid(), signal.SIGINT)
+"""
 
 
 @pytest.mark.parametrize(
@@ -80,9 +88,7 @@ def test_a_budget_is_a_number_or_a_time(tank: pytest.Pytester, budget: str) -> N
 
 
 def test_an_interrupted_search_tells_its_best_and_ends_the_run(tank: pytest.Pytester) -> None:
-    interrupt = "    import os, signal\n    if tarl_drift:\n        with open('runs', 'a+') as runs:\n"
-    interrupt += "            runs.write('.')\n            if runs.tell() == 17:\n                os.kill(os.getpid(), signal.SIGINT)\n"
-    changed(tank, "test_tank", "    draws = ", f"{interrupt}    draws = ")
+    changed(tank, "test_tank", "    draws = ", f"{INTERRUPT}    draws = ")
     tank.runpytest(*RECORD)
     done = tank.runpytest_subprocess(*REPAIR)
     assert done.ret == pytest.ExitCode.INTERRUPTED
@@ -124,3 +130,49 @@ def test_edits_are_numbers_that_people_expect(tank: pytest.Pytester) -> None:
     tank.runpytest(*REPAIR)
     for edit in result(tank)["repair"]["edits"]:
         assert len(repr(edit["value"])) <= 8
+
+
+NEIGHBOUR = """
+
+@pytest.fixture(scope="module")
+def shared():
+    yield 1
+
+
+@pytest.mark.tarl(
+    nodes=["keeper.py"], sensors=[Sensor("level", topic="/level", field="data", low=0, high=1, bins=10)], episodes=10
+)
+def test_{name}(tarl, shared):
+    level = 0.1
+    tarl.start("keeper.py")
+    for _ in range(15):
+        tarl.bus.publish("/level", Float64(data=level))
+        tarl.step(0.1)
+        valve = tarl.bus.latest("/valve")
+        tarl.reward(1.0)
+        assert valve is None or valve.data < {most}, "the pipe burst"
+        level += 0.1 * (valve.data if valve else 0.0)
+"""
+
+
+def test_another_recorded_test_of_the_node_must_not_lose(tank: pytest.Pytester) -> None:
+    tank.makepyfile(test_pipe=TEST[: TEST.index("@pytest")] + NEIGHBOUR.format(name="pipe", most=2.3))
+    tank.runpytest(*RECORD).assert_outcomes(passed=2, deselected=1)
+    done = tank.runpytest("--tarl-online", "--tarl-repair", "--tarl-drift=clogged", "--tarl-episodes=12")
+    done.assert_outcomes(failed=1, deselected=2)
+    told = " ".join(done.stdout.str().split())
+    assert not result(tank)["repair"]["accepted"]
+    assert "none accepted: the best change found makes another recorded test of the node worse" in told
+    assert "another test loses: test_pipe.py::test_pipe: " in told
+    assert not list(tank.path.glob(".tarl/patches/*.patch"))
+
+
+def test_a_repair_that_leaves_other_tests_as_they_were_says_so_in_its_patch(tank: pytest.Pytester) -> None:
+    with (tank.path / "test_tank.py").open("a") as file:
+        file.write(NEIGHBOUR.format(name="wide_pipe", most=99.0))
+    tank.runpytest(*RECORD).assert_outcomes(passed=2, deselected=1)
+    tank.runpytest(*REPAIR).assert_outcomes(failed=1, passed=1, deselected=1)
+    (patch,) = tank.path.glob(".tarl/patches/*.patch")
+    assert (
+        "# other test: test_tank.py::test_wide_pipe: 15 an episode where 15 was recorded" in patch.read_text()
+    )

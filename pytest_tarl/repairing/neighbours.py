@@ -1,0 +1,77 @@
+"""Other recorded tests of the node that a candidate changes: their missions in the designed world must not lose."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.repairing.order import Neighbour
+from pytest_tarl.searching import candidates
+from pytest_tarl.searching.search import Candidate
+
+MOST = 5  # tests that are run
+EPISODES = 8  # of each of them, those first in which the guard holds
+
+
+@dataclass(frozen=True)
+class Beside:
+    """What came of the other tests: sentences about those that held and about those that lost; episodes run."""
+
+    held: tuple[str, ...] = ()
+    lost: tuple[str, ...] = ()
+    episodes: int = 0
+
+
+NOTHING_BESIDE = Beside()
+
+
+def beside(mutants: Mutants, candidate: Candidate) -> Beside:
+    """Run the recorded missions of other tests of the changed files, until one of them loses."""
+    changed = {path.resolve() for path in mutants.source(candidate)}
+    concerned = [one for one in mutants.order.neighbours() if changed & set(one.nodes)]
+    held: list[str] = []
+    episodes = 0
+    for neighbour in concerned[:MOST]:
+        chosen = _chosen(neighbour, candidate)
+        lost, told = _compared(mutants, neighbour, candidate, chosen)
+        episodes += len(chosen)
+        if lost:
+            return Beside(tuple(held), (told,), episodes)
+        held.append(told)
+    if len(concerned) > MOST:
+        held.append(f"{len(concerned) - MOST} more of the node were not run")
+    return Beside(tuple(held), (), episodes)
+
+
+def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:
+    """Return the recorded episodes (by index) to run: those in which the guard holds, where the recording knows."""
+    fixture = neighbour.fixture
+    if any(conjunct.sensor not in fixture.sensors for conjunct in candidate.guard.conjuncts):
+        return range(min(EPISODES, fixture.sample.episodes))
+    firing = candidates.firing_episodes(candidate.guard, fixture.sample, fixture.sensors)
+    place = {seed: at for at, seed in enumerate(fixture.sample.seeds)}
+    return [place[seed] for seed in firing[:EPISODES]]
+
+
+def _compared(
+    mutants: Mutants, neighbour: Neighbour, candidate: Candidate, chosen: Sequence[int]
+) -> tuple[bool, str]:
+    """Tell whether missions lose under a candidate, each against its own recording, and say so in words."""
+    if not chosen:
+        return False, f"{neighbour.test}: as recorded, since the condition never holds there"
+    sample = neighbour.fixture.sample
+    recorded = [float(sample.total[at]) for at in chosen]
+    outcomes = [
+        mutants.run_at(neighbour.rollout, float(sample.total.min()), candidate, sample.seeds[at], None)
+        for at in chosen
+    ]
+    failed = sum(
+        not outcome.passed and bool(sample.passed[at]) for outcome, at in zip(outcomes, chosen, strict=True)
+    )
+    now = fmean(outcome.total for outcome in outcomes)
+    told = f"{neighbour.test}: {now:.4g} an episode where {fmean(recorded):.4g} was recorded, {len(chosen)} episodes"
+    if failed:
+        told += f", {failed} of them fail now"
+    return failed > 0 or now < fmean(recorded) - neighbour.margin, told
