@@ -156,5 +156,13 @@ class Examiner:
         )
 
     def _refuse(self, refused: Refused) -> None:
-        if self.refused.candidate is None or refused.mean > self.refused.mean:
-            self.refused = refused
+        self.refused = furthest(self.refused, refused)
+
+
+def furthest(one: Refused, other: Refused) -> Refused:
+    """Return what came further: it held in the drifted world, or else earned more there on fresh seeds."""
+
+    def came(refused: Refused) -> tuple[bool, bool, float]:
+        return refused.candidate is not None, refused.reason == "nominal gets worse", refused.mean
+
+    return other if came(other) > came(one) else one
