@@ -8,6 +8,8 @@ CPU time of the process, the least of several rounds. The empty test has no worl
 from __future__ import annotations
 
 import argparse
+import contextlib
+import io
 import tempfile
 import time
 from dataclasses import dataclass, field
@@ -68,25 +70,33 @@ class Stopwatch:
 def timed(test: str, root: Path, episodes: int) -> dict[str, float]:
     """Return milliseconds per episode of a test, plain and recorded."""
     watch = Stopwatch(episodes)
-    pytest.main(["-q", "-p", "no:cacheprovider", "--rootdir", str(root), test], [watch])
+    with contextlib.redirect_stdout(io.StringIO()):
+        pytest.main(["-q", "-p", "no:cacheprovider", "--rootdir", str(root), test], [watch])
     return watch.found
+
+
+def table(episodes: int = 200) -> list[str]:
+    """Return the lines of the table."""
+    shuttle = timed(str(EXAMPLE / "test_shuttle.py::test_delivers"), EXAMPLE, episodes)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "test_empty.py"
+        path.write_text(EMPTY)
+        empty = timed(str(path), Path(folder), episodes)
+    over = shuttle["recorded"] / shuttle["plain"] - 1
+    return [
+        "| what | ms of CPU per episode | goal |",
+        "|---|---|---|",
+        f"| shuttle, uninstrumented | {shuttle['plain']:.2f} | ≤ 20 |",
+        f"| shuttle, recorded | {shuttle['recorded']:.2f} ({over:+.1%}) | ≤ +5 % |",
+        f"| an empty test | {empty['plain']:.2f} | ≤ 0.5 |",
+    ]
 
 
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--episodes", type=int, default=200)
-    episodes = parser.parse_args().episodes
-    shuttle = timed(str(EXAMPLE / "test_shuttle.py::test_delivers"), EXAMPLE, episodes)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "test_empty.py"
-        path.write_text(EMPTY)
-        empty = timed(str(path), Path(folder), episodes)
-    print("\n| what | ms of CPU per episode | goal |\n|---|---|---|")
-    print(f"| shuttle, uninstrumented | {shuttle['plain']:.2f} | ≤ 20 |")
-    over = shuttle["recorded"] / shuttle["plain"] - 1
-    print(f"| shuttle, recorded | {shuttle['recorded']:.2f} ({over:+.1%}) | ≤ +5 % |")
-    print(f"| an empty test | {empty['plain']:.2f} | ≤ 0.5 |")
+    print("\n".join(table(parser.parse_args().episodes)))
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ from pathlib import Path
 from types import CodeType, SimpleNamespace
 from typing import Any
 
+import episodes
 import pymunk
 from coverage import Coverage
 from slipcover import Slipcover
@@ -303,7 +304,7 @@ def main() -> None:
     to_trace, to_statistics = finishing()
     print(f"| buffer → trace | {to_trace:.1f} million events/s | |")
     print(f"| buffer → statistics | {to_statistics:.1f} million events/s | ≥ 10 |")
-    print("\nThe cost of an episode by itself: python benchmarks/episodes.py")
+    print("\n" + "\n".join(episodes.table()))
 
 
 if __name__ == "__main__":
