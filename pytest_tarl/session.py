@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from pytest_tarl.missions import Account, Other
     from pytest_tarl.recording import Progress
+    from pytest_tarl.repairing.joining import Joined
     from pytest_tarl.rollout import Rollout
 
 PATCH = "tarl_patch"  # attribute of a report: path of the patch that mends the test
@@ -132,16 +133,24 @@ class TarlSession:
         terminalreporter.section("TARL", sep="=")
         for number, lines in enumerate(self._accounts):
             terminalreporter.write_line("\n".join(["", *lines] if number else lines))
+        for line in self._joined().lines:
+            terminalreporter.write_line(f"\n{line}")
 
     def pytest_unconfigure(self) -> None:
         """Let the last lines of the output be the commands that apply what was found."""
         if not self._patches or not self._has_terminal():
             return
-        from pytest_tarl.patching.patch import apply_command
-
         terminal = self.config.get_terminal_writer()
-        for path in self._patches:
-            terminal.line(apply_command(Path(path), self.config.invocation_params.dir))
+        for command in self._joined().commands:
+            terminal.line(command)
+        self._patches.clear()
+
+    def _joined(self) -> Joined:
+        """Return what the patches of the run make together."""
+        from pytest_tarl.repairing.joining import joined
+
+        patches = tuple(map(Path, self._patches))
+        return joined(patches, self.config.invocation_params.dir)
 
     def _run(self, item: pytest.Function) -> Account:
         from pytest_tarl.missions import Mission, NoFixtureError
