@@ -11,19 +11,10 @@ ALL = [
     for generation in LIBRARIES
     for probe in probes(generation)
 ]
-# Probes whose answers the stand-in does not give yet; one that begins to pass fails here until it is struck out.
-DIFFER = {
-    "ros1": ("before_init", "durations", "logging", "messages", "parameters", "type_errors"),
-    "ros2": ("futures", "messages", "names", "profiles", "times"),
-}
 
 
 @pytest.mark.parametrize("probe", ALL)
-def test_the_stand_in_answers_as_the_real_ros(probe, request) -> None:  # type: ignore[no-untyped-def]
-    if probe.stem in DIFFER[probe.parent.name]:
-        request.applymarker(
-            pytest.mark.xfail(reason="the stand-in differs", strict=not installed(probe.parent.name))
-        )
+def test_the_stand_in_answers_as_the_real_ros(probe) -> None:  # type: ignore[no-untyped-def]
     assert answers(probe, "embedded") == expected(probe.parent.name)[probe.stem]
 
 

@@ -19,6 +19,7 @@ DEFAULTS: Mapping[
 ] = {  # rosbags drops default values; these are all in common packages
     "ros2:geometry_msgs/Quaternion": {"w": 1.0},
 }
+_FILLER = "structure_needs_at_least_one_member"  # what ROS 2 puts into empty types, which no program sees
 _PRIMITIVES = frozenset(
     [
         "bool",
@@ -65,10 +66,11 @@ class Field:
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A named constant of a message type."""
+    """A named constant of a message type; `text` is its line as ROS 1 takes checksums of it."""
 
     name: str
     value: Any
+    text: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,8 +185,9 @@ def parse(kind: Kind, package: str, name: str, text: str) -> Definition:
         kind_of_value, rest = line.split(None, 1)
         left, assigned, value = rest.partition("=")
         if assigned:
-            constants.append(Constant(left.strip(), _constant(kind_of_value, value.strip())))
-        else:
+            text = f"{kind_of_value} {left.strip()}={value.strip()}"
+            constants.append(Constant(left.strip(), _constant(kind_of_value, value.strip()), text))
+        elif rest.strip() != _FILLER:
             fields.append(_field(kind, kind_of_value, rest, package))
     return Definition(kind, package, name, tuple(fields), tuple(constants))
 
@@ -250,8 +253,12 @@ def _from_store(kind: Kind, package: str, name: str, shipped: Any) -> Definition
         kind,
         package,
         name,
-        tuple(_store_field(kind, field_name, node, defaults.get(field_name)) for field_name, node in fields),
-        tuple(Constant(constant_name, value) for constant_name, _, value in constants),
+        tuple(
+            _store_field(kind, field_name, node, defaults.get(field_name))
+            for field_name, node in fields
+            if field_name != _FILLER
+        ),
+        tuple(Constant(named, value, f"{base} {named}={value}") for named, base, value in constants),
     )
 
 

@@ -6,6 +6,7 @@ float32, turns arrays of numbers into tuples (bytes for uint8), and shares nothi
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from functools import cache
 from typing import Any, ClassVar
@@ -21,6 +22,7 @@ class Message:
 
     __slots__ = ["_connection_header"]
     _type: ClassVar[str] = ""
+    _md5sum: ClassVar[str] = ""
     _slot_types: ClassVar[list[str]] = []
     _has_header: ClassVar[bool] = False
     _tarl_kind: ClassVar[str] = "ros1"
@@ -107,7 +109,8 @@ def service_class(package: str, name: str) -> type | None:
         return None
     request, response = (build(half, f"{package}.srv") for half in halves)
     namespace = {"_type": f"{package}/{name}", "_request_class": request, "_response_class": response}
-    return type(name, (), {**namespace, "__module__": f"{package}.srv"})
+    checksum = _md5sum("".join(md5_text(half) for half in halves))
+    return type(name, (), {**namespace, "_md5sum": checksum, "__module__": f"{package}.srv"})
 
 
 def build(definition: Definition, module: str) -> type[Message]:
@@ -124,7 +127,7 @@ def build(definition: Definition, module: str) -> type[Message]:
     source = [
         "def __init__(self, *args, **kwds):",
         *(
-            [f"    if args and not kwds and args[0] is not None: self.{alone}, = args; return"]
+            [f"    if len(args) == 1 and not kwds and args[0] is not None: self.{alone}, = args; return"]
             if alone
             else []
         ),
@@ -145,6 +148,7 @@ def build(definition: Definition, module: str) -> type[Message]:
         "__init__": scope["__init__"],
         "_type": f"{definition.package}/{definition.name}",
         "_slot_types": [field.text for field in definition.fields],
+        "_md5sum": _md5sum(md5_text(definition)),
         "_has_header": bool(definition.fields) and definition.fields[0].base == "std_msgs/Header",
         "_tarl_copy": staticmethod(scope["copy"]),
         "_tarl_defaults": defaults,
@@ -152,6 +156,19 @@ def build(definition: Definition, module: str) -> type[Message]:
     }
     scope["cls"] = built = type(definition.name, (Message,), namespace)
     return built
+
+
+def md5_text(definition: Definition) -> str:
+    """Return what ROS 1 takes the checksum of: constants, then fields, nested types as their checksums."""
+    lines = [f"{constant.text}\n" for constant in definition.constants]
+    for field in definition.fields:
+        kind = field.text if field.primitive else _nested(field.base)._md5sum
+        lines.append(f"{kind} {field.name}\n")
+    return "".join(lines).strip()
+
+
+def _md5sum(text: str) -> str:
+    return hashlib.md5(text.encode(), usedforsecurity=False).hexdigest()
 
 
 def _default(field: Field) -> Callable[[], Any]:

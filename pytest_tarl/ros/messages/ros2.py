@@ -11,7 +11,7 @@ from __future__ import annotations
 import keyword
 import operator
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, ClassVar
 
@@ -25,13 +25,14 @@ from pytest_tarl.ros.messages.definitions import (
 )
 from pytest_tarl.ros.messages.ros2_copy import copy_function
 from pytest_tarl.ros.messages.ros2_fields import LITERALS, default, setter
-from pytest_tarl.ros.messages.values import FieldError
+from pytest_tarl.ros.messages.values import CODES, FieldError
 
 
 class Message:
     """Base of all ROS 2 messages built here: keyword arguments only."""
 
-    __slots__ = ()
+    __slots__: ClassVar[Sequence[str]] = ()
+    _check_fields: ClassVar[bool] = True
     _tarl_fields: ClassVar[tuple[Field, ...]] = ()
     _fields_and_field_types: ClassVar[dict[str, str]] = {}
     _tarl_kind: ClassVar[str] = "ros2"
@@ -148,8 +149,8 @@ def _carriers(package: str, name: str, parts: tuple[Definition, ...]) -> dict[st
 
 def build(definition: Definition, module: str) -> type[Message]:
     """Build the class of a definition."""
-    fields = [field for field in definition.fields if field.name != "structure_needs_at_least_one_member"]
-    scope: dict[str, Any] = {"new": object.__new__, "fill": _fill, "UNSET": _UNSET}
+    fields = list(definition.fields)
+    scope: dict[str, Any] = {"new": object.__new__, "fill": _fill, "UNSET": _UNSET, "array": array}
     for position, field in enumerate(fields):
         scope[f"default{position}"] = default(field, _nested)
     source = [*_init_lines(fields), *copy_function(fields, _nested, scope)]
@@ -171,11 +172,13 @@ def build(definition: Definition, module: str) -> type[Message]:
         },
     }
     scope["cls"] = built = type(definition.name, (Message,), namespace)
+    built.__slots__ = [*namespace["__slots__"], "_check_fields"]  # type: ignore[attr-defined]  # as rosidl lists them; ours always checks
     if not module.endswith(".msg"):
         _parts[f"{definition.package}/{definition.name}"] = built
     return built
 
 
+PACKED = frozenset(CODES) - {"byte"}  # what rosidl stores in an `array.array`
 _UNSET = object()
 _parts: dict[str, type[Message]] = {}  # halves of services and actions, which carriers refer to
 
@@ -193,18 +196,25 @@ def _init_lines(fields: list[Field]) -> list[str]:
     for position, field in enumerate(fields):
         plain = LITERALS.get(field.base) if field.shape == "one" and field.default is None else None
         lines.append(f"    if {field.name} is UNSET: self._{field.name} = {plain or f'default{position}()'}")
-        lines.append(f"    else: self.{field.name} = {field.name}")
+        code = _packed_code(field)  # rosidl's constructors take all that `array` takes, its setters do not
+        given = f"array({code!r}, {field.name})" if code else field.name
+        lines.append(f"    else: self.{field.name} = {given}")
     return lines
 
 
+def _packed_code(field: Field) -> str:
+    """Return the type code of a sequence of numbers, nothing for other fields."""
+    return CODES[field.base] if field.shape == "sequence" and field.base in PACKED else ""
+
+
 def _fill(message: Message, given: dict[str, Any]) -> None:
-    names = [field.name for field in message._tarl_fields]
+    names = {field.name: _packed_code(field) for field in message._tarl_fields}
     given.pop("check_fields", None)  # newer rosidl's switch; here fields are always checked
     assert all(key in names for key in given), "Invalid arguments passed to constructor: " + ", ".join(
         sorted(key for key in given if key not in names)
     )
     for key, value in given.items():
-        setattr(message, key, value)
+        setattr(message, key, array(names[key], value) if names[key] else value)
 
 
 def _idl_text(field: Field) -> str:

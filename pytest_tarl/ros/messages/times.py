@@ -1,7 +1,11 @@
-"""ROS 1 instants and durations (`genpy.Time`, `genpy.Duration`): whole seconds and nanoseconds."""
+"""ROS 1 instants and durations (`genpy.Time`, `genpy.Duration`): whole seconds and nanoseconds.
+
+Arithmetic returns the class of its left operand, so that a `rospy.Duration` stays one.
+"""
 
 from __future__ import annotations
 
+from numbers import Integral, Real
 from typing import Any, ClassVar, TypeVar
 
 NANOSECONDS = 1_000_000_000
@@ -21,13 +25,19 @@ class TVal:
     secs: int
     nsecs: int
 
-    def __init__(self, secs: float = 0, nsecs: int = 0) -> None:
-        if not isinstance(secs, int):
+    def __init__(self, secs: Any = 0, nsecs: int = 0) -> None:
+        if not isinstance(secs, Integral):
             if nsecs:
                 raise ValueError("if secs is a float, nsecs cannot be set")
             secs, nsecs = _split(secs)
+        secs, nsecs = int(secs), int(nsecs)
         carry, self.nsecs = divmod(nsecs, NANOSECONDS)
         self.secs = secs + carry
+
+    @classmethod
+    def from_sec(cls: type[Self], float_secs: float) -> Self:
+        """Make a value from float seconds."""
+        return cls(*_split(float_secs))
 
     def is_zero(self) -> bool:
         """Tell whether this is zero."""
@@ -107,25 +117,22 @@ class Time(TVal):
     def _family(self) -> type[TVal]:
         return Time
 
-    @staticmethod
-    def from_sec(float_secs: float) -> Time:
-        """Make an instant from float seconds."""
-        return Time(*_split(float_secs))
-
     def to_time(self) -> float:
         """Return float seconds."""
         return self.to_sec()
 
-    def __add__(self, other: Any) -> Time:
+    def __add__(self, other: Any) -> Any:
         if not isinstance(other, Duration):
             return NotImplemented
-        return Time(self.secs + other.secs, self.nsecs + other.nsecs)
+        return type(self)(self.secs + other.secs, self.nsecs + other.nsecs)
+
+    __radd__ = __add__
 
     def __sub__(self, other: Any) -> Any:
         if isinstance(other, Time):
             return Duration(self.secs - other.secs, self.nsecs - other.nsecs)
         if isinstance(other, Duration):
-            return Time(self.secs - other.secs, self.nsecs - other.nsecs)
+            return type(self)(self.secs - other.secs, self.nsecs - other.nsecs)
         return NotImplemented
 
 
@@ -137,40 +144,45 @@ class Duration(TVal):
     def _family(self) -> type[TVal]:
         return Duration
 
-    @staticmethod
-    def from_sec(float_seconds: float) -> Duration:
-        """Make a span from float seconds."""
-        return Duration(*_split(float_seconds))
+    def __neg__(self) -> Any:
+        return type(self)(-self.secs, -self.nsecs)
 
-    def __neg__(self) -> Duration:
-        return Duration(-self.secs, -self.nsecs)
-
-    def __abs__(self) -> Duration:
+    def __abs__(self) -> Any:
         return self if self.secs >= 0 else -self
 
     def __add__(self, other: Any) -> Any:
-        if isinstance(other, Time):
-            return other + self
-        if isinstance(other, Duration):
-            return Duration(self.secs + other.secs, self.nsecs + other.nsecs)
-        return NotImplemented
-
-    def __sub__(self, other: Any) -> Duration:
         if not isinstance(other, Duration):
             return NotImplemented
-        return Duration(self.secs - other.secs, self.nsecs - other.nsecs)
+        return type(self)(self.secs + other.secs, self.nsecs + other.nsecs)
 
-    def __mul__(self, factor: Any) -> Duration:
-        if isinstance(factor, int):
-            return Duration(self.secs * factor, self.nsecs * factor)
-        return Duration.from_sec(self.to_sec() * factor) if isinstance(factor, float) else NotImplemented
+    __radd__ = __add__
 
-    def __floordiv__(self, divisor: Any) -> Duration:
-        if isinstance(divisor, int):
-            return Duration(self.secs // divisor, self.nsecs // divisor)
-        return Duration.from_sec(self.to_sec() // divisor) if isinstance(divisor, float) else NotImplemented
-
-    def __truediv__(self, divisor: Any) -> Duration:
-        if not isinstance(divisor, int | float):
+    def __sub__(self, other: Any) -> Any:
+        if not isinstance(other, Duration):
             return NotImplemented
-        return Duration.from_sec(self.to_sec() / divisor)
+        return type(self)(self.secs - other.secs, self.nsecs - other.nsecs)
+
+    def __mul__(self, factor: Any) -> Any:
+        if isinstance(factor, Integral):
+            return type(self)(self.secs * int(factor), self.nsecs * int(factor))
+        return self.from_sec(self.to_sec() * float(factor)) if isinstance(factor, Real) else NotImplemented
+
+    __rmul__ = __mul__
+
+    def __floordiv__(self, divisor: Any) -> Any:
+        if isinstance(divisor, Duration):
+            return int(self.to_sec() // divisor.to_sec())
+        return self.from_sec(self.to_sec() // float(divisor)) if isinstance(divisor, Real) else NotImplemented
+
+    def __truediv__(self, divisor: Any) -> Any:
+        if isinstance(divisor, Duration):
+            return self.to_sec() / divisor.to_sec()
+        return self.from_sec(self.to_sec() / float(divisor)) if isinstance(divisor, Real) else NotImplemented
+
+    def __mod__(self, divisor: Any) -> Any:
+        if not isinstance(divisor, Duration):
+            return NotImplemented
+        return self.from_sec(self.to_sec() % divisor.to_sec())
+
+    def __divmod__(self, divisor: Any) -> Any:
+        return (self // divisor, self % divisor) if isinstance(divisor, Duration) else NotImplemented

@@ -47,13 +47,13 @@ class Context:
             raise NotInitializedException
 
     def shutdown(self) -> None:
-        """Bring ROS down. Raises RCLError if it is."""
-        if not self.ok():
+        """Bring ROS down. Raises RuntimeError if it is, RCLError where the node was ended from outside."""
+        if self.process.ending:
             error = RCLError("failed to shutdown: rcl_shutdown already called on the given context")
-            error.tarl_shutdown = (
-                self.process.ending
-            )  # the usual last line of a program that was ended from outside
+            error.tarl_shutdown = True  # the usual last line of a program that was ended from outside
             raise error
+        if not self.initialised:
+            raise RuntimeError("Context must be initialized before it can be shutdown")
         self._stop()
 
     def try_shutdown(self) -> None:

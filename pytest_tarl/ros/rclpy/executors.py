@@ -127,6 +127,7 @@ class Executor:
         """Run callbacks until a future is done, or the timeout has passed."""
         until = _until(self._clock.time, timeout_sec)
         future.watch(self.wake)
+        future.add_done_callback(_nothing)
         while self.context.ok() and not future.done() and not self._is_shutdown:
             if until is not None and self._clock.time >= until:
                 return
@@ -135,6 +136,7 @@ class Executor:
     def spin_once_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Run one callback, unless the future is done before."""
         future.watch(self.wake)
+        future.add_done_callback(_nothing)
         self._spin_towards(future, _until(self._clock.time, timeout_sec))
 
     def _spin_towards(self, future: Future, until: int | None) -> None:
@@ -189,7 +191,7 @@ class Executor:
         """List what is ready in rclpy's order: tasks, then each node's entities, kind by kind."""
         found: list[Entity] = []
         if self._tasks:
-            self._tasks = [task for task in self._tasks if not task.done()]
+            self._tasks = [task for task in self._tasks if task.pending()]
             found += [task for task in self._tasks if task.is_ready()]
         for node in self._nodes:
             found += [entity for kind in node.entities for entity in kind if entity.is_ready()]
@@ -277,6 +279,10 @@ class MultiThreadedExecutor(Executor):
         finally:
             self._active -= 1
             self.wake()
+
+
+def _nothing(_: Future) -> None:
+    """Stand for rclpy's waking callback: where the future has an executor, it takes a turn of its own there."""
 
 
 def _until(now: int, timeout_sec: float | None) -> int | None:

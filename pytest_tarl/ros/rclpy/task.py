@@ -20,13 +20,17 @@ class Future:
         self._executor = executor
 
     def __await__(self) -> Generator[Future, None, Any]:
-        while not (self._done or self._cancelled):
+        while self.pending():
             yield self
         return self.result()
 
     def done(self) -> bool:
-        """Tell whether there is a result or an exception, or it was cancelled."""
-        return self._done or self._cancelled
+        """Tell whether there is a result or an exception; being cancelled does not count."""
+        return self._done
+
+    def pending(self) -> bool:
+        """Tell whether it is neither done nor cancelled."""
+        return not (self._done or self._cancelled)
 
     def cancelled(self) -> bool:
         """Tell whether it was cancelled."""
@@ -34,7 +38,7 @@ class Future:
 
     def cancel(self) -> None:
         """Give up on it."""
-        if not self._done:
+        if self.pending():
             self._cancelled = True
             self._finish()
 
@@ -51,18 +55,18 @@ class Future:
     def set_result(self, result: Any) -> None:
         """Set the result."""
         self._result = result
-        self._done = True
+        self._done, self._cancelled = True, False
         self._finish()
 
     def set_exception(self, exception: BaseException) -> None:
         """Set the exception."""
         self._exception = exception
-        self._done = True
+        self._done, self._cancelled = True, False
         self._finish()
 
     def add_done_callback(self, callback: Callable[[Future], Any]) -> None:
         """Have a function called with this future when it is done: by the executor where it has one, else at once."""
-        if not self.done():
+        if self.pending():
             self._callbacks.append(callback)
         elif self._executor is not None:
             self._executor.create_task(callback, self)
@@ -71,10 +75,10 @@ class Future:
 
     def watch(self, watcher: Callable[[], Any]) -> None:
         """Have a function of ours called as soon as this is done."""
-        if self.done():
-            watcher()
-        else:
+        if self.pending():
             self._watchers.append(watcher)
+        else:
+            watcher()
 
     def belongs_to(self, executor: Any) -> None:
         """Have the done callbacks run by an executor."""
@@ -115,7 +119,7 @@ class Task(Future):
 
     def is_ready(self) -> bool:
         """Tell whether it can go on."""
-        return not (self._done or self._cancelled or self._blocked or self._executing)
+        return self.pending() and not (self._blocked or self._executing)
 
     def executing(self) -> bool:
         """Tell whether it is running now."""
@@ -123,7 +127,7 @@ class Task(Future):
 
     def cancel(self) -> None:
         """Give up on it; a coroutine that has begun is closed."""
-        if self._coroutine is not None and not self._done:
+        if self._coroutine is not None and self.pending():
             self._coroutine.close()
         super().cancel()
 

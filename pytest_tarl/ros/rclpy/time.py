@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from enum import IntEnum
+from enum import Enum, IntEnum
 from typing import Any
 
 from pytest_tarl.ros.clock import NANOSECONDS
@@ -15,13 +15,16 @@ from pytest_tarl.ros.scheduler import Scheduler
 CONVERSION_CONSTANT = S_TO_NS = NANOSECONDS
 
 
-class ClockType(IntEnum):
-    """Which clock an instant was read from."""
+class ClockType(Enum):
+    """Which clock an instant was read from. It prints by name and is no number, but converts to one."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1
     SYSTEM_TIME = 2
     STEADY_TIME = 3
+
+    def __int__(self) -> int:
+        return int(self.value)
 
 
 class Duration:

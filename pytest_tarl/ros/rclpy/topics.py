@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from pytest_tarl.ros.bus import Topic
 from pytest_tarl.ros.messages.snapshot import type_name
 from pytest_tarl.ros.messages.values import FieldError
-from pytest_tarl.ros.rclpy.exceptions import InvalidHandle, NoTypeSupportImportedException
+from pytest_tarl.ros.rclpy.exceptions import InvalidHandle
 from pytest_tarl.ros.rclpy.qos import DurabilityPolicy, QoSProfile
 
 if TYPE_CHECKING:
@@ -166,4 +166,4 @@ def _wants_info(callback: Callable[..., Any]) -> bool:
 
 def _require_message_class(msg_type: Any) -> None:
     if not hasattr(msg_type, "get_fields_and_field_types"):
-        raise NoTypeSupportImportedException(f"{msg_type!r} is not a ROS 2 message type")
+        raise AttributeError(f"{msg_type!r} is not a ROS 2 message type: it has no attribute '_TYPE_SUPPORT'")

@@ -28,7 +28,7 @@ def ok(*, context: Any = None) -> bool:
 
 
 def shutdown(*, context: Any = None, uninstall_handlers: bool | None = None) -> None:
-    """Bring ROS down. Raises RCLError if it is."""
+    """Bring ROS down. Raises RuntimeError if it is."""
     this_context("shutdown").shutdown()
 
 

@@ -15,7 +15,7 @@ class ROSInternalException(Exception):  # noqa: N818
     """Base of what rospy raises about itself."""
 
 
-class ROSInitException(ROSInternalException):
+class ROSInitException(ROSException):
     """Something was used before `init_node`."""
 
 
@@ -31,18 +31,18 @@ class TransportInitError(TransportException):
     """A connection could not be made."""
 
 
-class ROSTimeMovedBackwardsException(ROSInternalException):
+class ROSInterruptException(ROSException, KeyboardInterrupt):
+    """A blocking call was interrupted by the node's shutdown."""
+
+    tarl_shutdown = True  # the ordinary end of a node, nothing to report
+
+
+class ROSTimeMovedBackwardsException(ROSInterruptException):
     """The clock jumped back; it never does here."""
 
     def __init__(self, time: float = 0.0) -> None:
         super().__init__("ROS time moved backwards")
         self.time = time
-
-
-class ROSInterruptException(ROSException, KeyboardInterrupt):
-    """A blocking call was interrupted by the node's shutdown."""
-
-    tarl_shutdown = True  # the ordinary end of a node, nothing to report
 
 
 class UnknownHostException(ROSInternalException):

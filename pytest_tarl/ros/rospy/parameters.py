@@ -93,7 +93,7 @@ def get_param(param_name: str, default: Any = _NOTHING) -> Any:
     if value is not _NOTHING:
         return value
     if default is _NOTHING:
-        raise KeyError(node.resolve(param_name))
+        raise KeyError(param_name)
     return default
 
 

@@ -94,7 +94,7 @@ class Topic:
 
     def __init__(self, name: str, data_class: Any, api: str) -> None:
         if not name or not isinstance(name, str):
-            raise ValueError("topic name is empty" if not name else "topic name is not a string")
+            raise ValueError("topic name is not a non-empty string")
         _require_message_class(data_class)
         self._node = this_node(api)
         self._process = self._node.process
@@ -147,6 +147,10 @@ class Publisher(Topic):
 
     def publish(self, *args: Any, **kwds: Any) -> None:
         """Publish a message, or one made from its fields by position or by keyword."""
+        if self._closed:
+            raise ROSException("publish() to an unregistered() handle")
+        if not self._node.initialised:
+            raise ROSException("ROS node has not been initialized yet. Please call init_node() first")
         if self.closed:
             raise ROSException("publish() to a closed topic")
         message = (
@@ -181,12 +185,14 @@ class Publisher(Topic):
             self._place.kept.pop(self, None)
 
     def _make(self, args: tuple[Any, ...], kwds: dict[str, Any]) -> Any:
-        if len(args) == 1 and is_message(args[0]) and len(self.data_class.__slots__) != 1:
-            raise TypeError(f"expected [{self.type}] but got [{type_name(type(args[0]))}]")
-        try:
-            return self.data_class(*args, **kwds)
-        except (TypeError, AttributeError) as error:
-            raise ROSSerializationException(str(error)) from error
+        """Make the message; an argument that is a message itself has to fit the first field."""
+        if args and kwds:
+            raise TypeError("publish() can be called with arguments or keywords, but not both.")
+        if len(args) == 1 and is_message(args[0]):
+            given, wanted = type_name(type(args[0])), next(iter(self.data_class._slot_types), "")
+            if given != wanted:
+                raise TypeError(f"expected [{wanted}] but got [{given}]")
+        return self.data_class(*args, **kwds)
 
     def _peers(self) -> list[Any]:
         return list(self._place.subscriptions)

@@ -64,6 +64,22 @@ def test_ros1_constructor_takes_all_by_position_or_any_by_keyword() -> None:
         vector().speed = 1.0  # type: ignore[attr-defined]
 
 
+CHECKSUMS = [  # as genpy generated them
+    ("std_msgs/Empty", "d41d8cd98f00b204e9800998ecf8427e"),
+    ("std_msgs/Header", "2176decaecbce78abc3b96ef049fabed"),
+    ("std_msgs/Byte", "ad736a2e8818154c487bb80fe42ce43b"),
+    ("sensor_msgs/LaserScan", "90c7ef2dc6895d81024acba2ac42f369"),
+    ("sensor_msgs/BatteryState", "4ddae7f048e32fda22cac764685e3974"),
+    ("nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7"),
+    ("nav_msgs/GetMapAction", "e611ad23fbf237c031b7536416dc7cd7"),
+]
+
+
+@pytest.mark.parametrize(("name", "checksum"), CHECKSUMS)
+def test_ros1_messages_have_the_checksums_of_the_real_ones(name: str, checksum: str) -> None:
+    assert find_class("ros1", *name.split("/"))._md5sum == checksum  # type: ignore[union-attr]
+
+
 def test_ros1_message_shows_as_rostopic_does() -> None:
     header = message_type("std_msgs/Header")(frame_id="map")
     assert str(header) == 'seq: 0\nstamp: \n  secs: 0\n  nsecs:         0\nframe_id: "map"'

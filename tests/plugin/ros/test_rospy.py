@@ -184,7 +184,7 @@ def test_parameters_come_from_test_command_line_and_set_param(start: Start) -> N
         argv=("_cli:=3",),
     )
     assert ros.namespace["found"] == (2.5, 2.5, 3, {"deep": [1, 2]}, 7, False, "/n/kp")
-    assert ros.namespace["missing"] == "/absent"
+    assert ros.namespace["missing"] == "absent"
 
 
 def test_sleep_rate_and_time_follow_the_virtual_clock(start: Start) -> None:
