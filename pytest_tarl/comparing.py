@@ -11,7 +11,7 @@ from pytest_tarl import seeds
 from pytest_tarl.bagged import bagged
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.instrumentation.sites import Plan
-from pytest_tarl.learning import localize
+from pytest_tarl.learning import localize, parts
 from pytest_tarl.learning.drift import Difference, compare, paper_region
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.looks import Look, certain, concluded, planned
@@ -90,7 +90,8 @@ def run_online(
             *lost_sites(fixture, plan),
             *failing(offline, online, difference.verdict, options),
         ),
-        parts=_parts(offline, online),
+        parts=parts.means(offline, online),
+        lost=parts.lost(offline, online, options.alpha, seeds.generator(options.seed, "parts")),
         changes=difference.changes,
     )
     return Online(comparison, recorded, learned)
@@ -270,13 +271,3 @@ def _rows(region: Region, otherwise: Sequence[Cell], cells: Sequence[Cell]) -> I
     """Return the rows that Eq. 2 sums over: the region, or the paper's where none was found."""
     chosen = {*region.cells, *region.novel} or set(otherwise)
     return np.array([i for i, cell in enumerate(cells) if cell in chosen], dtype=np.int64)
-
-
-def _parts(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
-    """Return the mean of each part of the reward per episode, off-line and on-line."""
-    means = []
-    for world in (offline, online):
-        summed = world.chain.parts.sum(axis=0) / world.episodes
-        means.append(dict(zip(world.part_names, summed.tolist(), strict=True)))
-    names = sorted({*means[0], *means[1]})
-    return {name: (means[0].get(name, 0.0), means[1].get(name, 0.0)) for name in names}

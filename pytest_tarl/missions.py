@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytest_tarl.comparing import Online, run_online
+from pytest_tarl.correcting import corrected
 from pytest_tarl.errors import AnalysisError, FixtureError, TarlError
 from pytest_tarl.files import write_atomically
 from pytest_tarl.instrumentation.sites import Plan, plan
@@ -23,7 +24,8 @@ from pytest_tarl.recording import Progress, read_values, record
 from pytest_tarl.repairing.order import Neighbour, Order
 from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repeating import Instruments
-from pytest_tarl.report import json_result, terminal, words
+from pytest_tarl.report import ci, json_result, table, terminal, words
+from pytest_tarl.report.table import Row
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.sensors import Sensor, declared, with_edges
 from pytest_tarl.settings import Designation, Options
@@ -37,12 +39,15 @@ IGNORED = (
 
 @dataclass(frozen=True)
 class Account:
-    """What a mode has to tell: lines for the summary, what fails the test, the patch to apply."""
+    """What a mode has to tell: lines for the summary, what fails the test, the patch to apply, what CI is told."""
 
     lines: tuple[str, ...]
     problem: str = ""
     patch: Path | None = None
     interrupted: bool = False
+    properties: tuple[tuple[str, str], ...] = ()
+    annotation: str = ""
+    row: Row = ()
 
 
 @dataclass(frozen=True)
@@ -70,8 +75,11 @@ class Mission:
     progress: Progress
     others: tuple[Other, ...] = ()
 
-    def run(self, rollout_with: RolloutWith) -> Account:
-        """Do the mode's work. Raises TarlError with a sentence where it cannot be done."""
+    def run(self, rollout_with: RolloutWith) -> Account | Compared:
+        """Do the mode's work; what a comparison concludes is told when it is asked to.
+
+        Raises TarlError with a sentence where the work cannot be done.
+        """
         fixture = None if self.options.mode == "record" else self._fixture()
         analysis = self._analysis()
         sites = plan(analysis)
@@ -139,7 +147,7 @@ class Mission:
         lines = [f"{self.test}: {result.line}", f"  wrote {written}"] if not result.problem else []
         return Account((*lines, *(f"  {note}" for note in result.notes)), result.problem)
 
-    def _online(self, rollout: Rollout, sites: Plan, analysis: Analysis, fixture: Fixture) -> Account:
+    def _online(self, rollout: Rollout, sites: Plan, analysis: Analysis, fixture: Fixture) -> Compared:
         online = run_online(
             rollout, fixture, self.designation, self.options, sites, self.drift, self.progress
         )
@@ -164,26 +172,7 @@ class Mission:
             episodes |= repaired.episodes
             interrupted = repaired.interrupted
         told = replace(comparison, target=self.target, flags=self.options.flags)
-        return replace(self._told(told, online, episodes), interrupted=interrupted)
-
-    def _told(self, comparison: Comparison, online: Online, episodes: Mapping[str, int]) -> Account:
-        name = f"{patch.slug(self.test)}-{patch.slug(self.drift or 'online')}"
-        json_result.write(comparison, self.tarl / "results" / f"{name}.json", episodes)
-        fixtures.save(as_fixture(comparison, online), self.tarl / "online" / f"{name}.npz")
-        page = self.tarl / "report" / f"{name}.html"
-        notes = []
-        try:
-            from pytest_tarl.report import html
-
-            html.write(comparison, page)
-        except TarlError as missing:
-            notes = [f"  no report page: {missing}"]
-        shown = None if notes else page
-        lines = terminal.lines(comparison, width=self.width, root=self.root, page=shown)
-        degraded = comparison.verdict.result == "degraded"
-        problem = f"degraded: {words.verdict_sentence(comparison)}" if degraded else ""
-        written = comparison.repair.patch if comparison.repair else ""
-        return Account((*lines, *notes), problem, self.root / written if written else None)
+        return Compared(self, told, online, episodes, interrupted)
 
     def _neighbours(self) -> list[Neighbour]:
         """Return the other tests of the run that have a recorded utility which can be read."""
@@ -221,6 +210,51 @@ class Mission:
                     f"{self.tarl} cannot be written ({problem.strerror}): give yourself the right to write there, "
                     "or run in a copy."
                 ) from problem
+
+
+@dataclass(frozen=True)
+class Compared:
+    """An on-line run that is over: to be told as it is, or with what a correction over all tests makes of it."""
+
+    mission: Mission
+    comparison: Comparison
+    online: Online
+    episodes: Mapping[str, int]
+    interrupted: bool = False
+
+    def told(self) -> Account:
+        """Write result, recording and page, and say what they hold."""
+        mission, comparison = self.mission, self.comparison
+        name = f"{patch.slug(mission.test)}-{patch.slug(mission.drift or 'online')}"
+        json_result.write(comparison, mission.tarl / "results" / f"{name}.json", self.episodes)
+        fixtures.save(as_fixture(comparison, self.online), mission.tarl / "online" / f"{name}.npz")
+        page = mission.tarl / "report" / f"{name}.html"
+        notes = []
+        try:
+            from pytest_tarl.report import html
+
+            html.write(comparison, page)
+        except TarlError as missing:
+            notes = [f"  no report page: {missing}"]
+        shown = None if notes else page
+        lines = terminal.lines(comparison, width=mission.width, root=mission.root, page=shown)
+        degraded = comparison.verdict.result == "degraded"
+        written = comparison.repair.patch if comparison.repair else ""
+        return Account(
+            lines=(*lines, *notes),
+            problem=f"degraded: {words.verdict_sentence(comparison)}" if degraded else "",
+            patch=mission.root / written if written else None,
+            properties=ci.properties(comparison),
+            annotation=ci.annotation(comparison, mission.root),
+            row=table.row(comparison),
+            interrupted=self.interrupted,
+        )
+
+
+def jointly(compared: Sequence[Compared], alpha: float) -> list[Compared]:
+    """Return the runs with verdicts that are corrected over all of them."""
+    judged = corrected([one.comparison for one in compared], alpha)
+    return [replace(one, comparison=comparison) for one, comparison in zip(compared, judged, strict=True)]
 
 
 @contextmanager

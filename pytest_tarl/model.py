@@ -210,6 +210,7 @@ class Comparison:
     repair: Repair | None = None
     notes: tuple[str, ...] = ()
     parts: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # part → mean off-line, on-line
+    lost: Mapping[str, tuple[Cell, ...]] = field(default_factory=dict)  # part → where it earns less on-line
     target: str = ""  # the test as it is typed where pytest was started
     flags: tuple[str, ...] = ()  # options of the run that are not the default ones
     changes: Mapping[Cell, float] = field(default_factory=dict)  # how far on-line differs, by cell

@@ -84,6 +84,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help="with --tarl-online: compare the missions in this log of `python -m pytest_tarl observe`",
     )
     flag(
+        "--tarl-holm",
+        action="store_true",
+        help="with --tarl-online: correct p values and verdicts over all tests of the run (Holm)",
+    )
+    flag(
         "--tarl-bag",
         metavar="FILE",
         action="append",
@@ -148,6 +153,7 @@ def _asked(config: pytest.Config) -> bool:
         "--tarl-strict",
         "--tarl-log",
         "--tarl-bag",
+        "--tarl-holm",
     )
     return any(config.getoption(flag) for flag in flags)
 
@@ -178,6 +184,7 @@ def _options(config: pytest.Config) -> Options:
                     "ros",
                     "log",
                     "bag",
+                    "holm",
                 )
             }
         )

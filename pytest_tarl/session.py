@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import pytest
 
@@ -23,17 +23,16 @@ from pytest_tarl.repeating import (
 )
 from pytest_tarl.sensors import Sensor
 from pytest_tarl.settings import Options
+from pytest_tarl.summary import Summary, attach
 
 if TYPE_CHECKING:
     from _pytest.terminal import TerminalReporter
 
-    from pytest_tarl.missions import Account, Other
+    from pytest_tarl.missions import Account, Compared, Other
     from pytest_tarl.recording import Progress
     from pytest_tarl.repairing.joining import Joined
     from pytest_tarl.rollout import Rollout
 
-PATCH = "tarl_patch"  # attribute of a report: path of the patch that mends the test
-ACCOUNT = "tarl_account"  # attribute of a report: lines for the summary
 PLAIN_WIDTH = 80  # columns where there is no terminal to ask, as under `-p no:terminal`
 
 
@@ -41,10 +40,15 @@ class TarlSession:
     """The hooks of one run; registered only when a mode is asked for."""
 
     def __init__(self, config: pytest.Config, options: Options) -> None:
+        if options.holm and (hasattr(config, "workerinput") or config.getoption("numprocesses", None)):
+            raise pytest.UsageError(
+                "--tarl-holm corrects over all tests of a run, and with -n no process knows them all: leave -n out; "
+                "--tarl-workers runs the episodes of a test side by side."
+            )
         self.config = config
         self.options = options
-        self._accounts: list[list[str]] = []
-        self._patches: list[str] = []
+        self._summary = Summary()
+        self._ended: list[_Ended] = []  # tests that have run and are not told yet
         self._designated: tuple[pytest.Item, ...] = ()
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
@@ -95,25 +99,30 @@ class TarlSession:
         """Run a designated test in the mode asked for, as one test with one report a phase."""
         if not isinstance(item, pytest.Function) or item.get_closest_marker("tarl") is None:
             return None
-        item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
+        if not self.options.holm:
+            _started(item)
         call = pytest.CallInfo.from_call(lambda: self._run(item), when="call", reraise=INTERRUPTS)
-        report = pytest.TestReport.from_item_and_call(item, call)  # type: ignore[arg-type]  # keeps no result
-        account = call.result if call.excinfo is None else None
-        if account is not None:
-            setattr(report, ACCOUNT, list(account.lines))
-            setattr(report, PATCH, str(account.patch or ""))
-            if account.problem:
-                report.outcome, report.longrepr = "failed", account.problem
-        elif call.excinfo is not None and isinstance(call.excinfo.value, TarlError):
-            report.longrepr = str(call.excinfo.value)
-        elif call.excinfo is not None and isinstance(call.excinfo.value.__context__, FixtureError):
-            setattr(report, ACCOUNT, [str(call.excinfo.value)])  # skipped: pytest tells why only when asked
-        for one in (_phase(item, "setup"), report, finish(item, nextitem)):
-            item.ihook.pytest_runtest_logreport(report=one)
-        item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
-        if account is not None and account.interrupted:
+        self._ended.append(_Ended(item, call, _phase(item, "setup"), finish(item, nextitem)))
+        if nextitem is None or not self.options.holm:
+            self._tell()
+        if call.excinfo is None and getattr(call.result, "interrupted", False):
             raise KeyboardInterrupt  # what was found until then is told; no further test is begun
         return True
+
+    def _tell(self) -> None:
+        """Log the tests that have run, all of them together where their verdicts are to be corrected."""
+        from pytest_tarl.missions import Compared, jointly
+
+        ended, self._ended = self._ended, []
+        if self.options.holm:
+            several = [one for one in ended if isinstance(one.outcome, Compared)]
+            found = jointly([one.outcome for one in several], self.options.alpha)
+            for one, outcome in zip(several, found, strict=True):
+                one.conclude(outcome.told)
+        for one in ended:
+            if self.options.holm:
+                _started(one.item)
+            one.log()
 
     @pytest.hookimpl(optionalhook=True, tryfirst=True)
     def pytest_timeout_set_timer(self, item: pytest.Item, settings: object) -> bool | None:
@@ -122,38 +131,30 @@ class TarlSession:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Collect what the tests have to tell, also from xdist's workers."""
-        if getattr(report, ACCOUNT, None) and getattr(report, ACCOUNT) not in self._accounts:
-            self._accounts.append(getattr(report, ACCOUNT))
-            self._patches += [getattr(report, PATCH)] if getattr(report, PATCH, None) else []
+        self._summary.collect(report)
 
     def pytest_terminal_summary(self, terminalreporter: TerminalReporter) -> None:
         """Tell it in one section."""
-        if not self._accounts:
-            return
-        terminalreporter.section("TARL", sep="=")
-        for number, lines in enumerate(self._accounts):
-            terminalreporter.write_line("\n".join(["", *lines] if number else lines))
-        for line in self._joined().lines:
-            terminalreporter.write_line(f"\n{line}")
+        self._summary.write(terminalreporter, self._width(), self._joined().lines)
 
     def pytest_unconfigure(self) -> None:
         """Let the last lines of the output be the commands that apply what was found."""
-        if not self._patches or not self._has_terminal():
+        if not self._summary.patches or not self._has_terminal():
             return
         terminal = self.config.get_terminal_writer()
         for command in self._joined().commands:
             terminal.line(command)
-        self._patches.clear()
+        self._summary.patches.clear()
 
     def _joined(self) -> Joined:
         """Return what the patches of the run make together."""
         from pytest_tarl.repairing.joining import joined
 
-        patches = tuple(map(Path, self._patches))
+        patches = tuple(map(Path, self._summary.patches))
         return joined(patches, self.config.invocation_params.dir)
 
-    def _run(self, item: pytest.Function) -> Account:
-        from pytest_tarl.missions import Mission, NoFixtureError
+    def _run(self, item: pytest.Function) -> Account | Compared:
+        from pytest_tarl.missions import Account, Mission, NoFixtureError
 
         marked = designated(item)
         if marked is None:
@@ -185,7 +186,8 @@ class TarlSession:
 
                     return crews.enter_context(opened(item, instruments, sensors, self.options))
 
-                return mission.run(rollout_with)
+                outcome = mission.run(rollout_with)
+                return outcome if isinstance(outcome, Account) or self.options.holm else outcome.told()
         except NoFixtureError as missing:
             if self.options.strict:
                 raise
@@ -217,6 +219,55 @@ class TarlSession:
                 reporter.rewrite(f"{item.nodeid} {what} {done}/{total} ", erase=True)
 
         return show
+
+
+@dataclass
+class _Ended:
+    """A test that has run: what came of it, and the reports of the phases around it."""
+
+    item: pytest.Function
+    call: pytest.CallInfo[Any]
+    setup: pytest.TestReport
+    teardown: pytest.TestReport
+
+    @property
+    def outcome(self) -> Any:
+        """Return what the test has to tell; None where it ended in an error."""
+        return self.call.result if self.call.excinfo is None else None
+
+    def conclude(self, told: Callable[[], Account]) -> None:
+        """Put what is told in the place of what was found."""
+        call = pytest.CallInfo.from_call(told, when="call", reraise=INTERRUPTS)
+        call.start, call.stop, call.duration = self.call.start, self.call.stop, self.call.duration
+        self.call = call
+
+    def log(self) -> None:
+        """Report the test to pytest."""
+        item, report = self.item, self._report()
+        for one in (self.setup, report, self.teardown):
+            item.ihook.pytest_runtest_logreport(report=one)
+        item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
+
+    def _report(self) -> pytest.TestReport:
+        from pytest_tarl.missions import Account
+
+        report = pytest.TestReport.from_item_and_call(self.item, self.call)
+        account, error = self.outcome, self.call.excinfo.value if self.call.excinfo else None
+        if account is not None:
+            attach(report, account)
+            for one in (report, self.teardown):  # JUnit reads the properties of the last report
+                one.user_properties.extend(account.properties)
+            if account.problem:
+                report.outcome, report.longrepr = "failed", account.problem
+        elif isinstance(error, TarlError):
+            report.longrepr = str(error)
+        elif error is not None and isinstance(error.__context__, FixtureError):
+            attach(report, Account((str(error),)))  # skipped: pytest tells why only when asked
+        return report
+
+
+def _started(item: pytest.Item) -> None:
+    item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
 
 
 def scenario(item: pytest.Item) -> str | None:

@@ -41,6 +41,7 @@ class Options:
     ros: str = "embedded"
     looks: int | None = None  # at the verdict, at most
     log: Path | None = None  # missions of a robot, instead of on-line episodes
+    holm: bool = False  # whether verdicts are corrected over all tests of the run
     bags: tuple[Path, ...] = ()  # recorded missions, likewise
 
     ONLINE_EPISODES = 40
@@ -48,8 +49,12 @@ class Options:
 
     @property
     def most_looks(self) -> int:
-        """Return how often the verdict may be looked at; once before a repair, which needs the region whole."""
-        return self.looks or (1 if self.mode == "repair" else self.LOOKS)
+        """Return how often the verdict may be looked at.
+
+        Once before a repair, which needs the region whole, and before a correction, which asks for smaller p-values
+        than those at which a run may end early.
+        """
+        return self.looks or (1 if self.mode == "repair" or self.holm else self.LOOKS)
 
     @property
     def learner(self) -> str:
@@ -95,12 +100,21 @@ class Designation:
 def options(given: Mapping[str, Any]) -> Options:
     """Check the flags of a run. Raises SettingsError with a sentence."""
     if not (given["record"] or given["online"] or given["repair"]):
-        stray = next((name for name in ("drift", "search", "strict", "log", "bag") if given[name]), "drift")
+        stray = next(
+            (name for name in ("drift", "search", "strict", "log", "bag", "holm") if given[name]), "drift"
+        )
         raise SettingsError(f"--tarl-{stray} goes with --tarl-online, and does nothing without it.")
     if given["record"] and given["online"]:
         raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
     if given["repair"] and not given["online"]:
         raise SettingsError("--tarl-repair goes with --tarl-online: it repairs what the comparison finds.")
+    if given["holm"] and not given["online"]:
+        raise SettingsError("--tarl-holm goes with --tarl-online: it corrects the verdicts of its tests.")
+    if given["holm"] and given["repair"]:
+        raise SettingsError(
+            "--tarl-holm and --tarl-repair are two runs: a verdict is corrected when all tests have run, a repair is "
+            "searched for while its test runs. Compare with --tarl-holm first, then repair the tests that are degraded."
+        )
     if given["drift"] and not given["online"]:
         raise SettingsError("--tarl-drift goes with --tarl-online: it chooses one of the marker's drifts.")
     searches = tuple(dict.fromkeys(given["search"] or ("sweep",)))
@@ -130,6 +144,7 @@ def options(given: Mapping[str, Any]) -> Options:
         ros=given["ros"],
         looks=given["looks"],
         log=_log(given),
+        holm=given["holm"],
         bags=_bags(given),
     )
 

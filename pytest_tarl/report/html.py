@@ -147,6 +147,7 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
         "refusal": words.refusal(comparison.repair) if comparison.repair else "",
         "command": words.repeat(comparison),
         "next_steps": list(words.next_steps(comparison)),
+        "lost": lambda part: words.lost_words(comparison, part),
         "place": lambda site: f"{site.path}:{site.line}",
     }
 

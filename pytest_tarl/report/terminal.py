@@ -36,6 +36,7 @@ def _entries(
     yield "reward", [_rewards(comparison)]
     yield "loss", list(_loss(comparison))
     if comparison.verdict.result != "no difference":
+        yield "parts", list(_parts(comparison))
         yield "where", [words.region_words(comparison) or "no single situation stands out"]
         yield "lines", list(_culprits(comparison, width - LABEL - 2, root))
         yield "slices", list(_slices(comparison, root))
@@ -71,6 +72,14 @@ def _loss(comparison: Comparison) -> Iterator[str]:
     sure = words.loss_words(comparison)
     if sure and comparison.verdict.result != "no difference":
         yield f"{words.amount(comparison.verdict.loss)} an episode, {sure}"
+
+
+def _parts(comparison: Comparison) -> Iterator[str]:
+    lines = []
+    for name, by in words.lost_parts(comparison):
+        where = words.lost_words(comparison, name)
+        lines.append(f"{name} {words.signed(by)}{' where ' if where else ''}{where}")
+    return _some(lines)
 
 
 def _culprits(comparison: Comparison, width: int, root: Path) -> Iterator[str]:

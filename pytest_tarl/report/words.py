@@ -15,6 +15,7 @@ from pytest_tarl.report.regions import Vocabulary
 
 SIGNIFICANT = 0.05  # p from which a loss is not spoken of
 CONFIDENCE = 0.95  # of the interval around a loss
+NEGLIGIBLE = 0.01  # of what all parts lose: a part that loses less is not spoken of
 SHORTEST = 16  # characters of a code line that are shown however narrow the place is
 REASONS: dict[Reason, str] = {
     "": "no reason was recorded",
@@ -134,6 +135,19 @@ def region_words(comparison: Comparison) -> str:
     if novel:
         parts.append(f"never seen off-line: {vocabulary.words(novel)}")
     return "; ".join(parts)
+
+
+def lost_words(comparison: Comparison, part: str) -> str:
+    """Say where a part of the reward is lost; empty where it is not, or no situation stands out."""
+    cells = comparison.lost.get(part, ()) if part in dict(lost_parts(comparison)) else ()
+    return Vocabulary(comparison.sensors, comparison.cells).words(cells) if cells else ""
+
+
+def lost_parts(comparison: Comparison) -> list[tuple[str, float]]:
+    """Return the parts that earn less on-line, with the difference per episode, the largest loss first."""
+    changed = [(name, after - before) for name, (before, after) in comparison.parts.items()]
+    least = NEGLIGIBLE * sum(by for _, by in changed if by < 0)
+    return sorted(((name, by) for name, by in changed if by < least), key=lambda one: one[1])
 
 
 def paper_region_words(comparison: Comparison) -> str:

@@ -27,6 +27,7 @@ FLAGS: dict[str, Any] = {
     "ros": "embedded",
     "log": None,
     "bag": None,
+    "holm": False,
     "looks": None,
     "strict": False,
 }

@@ -25,6 +25,8 @@ def test_the_shuttle_reads_as_one_short_section(shuttle):
         "  verdict  In the drift scenario 'mud' an episode earns 16.90 less than designed (p < 0.001).",
         "  reward   off-line 9.78, on-line -6.83, repaired 9.42, designed world repaired 10.09",
         "  loss     16.90 an episode, 95% confidence 14.98 to 18.23; 6.2 standard deviations",
+        "  parts    progress -9.30",
+        "           clearance -7.60",
         "  where    x 4.2-7.1 m, terrain true",
         "  lines    1. traveller.py:30  vel = 5 * delta  (5 → 12: +14.20)",
         "           2. traveller.py:28  delta = goal - pos  (by its slice)",

@@ -1,0 +1,58 @@
+"""Which part of the reward is lost in which cells."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from pytest_tarl.learning.permutation import max_statistic
+from pytest_tarl.learning.tables import Floats, Sample, sum_by
+from pytest_tarl.sensors import Cell
+
+MATERIAL = 0.1  # a cell is named from this share of the largest loss of its part
+
+
+def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
+    """Return the mean of each part of the reward per episode, off-line and on-line."""
+    names = sorted({*offline.part_names, *online.part_names})
+    return {
+        name: (
+            float(_by_cell(offline, name).sum(axis=1).mean()),
+            float(_by_cell(online, name).sum(axis=1).mean()),
+        )
+        for name in names
+    }
+
+
+def lost(
+    offline: Sample, online: Sample, alpha: float, generator: np.random.Generator
+) -> Mapping[str, tuple[Cell, ...]]:
+    """Return the cells in which each part earns significantly less on-line; both samples share their cells.
+
+    Corrected over all cells of all parts. A cell counts in which less is earned because it is no longer reached.
+    """
+    names = sorted({*offline.part_names, *online.part_names})
+    if not names:
+        return {}
+    worlds = [np.concatenate([_by_cell(one, name) for name in names], axis=1) for one in (online, offline)]
+    p_values = max_statistic(np.concatenate(worlds), online.episodes, generator)
+    losses = worlds[1].mean(axis=0) - worlds[0].mean(axis=0)
+    found = {}
+    for name, loss, p_value in zip(
+        names, np.split(losses, len(names)), np.split(p_values, len(names)), strict=True
+    ):
+        chosen = (p_value < alpha) & (loss > 0) & (loss >= MATERIAL * loss.max(initial=0.0))
+        found[name] = tuple(offline.cells[i] for i in np.flatnonzero(chosen))
+    return found
+
+
+def _by_cell(world: Sample, name: str) -> Floats:
+    """Return what a part sums to, shape (episodes, cells); zeros where the world does not have it."""
+    shape = (world.episodes, len(world.cells))
+    if name not in world.part_names:
+        return np.zeros(shape)
+    column = world.chain.parts[:, world.part_names.index(name)]
+    return sum_by(world.chain.episode * shape[1] + world.chain.cell, column, shape[0] * shape[1]).reshape(
+        shape
+    )

@@ -1,0 +1,76 @@
+"""What a build server shows of a comparison: properties of a JUnit test case, a GitHub annotation."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from pytest_tarl.learning.intervals import difference_bounds
+from pytest_tarl.model import Comparison, Culprit
+from pytest_tarl.report import words
+
+LEVELS = {"degraded": "error", "drifted": "warning"}
+_IN_TEXT = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A"})
+_IN_PROPERTY = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A", ":": "%3A", ",": "%2C"})
+
+
+def properties(comparison: Comparison) -> tuple[tuple[str, str], ...]:
+    """Return name and value of what is known, in a fixed order; what is not known is left out."""
+    verdict, repair = comparison.verdict, comparison.repair
+    found = {
+        "tarl_verdict": verdict.result,
+        "tarl_p_drift": f"{verdict.p_drift:.3g}",
+        "tarl_p_loss": f"{verdict.p_loss:.3g}",
+        "tarl_loss": words.amount(verdict.loss),
+        "tarl_loss_interval": _interval(comparison),
+        "tarl_region": words.region_words(comparison) if verdict.result != "no difference" else "",
+        "tarl_culprit": _blamed(comparison.culprits[0]) if _guilty(comparison) else "",
+        "tarl_patch": repair.patch if repair else "",
+    }
+    return tuple((name, value) for name, value in found.items() if value)
+
+
+def annotation(comparison: Comparison, root: Path) -> str:
+    """Return the workflow command that marks the culprit's line on GitHub; empty where no line is to blame.
+
+    Its path is relative to the checkout, wherever in it `root` is.
+    """
+    if not _guilty(comparison):
+        return ""
+    culprit, level = comparison.culprits[0], LEVELS[comparison.verdict.result]
+    title = f"{comparison.test}[{comparison.drift or 'online'}]: {comparison.verdict.result}"
+    file = _in_checkout(root / culprit.site.path).translate(_IN_PROPERTY)
+    place = f"file={file},line={culprit.site.line},title={title.translate(_IN_PROPERTY)}"
+    return f"::{level} {place}::{_message(comparison).translate(_IN_TEXT)}"
+
+
+def _message(comparison: Comparison) -> str:
+    region, repair = words.region_words(comparison), comparison.repair
+    culprit = comparison.culprits[0]
+    blamed = "ranked first by its slice" if culprit.method == "slices" else "ranked first by simulation"
+    lines = [words.verdict_sentence(comparison), f"Where: {region}." if region else ""]
+    lines.append(f"{words.one_line(culprit.site.code)} is {blamed}.")
+    if repair and repair.accepted:
+        lines.append(f"Accepted repair: {words.repair_words(repair)} ({repair.patch}).")
+    return "\n".join(line for line in lines if line)
+
+
+def _guilty(comparison: Comparison) -> bool:
+    return comparison.verdict.result in LEVELS and bool(comparison.culprits)
+
+
+def _blamed(culprit: Culprit) -> str:
+    return f"{culprit.site.path}:{culprit.site.line} {words.one_line(culprit.site.code)}"
+
+
+def _interval(comparison: Comparison) -> str:
+    offline, online = (comparison.totals.get(world, ()) for world in ("offline", "online"))
+    if min(len(offline), len(online)) < 2:
+        return ""
+    low, high = difference_bounds(offline, online, (1 - words.CONFIDENCE) / 2)
+    return f"{words.amount(low)} to {words.amount(high)}"
+
+
+def _in_checkout(path: Path) -> str:
+    checkout = Path(os.environ.get("GITHUB_WORKSPACE") or Path.cwd())
+    return (path.relative_to(checkout) if path.is_relative_to(checkout) else path).as_posix()

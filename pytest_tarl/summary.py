@@ -1,0 +1,59 @@
+"""What the tests of a run have to tell, from wherever they ran to the end of the terminal's output."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from pytest_tarl.report.table import side_by_side
+
+if TYPE_CHECKING:
+    import pytest
+    from _pytest.terminal import TerminalReporter
+
+    from pytest_tarl.missions import Account
+
+ACCOUNT = "tarl_account"  # attribute of a report; plain values, so that xdist carries it
+
+
+def attach(report: pytest.TestReport, account: Account) -> None:
+    """Send an account along with a test's report."""
+    told = {
+        "lines": list(account.lines),
+        "patch": str(account.patch or ""),
+        "annotation": account.annotation,
+        "row": list(account.row),
+    }
+    setattr(report, ACCOUNT, told)
+
+
+class Summary:
+    """Collects accounts from reports and writes them in one section."""
+
+    def __init__(self) -> None:
+        self._told: list[Mapping[str, Any]] = []
+        self.patches: list[str] = []  # that mend what was found
+
+    def collect(self, report: pytest.TestReport) -> None:
+        """Take what came along with a report, once."""
+        told = getattr(report, ACCOUNT, None)
+        if told and told not in self._told:
+            self._told.append(told)
+            self.patches += [told["patch"]] if told["patch"] else []
+
+    def write(self, terminal: TerminalReporter, width: int, closing: Sequence[str]) -> None:
+        """Write the section, which ends with `closing`; below it, on GitHub, the annotations."""
+        if not self._told:
+            return
+        terminal.section("TARL", sep="=")
+        table = side_by_side([tuple(one["row"]) for one in self._told if one["row"]], width)
+        blocks = [*(one["lines"] for one in self._told), *([table] if table else [])]
+        for number, lines in enumerate(blocks):
+            terminal.write_line("\n".join(["", *lines] if number else lines))
+        for line in closing:
+            terminal.write_line(f"\n{line}")
+        if os.environ.get("GITHUB_ACTIONS") == "true":
+            for one in self._told:
+                if one["annotation"]:
+                    terminal.write_line(one["annotation"])

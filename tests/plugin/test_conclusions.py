@@ -1,0 +1,133 @@
+"""What a comparison tells beside its verdict: to build servers, of several drifts, of the parts of the reward."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from tests.plugin.tank import ONLINE, RECORD, changed
+
+PARTS = "tarl.reward(level=-abs(1.0 - level), time=-0.01)"
+
+
+@pytest.fixture(scope="module")
+def record_once() -> dict[str, bytes]:
+    return {}
+
+
+@pytest.fixture
+def drifting(tank: pytest.Pytester, record_once: dict[str, bytes]) -> pytest.Pytester:
+    """The project with a reward in parts and two drifts, one of which does not matter."""
+    changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", PARTS)
+    changed(tank, "test_tank", '{"clogged": 0.25}', '{"clogged": 0.25, "fine": 1.0}')
+    folder = tank.path / ".tarl" / "utility"
+    if not record_once:
+        tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+        record_once.update({file.name: file.read_bytes() for file in folder.glob("*.npz")})
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in record_once.items():
+        (folder / name).write_bytes(content)
+    return tank
+
+
+def properties(path: Path) -> dict[str, dict[str, str]]:
+    cases = ElementTree.parse(path).getroot().iter("testcase")
+    return {
+        str(case.get("name")): {str(one.get("name")): str(one.get("value")) for one in case.iter("property")}
+        for case in cases
+    }
+
+
+@pytest.mark.parametrize("workers", ["-n0", "-n2"])
+def test_junit_has_what_was_found_as_properties_of_the_test(drifting: pytest.Pytester, workers: str) -> None:
+    drifting.runpytest(*ONLINE, "--junitxml=found.xml", workers)
+    found = properties(drifting.path / "found.xml")
+    clogged, fine = found["test_fills[clogged]"], found["test_fills[fine]"]
+    assert clogged["tarl_verdict"] == "degraded"
+    assert float(clogged["tarl_p_loss"]) < 0.05
+    low, high = map(float, clogged["tarl_loss_interval"].split(" to "))
+    assert low < float(clogged["tarl_loss"]) < high
+    assert clogged["tarl_region"].startswith("level ")
+    assert clogged["tarl_culprit"].startswith("keeper.py:")
+    assert fine["tarl_verdict"] == "no difference"
+    assert "tarl_culprit" not in fine
+
+
+def test_the_patch_is_a_property_too(drifting: pytest.Pytester) -> None:
+    drifting.runpytest(*ONLINE, "--tarl-repair", "--tarl-drift=clogged", "--junitxml=found.xml")
+    (found,) = properties(drifting.path / "found.xml").values()
+    assert (drifting.path / found["tarl_patch"]).is_file()
+
+
+def test_on_github_the_line_of_the_culprit_is_annotated(
+    drifting: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = drifting.runpytest(*ONLINE)
+    told.stdout.no_fnmatch_line("::error*")
+    monkeypatch.setenv("GITHUB_ACTIONS", "true")
+    monkeypatch.setenv("GITHUB_WORKSPACE", str(drifting.path.parent))
+    told = drifting.runpytest(*ONLINE)
+    (line,) = [one for one in told.outlines if one.startswith("::")]
+    command, message = line.removeprefix("::").split("::", 1)
+    assert command.startswith(f"error file={drifting.path.name}/keeper.py,line=")
+    assert command.endswith("title=test_tank.py%3A%3Atest_fills[clogged]%3A degraded")
+    assert "less than designed" in message
+    assert "%0AWhere: level" in message
+
+
+def test_several_drifts_stand_side_by_side_and_one_alone_does_not(drifting: pytest.Pytester) -> None:
+    told = drifting.runpytest(*ONLINE)
+    told.stdout.fnmatch_lines(
+        [
+            "*test_fills, side by side",
+            "*off-line*on-line*loss*verdict*where",
+            "  clogged *degraded*level *",
+            "  fine *no difference*",
+        ]
+    )
+    drifting.runpytest(*ONLINE, "--tarl-drift=fine").stdout.no_fnmatch_line("*side by side*")
+
+
+def test_the_part_that_is_lost_is_told_with_where(drifting: pytest.Pytester) -> None:
+    told = drifting.runpytest(*ONLINE, "--tarl-drift=clogged")
+    told.stdout.fnmatch_lines(["  parts    level -* where level *"])
+    told.stdout.no_fnmatch_line("*time -*")
+    (page,) = (drifting.path / ".tarl" / "report").glob("*.html")
+    assert "Lost where" in page.read_text("utf-8")
+
+
+def test_holm_corrects_the_verdicts_of_all_tests_when_they_have_run(drifting: pytest.Pytester) -> None:
+    told = drifting.runpytest(*ONLINE, "--tarl-holm", "-v")
+    told.assert_outcomes(failed=1, passed=1, deselected=1)
+    told.stdout.fnmatch_lines(["*clogged?*FAILED*", "*fine?*PASSED*", "*corrected over the 2 comparisons*"])
+    results = (drifting.path / ".tarl" / "results").glob("*clogged*.json")
+    corrected = json.loads(next(results).read_text())["verdict"]
+    drifting.runpytest(*ONLINE, "--tarl-looks=1", "--tarl-drift=clogged")
+    alone = json.loads(next((drifting.path / ".tarl" / "results").glob("*clogged*.json")).read_text())[
+        "verdict"
+    ]
+    assert corrected["p_loss"] == pytest.approx(2 * alone["p_loss"])
+
+
+def test_a_loss_that_is_significant_alone_may_not_be_so_among_many(drifting: pytest.Pytester) -> None:
+    many = ", ".join(f'"fine{n}": 1.0' for n in range(9))
+    changed(drifting, "test_tank", '"fine": 1.0', many)
+    alpha = "--tarl-alpha=0.002"  # the least p value that the permutations allow is 0.001
+    short = ("--tarl-online", "--tarl-episodes=4", alpha)
+    drifting.runpytest(*short, "--tarl-drift=clogged", "--tarl-looks=1").assert_outcomes(
+        failed=1, deselected=1
+    )
+    drifting.runpytest(*short, "--tarl-holm").assert_outcomes(passed=10, deselected=1)
+
+
+@pytest.mark.parametrize(
+    ("other", "said"),
+    [("--tarl-repair", "--tarl-repair are two runs"), ("-n2", "with -n no process knows them all")],
+)
+def test_where_holm_cannot_be_it_is_said(drifting: pytest.Pytester, other: str, said: str) -> None:
+    told = drifting.runpytest("--tarl-online", "--tarl-holm", other)
+    told.stderr.fnmatch_lines([f"*--tarl-holm*{said}*"])
+    assert told.ret == pytest.ExitCode.USAGE_ERROR
