@@ -12,6 +12,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.document import Document, Edit, apply_edits, document
 from pytest_tarl.patching.expressions import counting, negated, number, rounded, scaled, shifted
+from pytest_tarl.patching.fields import in_integer_field
 from pytest_tarl.patching.guards import Reading, always, condition, held
 from pytest_tarl.patching.statements import Change, branched, choices, doubled, lazy, neighbours, replaced
 from pytest_tarl.patching.subscriptions import Subscriptions
@@ -56,9 +57,9 @@ def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutati
 
 
 def is_integral(analysis: Analysis, operand: Operand) -> bool:
-    """Tell whether only an integer makes sense at the operand's place: an index, a length, a compared code."""
+    """Tell whether only an integer makes sense at the operand's place: an index, a length, a compared code, a field."""
     source = _document(analysis, operand.span.path)
-    return isinstance(operand.value, int) and counting(source, source.find(operand.span))
+    return isinstance(operand.value, int) and _whole(source, source.find(operand.span))
 
 
 def rewrite(
@@ -166,7 +167,7 @@ def _change(source: Document, mutation: Mutation) -> Change:
     """Return what takes the place of an operand."""
     operand, value = mutation.operand, mutation.value
     node = source.find(operand.span)
-    integral = isinstance(operand.value, int) and counting(source, node)
+    integral = isinstance(operand.value, int) and _whole(source, node)
     if operand.literal:
         _check_literal(node, operand)
         new = value if isinstance(value, bool) or not integral else round(value)
@@ -181,6 +182,11 @@ def _change(source: Document, mutation: Mutation) -> Change:
     factored = operand.value is not None
     rest = scaled(code, value).removeprefix(number(value))
     return Change(node, scaled(code, value), number(value) if factored else "", rest)
+
+
+def _whole(source: Document, node: ast.expr) -> bool:
+    """Tell whether only an integer makes sense at a place."""
+    return counting(source, node) or in_integer_field(source, node)
 
 
 def _check_literal(node: ast.expr, operand: Operand) -> None:

@@ -14,6 +14,7 @@ from pytest_tarl.repairing.accepting import Accepted, Examiner, Refused
 from pytest_tarl.repairing.delivering import attempts, delivered, withheld
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.unnamed import unnamed_modules
 from pytest_tarl.repairing.watching import Watch
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import Outcome
@@ -159,7 +160,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         repair=delivered(mutants, accepted, found.episodes, examiner.spent, history)
         if accepted
         else withheld(order, refused, history),
-        notes=(*order.comparison.notes, *_cut_short(order, examiner, found)),
+        notes=(*order.comparison.notes, *_notes(order, examiner, found)),
     )
     episodes = {"search": found.episodes, "acceptance": examiner.spent}
     return Repaired(comparison, accepted, episodes, found.interrupted)
@@ -174,9 +175,10 @@ def _ended(examiner: Examiner, found: _Findings) -> Refused:
     return examiner.refused
 
 
-def _cut_short(order: Order, examiner: Examiner, found: _Findings) -> Iterator[str]:
-    """Say when the search did not get to its end, and how to let it."""
+def _notes(order: Order, examiner: Examiner, found: _Findings) -> Iterator[str]:
+    """Say what was not searched, what was dropped for the sake of others, and what cut the search short."""
     accepted = found.accepted is not None
+    yield from unnamed_modules(order)
     yield from (f"a candidate was dropped since another test loses: {told}" for told in examiner.lost)
     if found.late:
         yield (

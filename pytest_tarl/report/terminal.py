@@ -120,7 +120,9 @@ def _repair(comparison: Comparison) -> Iterator[str]:
         if repair.edits:
             yield f"best so far: {words.best_words(repair)}"
     dropped = [one for one in repair.history if one.reason]
-    if dropped:
+    if dropped and repair.accepted:
+        yield f"{len(dropped)} tried before, the last: {words.attempt_words(dropped[-1])}"
+    elif dropped:
         yield from _some([f"tried {words.attempt_words(one)}" for one in dropped[::-1]])
 
 

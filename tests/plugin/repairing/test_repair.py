@@ -117,7 +117,7 @@ def test_what_was_dropped_and_what_came_next_is_told(
     assert result(tank)["repair"]["accepted"]
     told = " ".join(done.stdout.str().split())
     assert re.search(
-        r"tried .+: dropped, the designed world gets worse, -?[\d.]+ in \d+ fresh episodes", told
+        r"\d tried before, the last: .+: dropped, it gains too little, -?[\d.]+ in \d+ fresh", told
     )
     (page,) = tank.path.glob(".tarl/report/*.html")
     text = page.read_text()
@@ -176,3 +176,13 @@ def test_a_repair_that_leaves_other_tests_as_they_were_says_so_in_its_patch(tank
     assert (
         "# other test: test_tank.py::test_wide_pipe: 15 an episode where 15 was recorded" in patch.read_text()
     )
+
+
+def test_a_module_that_the_marker_does_not_name_is_named(tank: pytest.Pytester) -> None:
+    tank.makepyfile(gains="GAIN = 2.0\n\n\ndef wanted(missing):\n    return GAIN * missing\n")
+    changed(tank, "keeper", "flow = GAIN * missing", "flow = wanted(missing)")
+    changed(tank, "keeper", "import rospy\n", "import rospy\nfrom gains import wanted\n")
+    changed(tank, "test_tank", "import pytest\n", "import pytest\nimport sys\nsys.path.insert(0, '.')\n")
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    told = " ".join(tank.runpytest(*REPAIR, "--tarl-budget=20").stdout.str().split())
+    assert "a flow passes gains.py at keeper.py:22, and the marker does not name that file" in told
