@@ -7,10 +7,13 @@ from tarl_lint.valueflow.activations import CALLABLE, Activations
 from tarl_lint.valueflow.machine import Arguments
 from tarl_lint.valueflow.values import (
     BOTTOM,
+    NONE,
     Frame,
+    Nodes,
     Obj,
     Value,
     join,
+    join_all,
     pointer,
 )
 
@@ -33,7 +36,7 @@ class Calls(Activations):
         for argument in expr.arguments:
             value = self.evaluate(argument, frame)
             if isinstance(argument, ir.Starred):
-                known = self.unpacked(value)
+                known = self._one_by_one(value)
                 if known is None:
                     named["*"] = join(named.get("*", BOTTOM), self.elements(value))
                 else:
@@ -47,6 +50,14 @@ class Calls(Activations):
             else:
                 named[name] = value
         return plain, named
+
+    def _one_by_one(self, value: Value) -> list[Value] | None:
+        """Return what `*value` passes, argument by argument; of several sequences those of one length are joined."""
+        ways = [self.unpacked(Value(value.deps, frozenset([o]))) for o in sorted(value.pts, key=_order)]
+        lengths = {-1 if way is None else len(way) for way in ways}
+        if -1 in lengths or len(lengths) != 1:
+            return None
+        return [join_all(parts) for parts in zip(*(way for way in ways if way is not None), strict=True)]
 
     def _call_attribute(
         self, expr: ir.Call, function: ir.Attribute, base: Value, arguments: Arguments, frame: Frame
@@ -87,6 +98,8 @@ class Calls(Activations):
         if obj.kind == "ext":
             return self.call_library(f"{obj.name}.{name}", arguments, frame, expr)
         callables = frozenset(o for o in member.pts if self.callable_held(o) and o.info != (obj, name))
+        if len(callables) == 1 and (method := next(iter(callables))).kind == "bound":
+            return self.call_object(method, arguments, frame, expr, base.deps)
         if callables:
             return self.call_value(Value(member.deps, callables), arguments, frame, expr)
         return self.call_method(Value(base.deps, frozenset([obj])), obj, name, arguments, frame, expr)
@@ -117,8 +130,10 @@ class Calls(Activations):
         self.merge(deltas)
         return result
 
-    def call_object(self, target: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-        """Call one object."""
+    def call_object(
+        self, target: Obj, arguments: Arguments, frame: Frame, call: ir.Call, carriers: Nodes = NONE
+    ) -> Value:
+        """Call one object; a method's receiver is what `carriers` handed on, which may have been chosen by data."""
         kind = target.kind
         if qualified := self.named_by_settings(target):
             return self.call_library(qualified, arguments, frame, call)
@@ -127,7 +142,9 @@ class Calls(Activations):
         if kind == "bound" and isinstance(target.info, tuple):
             closure, receiver, owner = target.info
             plain, named = arguments
-            return self.invoke(closure, ([pointer(receiver), *plain], named), frame, call, owner)
+            return self.invoke(
+                closure, ([Value(carriers, frozenset([receiver])), *plain], named), frame, call, owner
+            )
         if kind == "class":
             return self.instantiate(target, arguments, frame, call)
         if kind == "ext":

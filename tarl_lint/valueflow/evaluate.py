@@ -23,6 +23,7 @@ from tarl_lint.valueflow.values import (
 )
 
 BUILTINS = frozenset(dir(builtins))
+DEFINITIONS = frozenset(["msg", "srv", "action"])  # modules of classes that definition files make
 
 
 class Evaluation(Displays):
@@ -70,7 +71,7 @@ class Evaluation(Displays):
                 return self.external(f"{star}.{name}")
         if name in BUILTINS:
             return self.external(f"builtins.{name}")
-        return self.external(f"{stars[-1]}.{name}") if stars else BOTTOM
+        return self.external(f"{_likely(stars, name)}.{name}") if stars else BOTTOM
 
     def external(self, qualified: str) -> Value:
         """Return a library's function, class or module."""
@@ -82,6 +83,8 @@ class Evaluation(Displays):
         for obj in value.pts:
             if obj.kind == "bound" and self.is_property(obj):
                 call = ir.Call(expr, (), (), expr.pos, -expr.slot)
+                if len(value.pts) == 1:
+                    return self.call_object(obj, ([], {}), frame, call, base.deps)
                 return self.call_value(value, ([], {}), frame, call)
         if value.consts == BOTTOM.consts and not value.pts:
             said = self.special(base, "__getattr__", [const(expr.name)], frame, expr.pos)
@@ -211,6 +214,13 @@ class Evaluation(Displays):
         node = self.node(frame, ("default", closure.key, parameter.name), "assign")
         self.mark(node, parameter.default, value, frame)
         return self.carry(value, node)
+
+
+def _likely(stars: list[str], name: str) -> str:
+    """Return the module that a name most likely comes from: capitalised ones from messages, others not."""
+    message = name[:1].isupper() and not name.isupper()
+    likely = [s for s in stars if (s.rpartition(".")[2] in DEFINITIONS) is message]
+    return (likely or stars)[-1]
 
 
 EVALUATE: Mapping[type, Callable[[Any, Any, Frame], Value]] = {

@@ -36,6 +36,18 @@ class Futures(Records):
                 result = join(result, Value(self.use(Value(it.base.deps, frozenset([obj])))))
         return result
 
+    def _is_done(self, it: Invocation) -> Value:
+        """Return whether a future has a result: what decided to set it, whatever it is."""
+        node = self.node(it.frame, ("done", it.call.slot), "call")
+        deps = it.base.deps
+        for obj in it.base.pts:
+            stored = self.store.get((obj, RESULT))
+            if stored is None:
+                deps |= self.use(Value(it.base.deps, frozenset([obj])))
+            else:
+                self.graph.choice(stored.deps, node)
+        return Value(deps | self.kept(node))
+
     def _gathered(self, it: Invocation) -> Value:
         """Return the results of several coroutines, one by one."""
         obj = self.allocate("sequence", it.frame, ("gathered", it.call.slot))
@@ -74,5 +86,6 @@ READERS: Final[Mapping[str, Callable[..., Value]]] = {
     "result": Futures._result,
     "submit": Futures._submit,
     "run_in_executor": Futures._submit,
+    "done": Futures._is_done,
     "set_result": Futures._set_result,
 }

@@ -286,6 +286,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "dataclasses.field": Library._field,
     "dataclasses.replace": Library._replaced,
     "copy.replace": Library._replaced,
+    **dict.fromkeys(("dataclasses.asdict", "attr.asdict", "attrs.asdict"), Library._as_mapping),
     **dict.fromkeys(("attr.evolve", "attrs.evolve"), Library._replaced),
     "object.__new__": Library._blank_object,
     **dict.fromkeys(("weakref.ref", "weakref.WeakMethod"), Library._weak),

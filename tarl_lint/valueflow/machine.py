@@ -272,7 +272,9 @@ class Machine:
         """Call whatever a value may be."""
         raise NotImplementedError
 
-    def call_object(self, target: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+    def call_object(
+        self, target: Obj, arguments: Arguments, frame: Frame, call: ir.Call, carriers: Nodes = NONE
+    ) -> Value:
         """Call one object."""
         raise NotImplementedError
 

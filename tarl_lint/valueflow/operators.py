@@ -39,6 +39,7 @@ FOLDED: Mapping[str, Callable[..., object]] = {
     ">": operator.gt,
     ">=": operator.ge,
 }
+MEMBER = frozenset(["in", "not in"])
 PRESENT = frozenset(["is", "is not", "==", "!="])  # operators that may ask whether a value is None
 CONTAINERS = frozenset(["sequence", "mapping"])
 CALLING = (ir.Call, ir.Choice, ir.Operation)  # parts in which calls may depend on those before
@@ -73,15 +74,31 @@ class Operators(Presence):
             deps |= self.tested(expr.operator, value, frame, (expr.pos, number))
         return Value(deps, consts=self.fold(expr.operator, values))
 
-    def tested(self, name: str, value: Value, frame: Frame, slot: Hashable) -> Nodes:
+    def tested(self, name: str, value: Value, frame: Frame, slot: tuple[ir.Pos, int]) -> Nodes:
         """Return the nodes whose data an operator uses. Whether a message is there at all is not data of it."""
         if name == "shape":
             return self.length(value)
         if name == "type":
             return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in OURS)))
+        if name in MEMBER and slot[1] == 1:
+            return self.membership(value, frame, slot)
         if name in ("is", "is not"):
             return self.use(Value(value.deps, frozenset(o for o in value.pts if not _there(o))))
         return self.truth(value, frame, slot) if name == "not" else self.use(value)
+
+    def membership(self, value: Value, frame: Frame, slot: Hashable) -> Nodes:
+        """Return the nodes that decide what is in a container: of a mapping its keys, whatever they stand for."""
+        mappings = frozenset(o for o in value.pts if o.kind == "mapping")
+        deps = self.use(Value(value.deps, value.pts - mappings))
+        for obj in sorted(mappings, key=lambda o: o.number):
+            deps |= self.keys(obj, value.deps).deps
+        return deps | self.chosen(mappings, frame, ("member", slot)) if mappings else deps
+
+    def chosen(self, objects: frozenset[Obj], frame: Frame, slot: Hashable) -> Nodes:
+        """Return a node that what decided to put something into containers decides, and no data of theirs."""
+        node = self.node(frame, slot, "condition")
+        self.graph.choice(self.deep(objects), node)
+        return self.kept(node)
 
     def truth(self, value: Value, frame: Frame, slot: Hashable) -> Nodes:
         """Return the nodes that decide whether a value counts as true.
@@ -97,9 +114,7 @@ class Operators(Presence):
         kept = frozenset(o for o in value.pts if o.kind not in CONTAINERS and not self._always_true(o))
         deps = self.use(Value(value.deps, kept)) | self.length(Value(pts=ours))
         if ours:
-            node = self.node(frame, ("truth", slot), "condition")
-            self.graph.choice(self.deep(ours), node)
-            deps |= self.kept(node)
+            deps |= self.chosen(ours, frame, ("truth", slot))
         return deps
 
     def _always_true(self, obj: Obj) -> bool:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from tarl_lint import catalog
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.combining import Combining
+from tarl_lint.valueflow.heap import ANY
 from tarl_lint.valueflow.machine import NONE_ONLY
 from tarl_lint.valueflow.values import Frame, Key, Obj, Value, lineage
 
@@ -23,6 +24,12 @@ class Presence(Combining):
         if not isinstance(second, ir.Const) or second.value is not None:
             return False
         keys = list(self._keys(first, frame))
+        if isinstance(first, (ir.Item, ir.Call)):
+            return (
+                bool(keys)
+                and not self._index_chosen(first, frame)
+                and not any(k in self.optional for k in keys)
+            )
         return any(k in self.vacant for k in keys) and not any(k in self.optional for k in keys)
 
     def note_absence(self, target: ir.Expr, source: ir.Expr, value: Value, frame: Frame) -> None:
@@ -56,10 +63,35 @@ class Presence(Combining):
             for base in self.evaluate(expr.base, frame).pts:
                 for owner in (base, *_classes(base)):
                     yield owner, expr.name
+        elif isinstance(expr, ir.Item):
+            yield from self._elements(expr.base, frame)
+        elif isinstance(expr, ir.Call) and isinstance(expr.function, ir.Attribute) and _gets(expr):
+            yield from self._elements(expr.function.base, frame)
+
+    def _elements(self, container: ir.Expr, frame: Frame) -> Iterator[Key]:
+        """Yield where the elements of a container of ours are stored: None in one of them may be in any."""
+        held = self.evaluate(container, frame).pts if isinstance(container, (ir.Name, ir.Attribute)) else ()
+        if all(o.kind in ("sequence", "mapping") for o in held):
+            for obj in held:
+                yield obj, ANY
+
+    def _index_chosen(self, expr: ir.Item | ir.Call, frame: Frame) -> bool:
+        """Tell whether data chooses the element that is asked for."""
+        index = expr.index if isinstance(expr, ir.Item) else expr.arguments[0]
+        if not isinstance(index, (ir.Const, ir.Name, ir.Attribute)):
+            return True
+        key = self.evaluate(index, frame)
+        return bool(key.deps or key.pts)
 
 
 def _classes(obj: Obj) -> list[Obj]:
     return lineage(obj.info) if obj.kind == "instance" and isinstance(obj.info, Obj) else []
+
+
+def _gets(expr: ir.Call) -> bool:
+    return (
+        isinstance(expr.function, ir.Attribute) and expr.function.name == "get" and len(expr.arguments) == 1
+    )
 
 
 def _none(expr: ir.Expr) -> bool:

@@ -117,6 +117,18 @@ class Records(Containers):
                     self.store.put((obj, item_field(names.index(name))), value)
         return made
 
+    def _as_mapping(self, it: Invocation) -> Value:
+        """Return the mapping of field names to fields that `asdict(x)` or a named tuple's `_asdict()` makes."""
+        given = it.base if it.base is not BOTTOM else it.arguments[0][0] if it.arguments[0] else UNKNOWN
+        ours = {o: o.info for o in given.pts if o.kind == "instance" and isinstance(o.info, Obj)}
+        if not ours or len(ours) < len(given.pts):
+            return Value(self.use(given))
+        made = self.allocate("mapping", it.frame, ("display", it.call.slot))
+        for obj, cls in ours.items():
+            for _, name in _fields(cls):
+                self.weaken(made, item_field(name), self.arrive(self.read_field(obj, name), given.deps))
+        return pointer(made)
+
     def _read_copy(self, it: Invocation) -> Value:
         return self.copy_of(it.base, it.frame, it.call.slot)
 
@@ -243,4 +255,8 @@ def _named_tuple(cls: object) -> bool:
     return any(isinstance(i, ClassInfo) and (i.named or "typing.NamedTuple" in i.external) for i in infos)
 
 
-RECORDS: Final = {"copy": Records._read_copy, "_replace": Records._replaced}
+RECORDS: Final = {
+    "copy": Records._read_copy,
+    "_replace": Records._replaced,
+    "_asdict": Records._as_mapping,
+}
