@@ -18,6 +18,7 @@ from tarl_lint.valueflow.values import (
     Nodes,
     Obj,
     Value,
+    const,
     join,
     join_all,
     pointer,
@@ -28,6 +29,8 @@ QUEUES = frozenset(
     for module in ("queue", "Queue", "asyncio", "multiprocessing")
     for name in ("Queue", "LifoQueue", "PriorityQueue", "SimpleQueue", "JoinableQueue")
 )
+FLAG = "<flag>"  # the field of an event that says whether it is set
+FLAGGING = frozenset(["set", "clear"])
 IN_ORDER = frozenset(["list", "tuple", "deque", "iter", "reversed"])  # keep their argument's elements apart
 CONTAINERS = frozenset(["list", "tuple", "set", "frozenset", "sorted", "reversed", "iter", "deque"])
 
@@ -45,6 +48,8 @@ class Containers(Calls):
     def mutate(self, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
         """Store arguments in the receiver."""
         plain, named = arguments
+        if name in FLAGGING and not plain:
+            self._flag(base, name, frame, call)
         if name == "clear":
             for obj in base.pts if len(base.pts) == 1 else ():
                 self.empty(obj)
@@ -64,6 +69,11 @@ class Containers(Calls):
             self._insert(base, [self.elements(v) for v in plain], frame, call)
         else:
             self._insert(base, plain[-1:] if name == "insert" else plain, frame, call)
+
+    def _flag(self, base: Value, name: str, frame: Frame, call: ir.Call) -> None:
+        """Set or clear an event of a library: whoever asks it learns what decided that."""
+        events = Value(base.deps, frozenset(o for o in base.pts if o.kind == "lib"))
+        self.write_field(events, FLAG, self.through_statement(const(name == "set"), frame, call))
 
     def _update(
         self, base: Value, plain: list[Value], named: Mapping[str, Value], frame: Frame, call: ir.Call

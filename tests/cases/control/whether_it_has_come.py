@@ -1,5 +1,7 @@
 """That a message has come is no data of it, wherever it is kept; what decided to keep it, or under which key, is."""
 
+import threading
+
 import rclpy
 from rclpy.node import Node
 from rclpy.task import Future
@@ -16,6 +18,8 @@ class Arrivals(Node):
         self.best = {}
         self.first = Future()
         self.large = Future()
+        self.came = threading.Event()
+        self.low = threading.Event()
         self.create_subscription(Float32, "range", self.on_range, 1)  # source range
         self.create_subscription(String, "name", self.on_name, 1)  # source name
         self.create_subscription(Float32, "gated", self.on_gated, 1)  # source gated
@@ -25,6 +29,7 @@ class Arrivals(Node):
     def on_range(self, msg):
         self.board["range"] = msg.data
         self.slots[0] = msg
+        self.came.set()
         self.best["range"] = msg if msg.data > 3.0 else None
         if not self.first.done():
             self.first.set_result(msg.data)
@@ -37,6 +42,9 @@ class Arrivals(Node):
             self.chosen["gated"] = msg
             self.slots[1] = msg
             self.large.set_result(True)
+            self.low.set()
+        else:
+            self.low.clear()
 
     def tick(self):
         if "range" in self.board:
@@ -58,6 +66,10 @@ class Arrivals(Node):
         if self.slots[1] is not None:
             self.pub.publish(Bool(data=True))  # sink ~gated
         if self.large.done():
+            self.pub.publish(Bool(data=True))  # sink ~gated
+        if self.came.is_set():
+            self.pub.publish(Bool(data=True))  # clean
+        if self.low.is_set():
             self.pub.publish(Bool(data=True))  # sink ~gated
 
 
