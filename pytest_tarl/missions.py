@@ -18,7 +18,7 @@ from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.binning import learned_edges
 from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.model import Comparison
+from pytest_tarl.model import Comparison, Repair
 from pytest_tarl.patching import patch
 from pytest_tarl.recording import Progress, read_values, record
 from pytest_tarl.repairing.order import Neighbour, Order
@@ -171,7 +171,8 @@ class Mission:
             comparison = repaired.comparison
             episodes |= repaired.episodes
             interrupted = repaired.interrupted
-        told = replace(comparison, target=self.target, flags=self.options.flags)
+        notes = (*comparison.notes, *self._not_run(comparison.repair))
+        told = replace(comparison, target=self.target, flags=self.options.flags, notes=notes)
         return Compared(self, told, online, episodes, interrupted)
 
     def _neighbours(self) -> list[Neighbour]:
@@ -187,6 +188,18 @@ class Mission:
                 margin = tolerated(fixture.sample, other.designation.tolerance)
                 found.append(Neighbour(other.test, nodes, other.rollout, fixture, margin))
         return found
+
+    def _not_run(self, found: Repair | None) -> Iterator[str]:
+        """Name recorded tests of a repaired file that this run did not collect, and so could not hold against it."""
+        if found is None or not found.accepted:
+            return
+        run, edited = {self.test, *(other.test for other in self.others)}, {edit.path for edit in found.edits}
+        for path in sorted((self.tarl / "utility").glob("*.npz")):
+            with suppress(FixtureError):
+                fixture = fixtures.load(path)
+                sites = {site.path for one in fixture.lists for site in one.sites}
+                if fixture.test not in run and sites & edited:
+                    yield f"{fixture.test} is recorded on the same node and was not in this run: run it, too"
 
     def _fixture(self) -> Fixture:
         if not self.fixture_path.exists():
