@@ -1,6 +1,19 @@
 """Record what robot code is worth in simulation, see where another world breaks it, repair it."""
 
-from pytest_tarl.episode import Tarl
-from pytest_tarl.sensors import Sensor
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pytest_tarl.episode import Tarl
+    from pytest_tarl.sensors import Sensor
 
 __all__ = ["Sensor", "Tarl"]
+
+_HOMES = {"Sensor": "pytest_tarl.sensors", "Tarl": "pytest_tarl.episode"}
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is asked for when it is: every pytest run loads this package, few use it."""
+    if name in _HOMES:
+        return getattr(import_module(_HOMES[name]), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
