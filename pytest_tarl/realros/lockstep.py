@@ -33,7 +33,6 @@ class Wire:
         self._arrival = threading.Condition()
         self._boxes: dict[Way, deque[Any]] = {}
         self._expected: deque[Way] = deque()
-        self._jobs: deque[Callable[[], None]] = deque()
 
     def expect(self, way: Way) -> None:
         """Note that a message was sent."""
@@ -43,12 +42,6 @@ class Wire:
         """Take in a message."""
         with self._arrival:
             self._boxes.setdefault(way, deque()).append(message)
-            self._arrival.notify()
-
-    def ask(self, job: Callable[[], None]) -> None:
-        """Have a job done in the test's thread, for a thread of the client library."""
-        with self._arrival:
-            self._jobs.append(job)
             self._arrival.notify()
 
     def take(self) -> tuple[Way, Any] | None:
@@ -71,24 +64,12 @@ class Wire:
             with self._arrival:
                 self._arrival.wait_for(lambda: len(self._boxes.get(way, ())) >= count, PATIENCE)
 
-    def wait_for_job(self, over: Callable[[], bool]) -> Callable[[], None] | None:
-        """Return the next job that a thread asks for, None once `over()` holds."""
-        with self._arrival:
-            self._arrival.wait_for(lambda: self._jobs or over(), PATIENCE)
-            return self._jobs.popleft() if self._jobs else None
-
-    def wake(self) -> None:
-        """Let `wait_for_job` look again."""
-        with self._arrival:
-            self._arrival.notify()
-
     def forget(self) -> None:
         """Drop everything under way: the episode is over."""
         while self._expected:
             self.take()
         with self._arrival:
             self._boxes.clear()
-            self._jobs.clear()
 
 
 class WireScheduler(Scheduler):

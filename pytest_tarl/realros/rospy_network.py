@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import threading
 import warnings
 import xmlrpc.client
-from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from time import monotonic, sleep
@@ -16,6 +14,7 @@ from pytest_tarl.realros.lockstep import PATIENCE, Way, Wire, WireScheduler
 from pytest_tarl.realros.master import Master
 from pytest_tarl.realros.rospy_copy import RospyCopy
 from pytest_tarl.realros.rospy_patches import patch
+from pytest_tarl.realros.service_calls import ServiceCalls
 from pytest_tarl.ros.messages.snapshot import snapshot
 from pytest_tarl.ros.names import absolute
 from pytest_tarl.ros.process import Process
@@ -33,6 +32,7 @@ class RospyNetwork:
         self.master = Master()
         self.wire = Wire()
         self.scheduler = WireScheduler()
+        self.calls = ServiceCalls(self.scheduler)
         self.listening: list[Task] = []  # tasks that any arrival may concern
         self.in_hooks = False
         self.parameters: Mapping[str, Any] = {}
@@ -55,6 +55,7 @@ class RospyNetwork:
         """Start an episode with an empty parameter server."""
         self.wire.forget()
         self.scheduler, self.parameters, self.in_hooks = scheduler, parameters, False
+        self.calls = ServiceCalls(scheduler)
         self.listening.clear()
         for name in set(self._call("getParamNames")) - _BASE:
             self._call("deleteParam", name)
@@ -156,57 +157,6 @@ class RospyNetwork:
         for task in tasks:
             self.scheduler.wake(task)
 
-    def served(self, process: Process, handler: Callable[[Any], Any]) -> Callable[[Any], Any]:
-        """Return a service's handler that runs as a task of its node, whoever's thread calls it."""
-
-        def handle(request: Any) -> Any:
-            answer: deque[Callable[[], Any]] = deque()
-            done = threading.Event()
-
-            def work() -> None:
-                try:
-                    result = handler(request)
-                    answer.append(lambda: result)
-                except Exception as error:
-                    answer.append(lambda error=error: _raise(error))  # type: ignore[misc]
-                finally:
-                    done.set()
-
-            self.wire.ask(lambda: _spawned(process, work))
-            done.wait()
-            return answer[0]() if answer else None
-
-        return handle
-
-    def in_thread(self, task: Task, call: Callable[[], Any]) -> Any:
-        """Run a blocking call of rospy in a thread; meanwhile nodes run, the calling task waits."""
-        outcome: list[Callable[[], Any]] = []
-
-        def work() -> None:
-            try:
-                result = call()
-                outcome.append(lambda: result)
-            except BaseException as error:
-                outcome.append(lambda error=error: _raise(error))  # type: ignore[misc]
-            finally:
-                self.wire.wake()
-
-        threading.Thread(target=work, daemon=True).start()
-
-        def attend() -> None:
-            job = self.wire.wait_for_job(lambda: bool(outcome))
-            if job is not None:
-                job()
-            if outcome:
-                self.scheduler.wake(task)
-            else:
-                self.scheduler.later(attend)
-
-        self.scheduler.later(attend)
-        while not outcome:
-            self.scheduler.wait()
-        return outcome[0]()
-
     def _made(self, argv: Sequence[str]) -> RospyCopy:
         copy = RospyCopy(self, argv)
         patch(copy)
@@ -288,11 +238,3 @@ def _connected(sender: RospyCopy, publisher: Any, receiver: RospyCopy, subscribe
     return out and any(
         getattr(connection, "callerid_pub", None) == sender.name for connection in subscriber.connections
     )
-
-
-def _spawned(process: Process, work: Callable[[], None]) -> None:
-    process.scheduler.spawn(process, work)
-
-
-def _raise(error: BaseException) -> Any:
-    raise error

@@ -249,7 +249,8 @@ def _patch_services(copy: RospyCopy) -> None:
         process = _process()
         if process is not None and copy.rospy.core.is_initialized():
             copy.services.append(self)
-            make(self, name, service_class, copy.network.served(process, handler), *args, **kwargs)
+            served = copy.network.calls.served(process, name, handler)
+            make(self, name, service_class, served, *args, **kwargs)
             copy.network.wake_listening()
         else:
             make(self, name, service_class, handler, *args, **kwargs)
@@ -257,7 +258,7 @@ def _patch_services(copy: RospyCopy) -> None:
     def ask(self: Any, *args: Any, **kwargs: Any) -> Any:
         if _process() is None:
             return call(self, *args, **kwargs)
-        return copy.network.in_thread(_task(), lambda: call(self, *args, **kwargs))
+        return copy.network.calls.call(_task(), lambda: call(self, *args, **kwargs))
 
     service.__init__, proxy.call = init, ask
 

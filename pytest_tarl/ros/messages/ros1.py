@@ -56,7 +56,7 @@ class Message:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, type(self)):
             return False
-        return all(getattr(self, name) == getattr(other, name) for name in self.__slots__)
+        return all(_equal(getattr(self, name), getattr(other, name)) for name in self.__slots__)
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -64,6 +64,13 @@ class Message:
         return as_yaml(self)
 
     __repr__ = __str__
+
+
+def _equal(one: Any, other: Any) -> bool:
+    """Compare two fields; a list and a tuple are the same, since what is received has tuples."""
+    if isinstance(one, list | tuple) and isinstance(other, list | tuple):
+        return tuple(one) == tuple(other)
+    return bool(one == other)
 
 
 def _rebuild(name: str, state: list[Any]) -> Message:

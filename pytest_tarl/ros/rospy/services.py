@@ -6,10 +6,12 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from math import ceil
 from typing import Any
 
 from pytest_tarl.errors import TarlError
 from pytest_tarl.ros.clock import nanoseconds
+from pytest_tarl.ros.messages.snapshot import snapshot
 from pytest_tarl.ros.messages.values import FieldError
 from pytest_tarl.ros.rospy.exceptions import (
     ROSException,
@@ -22,6 +24,7 @@ from pytest_tarl.ros.scheduler import current_task
 from pytest_tarl.ros.services import Answer, ServiceDirectory, adapted
 
 _LOGGER = logging.getLogger("rosout")
+_POLL = 0.3  # seconds between two looks of `wait_for_service`
 _NO_RESPONSE = "service cannot process request: service handler returned None"
 
 
@@ -73,6 +76,7 @@ class Service:
         """Handle a request; as in rospy, an exception of the handler is the caller's failure, not the node's end."""
         try:
             response = self._as_response(self.handler(request))
+            response = None if response is None else snapshot(response)
         except Exception as error:
             if isinstance(error, TarlError):
                 raise
@@ -131,16 +135,13 @@ class ServiceProxy:
     def _request(self, args: tuple[Any, ...], kwds: dict[str, Any]) -> Any:
         if len(args) == 1 and isinstance(args[0], self.request_class):
             return args[0]
-        try:
-            return self.request_class(*args, **kwds)
-        except (TypeError, AttributeError) as error:
-            raise TypeError(f"Invalid number of arguments, args should be {self.request_class.__slots__}: {error}"
-                            if args else str(error)) from error  # fmt: skip
+        return self.request_class(*args, **kwds)
 
     def _response(self, answered: Any) -> Any:
         if answered is None or isinstance(answered, Refusal):
             reason = _NO_RESPONSE if answered is None else answered.reason
-            raise ServiceException(f"service [{self.resolved_name}] responded with an error: {reason}")
+            said = reason.encode()  # rospy shows the bytes that came over the network
+            raise ServiceException(f"service [{self.resolved_name}] responded with an error: {said!r}")
         return adapted(answered, self.response_class)
 
     def wait_for_service(self, timeout: float | None = None) -> None:
@@ -156,7 +157,10 @@ def wait_for_service(service: str, timeout: Any = None) -> None:
     node = this_node("wait_for_service")
     name = node.resolve(service)
     seconds = getattr(timeout, "to_sec", lambda: timeout)()
-    until = None if timeout is None else node.process.scheduler.time + nanoseconds(seconds)
+    if seconds == 0.0:
+        raise ValueError("timeout must be non-zero")
+    polls = None if timeout is None else max(ceil(seconds / _POLL), 0)  # rospy looks at the time only then
+    until = None if polls is None else node.process.scheduler.time + polls * nanoseconds(_POLL)
     directory = node.process.ros.part(ServiceDirectory)
     if directory.wait(current_task(), name, until, lambda: not node.process.ending):
         return
