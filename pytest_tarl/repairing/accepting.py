@@ -17,6 +17,7 @@ from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
 QUICK = 3  # seeds on which a guard is looked at before it is tested on fresh ones
 CLOSE = 0.01  # share of the loss within which two gains on the same seeds are equal
+HELD: tuple[Reason, ...] = ("nominal gets worse", "another test gets worse")  # in one world, in both of them
 MOST = 5  # candidates that are tested on fresh seeds
 
 
@@ -160,9 +161,10 @@ class Examiner:
 
 
 def furthest(one: Refused, other: Refused) -> Refused:
-    """Return what came further: it held in the drifted world, or else earned more there on fresh seeds."""
+    """Return what came further: in how many worlds it held, or else which earned more on fresh seeds."""
 
-    def came(refused: Refused) -> tuple[bool, bool, float]:
-        return refused.candidate is not None, refused.reason == "nominal gets worse", refused.mean
+    def came(refused: Refused) -> tuple[bool, int, float]:
+        held = HELD.index(refused.reason) + 1 if refused.reason in HELD else 0
+        return refused.candidate is not None, held, refused.mean
 
     return other if came(other) > came(one) else one

@@ -27,3 +27,12 @@ def test_among_equals_the_one_that_earned_most_is_told_and_the_first_where_none_
     assert furthest(low, high) is high
     first, second = Refused(SOME, "gain too small"), Refused(ANOTHER, "gain too small")
     assert furthest(first, second) is first
+
+
+def test_what_only_another_test_refused_came_furthest() -> None:
+    costly, elsewhere = (
+        Refused(SOME, "nominal gets worse", 9.0),
+        Refused(ANOTHER, "another test gets worse", 8.0),
+    )
+    assert furthest(costly, elsewhere) is elsewhere
+    assert furthest(elsewhere, costly) is elsewhere
