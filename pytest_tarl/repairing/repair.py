@@ -179,7 +179,9 @@ def _notes(order: Order, examiner: Examiner, found: _Findings) -> Iterator[str]:
     """Say what was not searched, what was dropped for the sake of others, and what cut the search short."""
     accepted = found.accepted is not None
     yield from unnamed_modules(order)
-    yield from (f"a candidate was dropped since another test loses: {told}" for told in examiner.lost)
+    yield from (
+        f"a candidate was dropped since another test loses: {told}" for told in dict.fromkeys(examiner.lost)
+    )
     if found.late:
         yield (
             f"the search was cut after {order.options.seconds:g} s, in which it ran {found.episodes} episodes; the "
