@@ -80,6 +80,7 @@ class Together:
         """Join the leading part with the next ones, the best two with a third, and balance what gains most."""
         base: Joint | None = Joint(tuple(parts[:1]), guard)
         best: tuple[Joint, float] | None = None
+        needed = max(self.goal.enough - self.goal.online, 0.0)
         while base is not None and len(base.parts) < MOST:
             joints = [base.with_part(*part) for part in parts[: LEADERS + 1] if part not in base.parts]
             base = None
@@ -87,7 +88,9 @@ class Together:
                 gained = yield from self.gain(joint)
                 if gained is not None and (best is None or gained > best[1]):
                     best, base = (joint, gained), joint
-        if best is not None and best[1] > PROMISING * max(self.goal.enough - self.goal.online, 0.0):
+            if best is not None and best[1] >= self.goal.enough - self.goal.pairs[0].total:
+                break  # two suffice here, though not on fresh seeds: better values help, not more parts
+        if best is not None and best[1] > PROMISING * needed:
             yield from self._balanced(*best)
 
     def gain(self, joint: Joint) -> Generator[Candidate, None, float | None]:
