@@ -3,41 +3,50 @@
 from __future__ import annotations
 
 import _thread
-import sys
 import threading
 from collections.abc import Callable
-from types import FrameType
+from types import ModuleType
 from typing import Any
+
+# Not threading.setprofile: CPython 3.11 repeats the first instruction of a profiled thread as long as others wait for
+# the interpreter, so that several threads which start at once never get past it.
+_STARTERS = (
+    (_thread, "start_new_thread"),
+    (_thread, "start_joinable_thread"),  # from 3.13 on
+    (threading, "_start_new_thread"),
+    (threading, "_start_joinable_thread"),
+)
 
 
 class ThreadWatch:
-    """Call `heard` as soon as a thread starts, by `threading` or by `_thread` itself.
+    """Call `heard` before a thread starts, by `threading` or by `_thread` itself.
 
     A thread that an extension module makes by itself is not heard of.
     """
 
     def __init__(self, heard: Callable[[], None]) -> None:
         self._heard = heard
-        self._profile = threading.getprofile()
-        self._raw: Callable[..., int] = _thread.start_new_thread
+        self._replaced: list[tuple[ModuleType, str, Any, Any]] = []
 
     def begin(self) -> None:
         """Watch."""
-        threading.setprofile(self._runs)
-        _thread.start_new_thread = self._started
+        for module, name in _STARTERS:
+            original = getattr(module, name, None)
+            if original is not None:
+                telling = self._telling(original)
+                setattr(module, name, telling)
+                self._replaced.append((module, name, original, telling))
 
     def end(self) -> None:
         """Leave both modules as they were, unless somebody else has changed them in between."""
-        if threading.getprofile() == self._runs:
-            threading.setprofile(self._profile)
-        if _thread.start_new_thread == self._started:
-            _thread.start_new_thread = self._raw
+        for module, name, original, telling in self._replaced:
+            if getattr(module, name) is telling:
+                setattr(module, name, original)
+        self._replaced.clear()
 
-    def _runs(self, _frame: FrameType, _event: str, _argument: object) -> None:
-        sys.setprofile(self._profile)
-        self._heard()
+    def _telling(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        def started(*arguments: Any, **options: Any) -> Any:
+            self._heard()
+            return original(*arguments, **options)
 
-    def _started(self, *arguments: Any, **options: Any) -> int:
-        # `threading` has a name of its own for this function, and a profiler for the threads that it starts.
-        self._heard()
-        return self._raw(*arguments, **options)
+        return started

@@ -188,18 +188,28 @@ def test_greenlets_share_the_sequence_of_their_thread():
     assert trace.thread is None
 
 
-def test_profilers_of_threads_come_back():
+def test_profilers_of_threads_are_left_alone():
     def profile(*_: object) -> None: ...
 
     threading.setprofile(profile)
     try:
         recorder = Recorder()
         program(recorder)
-        assert threading.getprofile() is not profile
+        assert threading.getprofile() is profile
         recorder.finish()
         assert threading.getprofile() is profile
     finally:
         threading.setprofile(None)  # type: ignore[arg-type]
+
+
+def test_threads_start_as_before_once_an_episode_is_over():
+    names = [name for name in ("_start_new_thread", "_start_joinable_thread") if hasattr(threading, name)]
+    before = [getattr(threading, name) for name in names]
+    recorder = Recorder()
+    program(recorder)
+    assert all(getattr(threading, name) is not one for name, one in zip(names, before, strict=True))
+    recorder.finish()
+    assert [getattr(threading, name) for name in names] == before
 
 
 def test_a_thread_below_threading_has_a_sequence_of_its_own_too():
