@@ -21,7 +21,7 @@ check: setup
 	$(BIN)/lint-imports
 
 unit: setup
-	$(BIN)/python -m pytest -q
+	$(BIN)/python -m pytest -q --timeout 240
 
 setup: $(INSTALLED)
 
@@ -42,7 +42,8 @@ ROS2_VENV ?= .venv-ros2
 ROS2_WHEELS := 'ros-rclpy[fastrtps]==9.1.2' ros-geometry-msgs==5.5.1 ros-nav-msgs==5.5.1 ros-sensor-msgs==5.5.1
 ROS_TOOLS := --editable ".[ros,report]" pymunk hypothesis pytest-xdist
 # Sockets that rospy leaves to the garbage collector are no failure of a test
-ROS_LEAVES := -W ignore::pytest.PytestUnraisableExceptionWarning -W ignore::ResourceWarning
+ROS_LEAVES := -W "ignore:Exception ignored in:pytest.PytestUnraisableExceptionWarning" \
+	-W "ignore:unclosed <socket:ResourceWarning"
 PIP_INSTALL := -m pip install --quiet --disable-pip-version-check
 
 .PHONY: test-ros1 test-ros2 setup-ros1 setup-ros2

@@ -65,11 +65,7 @@ def run_online(
         tables = _solved_tables(offline, online, fixture.sensors)
     near_half = _paper_cells(tables, offline.cells)
     chosen = _rows(difference.region, near_half, offline.cells)
-    lists = tuple(
-        ListComparison(t, before, after, localize.slices(t, before, after, chosen))
-        for t, (before, after) in zip(_current(fixture, plan), tables, strict=True)
-        if t.sites
-    )
+    lists = _compared(_current(fixture, plan), tables, chosen)
     ranked = localize.prior(one.slices for one in lists)
     comparison = Comparison(
         test=fixture.test,
@@ -249,6 +245,17 @@ def _learned_tables(
         (_spread(before, fixture.sample.cells, cells), _spread(after, recorded.sample.cells, cells))
         for before, after in zip(fixture.sarsa, learned, strict=True)
     ]
+
+
+def _compared(
+    lists: Sequence[TaintList], tables: Sequence[tuple[Floats, Floats]], rows: Ints
+) -> tuple[ListComparison, ...]:
+    """Return each list that still has sites with its tables and what they sum to over the region's rows."""
+    return tuple(
+        ListComparison(one, before, after, localize.slices(one, before, after, rows))
+        for one, (before, after) in zip(lists, tables, strict=True)
+        if one.sites
+    )
 
 
 def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Floats:

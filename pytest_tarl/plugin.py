@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from pytest_tarl.flags import FLAGS
+
 if TYPE_CHECKING:
     from pytest_tarl.episode import Tarl
     from pytest_tarl.settings import Options
@@ -20,82 +22,8 @@ MARKER = (
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Declare the flags; those that choose a mode do nothing unless given."""
     group = parser.getgroup("tarl", "TARL: record, compare and repair robot code in simulation")
-    flag = group.addoption
-    flag(
-        "--tarl-record", action="store_true", help="run the episodes off-line and record the utility fixture"
-    )
-    flag("--tarl-online", action="store_true", help="run the drift scenarios and compare with the fixture")
-    flag("--tarl-repair", action="store_true", help="with --tarl-online: search a repair and write a patch")
-    flag("--tarl-drift", metavar="NAME", help="with --tarl-online: only this drift scenario")
-    flag(
-        "--tarl-seed",
-        metavar="N",
-        type=int,
-        default=0,
-        help="the one seed that decides everything (default 0)",
-    )
-    flag(
-        "--tarl-episodes",
-        metavar="N",
-        type=int,
-        help="episodes to run instead of the marker's number, or of 40 on-line",
-    )
-    flag("--tarl-alpha", metavar="P", type=float, default=0.05, help="rate of false alarms (default 0.05)")
-    flag(
-        "--tarl-looks",
-        metavar="N",
-        type=int,
-        help="with --tarl-online: looks at the verdict, to end early when it is certain (default 3; 1 to repair)",
-    )
-    flag(
-        "--tarl-search",
-        metavar="METHOD",
-        action="append",
-        help="sweep (default) or epsilon-greedy; given twice, both run and the first accepted repair counts",
-    )
-    flag(
-        "--tarl-budget",
-        metavar="N",
-        default="300",
-        help="what a search may spend: episodes (default 300), or a time such as 90s or 5min",
-    )
-    flag(
-        "--tarl-utility",
-        metavar="KIND",
-        default="batch",
-        help="batch (default); sarsa, as in the paper; expected-sarsa or td-lambda",
-    )
-    flag(
-        "--tarl-workers",
-        metavar="N",
-        default="1",
-        help="episodes to run at a time, each in its own process; auto: as many as cores (default 1)",
-    )
-    flag("--tarl-cluster", metavar="ADDRESS", help="run the episodes on the Dask cluster of this scheduler")
-    flag(
-        "--tarl-ros",
-        metavar="KIND",
-        default="embedded",
-        help="the ROS that nodes run on: embedded (default), real, or auto (real where it is installed)",
-    )
-    flag(
-        "--tarl-log",
-        metavar="FILE",
-        help="with --tarl-online: compare the missions in this log of `python -m pytest_tarl observe`",
-    )
-    flag(
-        "--tarl-holm",
-        action="store_true",
-        help="with --tarl-online: correct p values and verdicts over all tests of the run (Holm)",
-    )
-    flag(
-        "--tarl-bag",
-        metavar="FILE",
-        action="append",
-        help="with --tarl-online: replay this recorded mission (.bag, .mcap, .db3, a ROS 2 bag's folder); may be given "
-        "several times",
-    )
-    flag("--tarl-strict", action="store_true", help="with --tarl-online: a test without fixture fails")
+    for flag in FLAGS:
+        group.addoption(flag.name, **flag.declaration())
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -144,18 +72,7 @@ def _ours(error: BaseException) -> bool:
 
 
 def _asked(config: pytest.Config) -> bool:
-    flags = (
-        "--tarl-record",
-        "--tarl-online",
-        "--tarl-repair",
-        "--tarl-drift",
-        "--tarl-search",
-        "--tarl-strict",
-        "--tarl-log",
-        "--tarl-bag",
-        "--tarl-holm",
-    )
-    return any(config.getoption(flag) for flag in flags)
+    return any(config.getoption(flag.name) for flag in FLAGS if flag.asks)
 
 
 def _options(config: pytest.Config) -> Options:
@@ -163,30 +80,6 @@ def _options(config: pytest.Config) -> Options:
     from pytest_tarl.settings import options
 
     try:
-        return options(
-            {
-                name: config.getoption(f"--tarl-{name}")
-                for name in (
-                    "record",
-                    "online",
-                    "repair",
-                    "drift",
-                    "seed",
-                    "episodes",
-                    "alpha",
-                    "looks",
-                    "search",
-                    "budget",
-                    "utility",
-                    "workers",
-                    "cluster",
-                    "strict",
-                    "ros",
-                    "log",
-                    "bag",
-                    "holm",
-                )
-            }
-        )
+        return options({flag.key: config.getoption(flag.name) for flag in FLAGS})
     except SettingsError as error:
         raise pytest.UsageError(str(error)) from None

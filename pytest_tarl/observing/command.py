@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import sys
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,6 +16,7 @@ from pytest_tarl.observing.frames import LogFile
 from pytest_tarl.observing.observer import Observer
 from pytest_tarl.observing.watching import Topics, watched
 from pytest_tarl.realros.choice import libraries
+from pytest_tarl.ros.argv import command_line
 from tarl_lint.api import analyse
 
 
@@ -69,7 +69,7 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
     imports = NodeImports(Path.cwd(), positions, stream.hook, publishes=sites.publishes, bind=stream.bind)
     if not order.mission and order.idle is None:
         observer.begin()
-    with imports, _arguments([str(order.node), *order.argv]):
+    with imports, command_line([str(order.node), *order.argv]):
         try:
             imports.run_script(order.node.resolve())
         except SystemExit as ended:
@@ -155,13 +155,3 @@ def _steps(order: Order, observer: Observer) -> Iterator[None]:
         over.set()
         if thread.is_alive():
             thread.join()
-
-
-@contextmanager
-def _arguments(argv: Sequence[str]) -> Iterator[None]:
-    before = sys.argv
-    sys.argv = list(argv)
-    try:
-        yield
-    finally:
-        sys.argv = before

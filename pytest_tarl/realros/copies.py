@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from importlib import import_module
 from types import ModuleType
 
+from pytest_tarl.ros.argv import command_line
+
 Modules = dict[str, ModuleType]
 
 
@@ -16,7 +18,7 @@ def load_copy(package: str, parts: Sequence[str], argv: Sequence[str]) -> Module
 
     `argv` is the command line that the package reads while it is imported.
     """
-    with _hidden(package), _command_line(argv):
+    with _hidden(package), command_line(argv):
         for name in (package, *(f"{package}.{part}" for part in parts)):
             import_module(name)
         return present(package)
@@ -43,13 +45,3 @@ def _hidden(package: str) -> Iterator[None]:
         yield
     finally:
         show(package, before)
-
-
-@contextmanager
-def _command_line(argv: Sequence[str]) -> Iterator[None]:
-    before = sys.argv
-    sys.argv = list(argv)
-    try:
-        yield
-    finally:
-        sys.argv = before

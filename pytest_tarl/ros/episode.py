@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, TypeVar
 
 from pytest_tarl.errors import NodeError
+from pytest_tarl.ros.argv import command_line
 from pytest_tarl.ros.bus import Bus
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.install import standins_installed
@@ -84,7 +84,7 @@ class Ros:
         """Run a node's main program until it first waits. Raises NodeError where it ends in an exception."""
         process = Process(self, name, (name, *argv))
         self.processes.append(process)
-        with _argv(process.argv):
+        with command_line(process.argv):
             self._run(process.run, run)
 
     def step(self, dt: float) -> None:
@@ -135,13 +135,3 @@ class Ros:
         if scheduler.failure is not None:
             failure, scheduler.failure = scheduler.failure, None
             raise failure
-
-
-@contextmanager
-def _argv(argv: Sequence[str]) -> Iterator[None]:
-    saved = sys.argv
-    sys.argv = list(argv)
-    try:
-        yield
-    finally:
-        sys.argv = saved

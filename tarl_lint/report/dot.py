@@ -41,18 +41,16 @@ def report(result: Result, _view: View) -> Iterator[Line]:
 
 def _graph(drawn: Picture) -> Iterator[str]:
     yield from _HEAD
-    numbers = {topic.key: f"t{number}" for number, topic in enumerate(drawn.topics)}
+    numbers = drawn.numbers()
     for topic in drawn.topics:
         yield f" {numbers[topic.key]} [label={_quoted(topic.label)}, {_TOPIC}];"
-    count = 0
     edges: list[str] = []
-    for index, (title, parts) in enumerate(drawn.files):
+    for index, (title, parts) in enumerate(drawn.boxes()):
         yield f" subgraph cluster{index} {{"
         yield f'  label={_quoted(title)}; style="rounded,filled"; color="#dddddd"; fillcolor="#f8f8f8";'
-        for part in parts:
-            yield f"  p{count} [label={_quoted(part.label)}, {_NEW if part.new else _PART}];"
-            edges.extend(_edges(part, f"p{count}", numbers))
-            count += 1
+        for name, part in parts:
+            yield f"  {name} [label={_quoted(part.label)}, {_NEW if part.new else _PART}];"
+            edges.extend(_edges(part, name, numbers))
         yield " }"
     yield from edges
     yield "}"

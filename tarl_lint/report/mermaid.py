@@ -25,17 +25,15 @@ def report(result: Result, _view: View) -> Iterator[Line]:
 def _graph(drawn: Picture) -> Iterator[str]:
     yield "flowchart LR"
     yield "  %% solid: data of the topic is published; dotted: it only decides; each way through a box is a flow"
-    numbers = {topic.key: f"t{number}" for number, topic in enumerate(drawn.topics)}
+    numbers = drawn.numbers()
     for topic in drawn.topics:
         yield f"  {numbers[topic.key]}([{_quoted(topic.label)}]):::topic"
-    count = 0
     edges: list[str] = []
-    for index, (title, parts) in enumerate(drawn.files):
+    for index, (title, parts) in enumerate(drawn.boxes()):
         yield f"  subgraph s{index} [{_quoted(title)}]"
-        for part in parts:
-            yield f"    p{count}[{_quoted(part.label)}]:::{'new' if part.new else 'part'}"
-            edges.extend(_edges(part, f"p{count}", numbers))
-            count += 1
+        for name, part in parts:
+            yield f"    {name}[{_quoted(part.label)}]:::{'new' if part.new else 'part'}"
+            edges.extend(_edges(part, name, numbers))
         yield "  end"
     yield from edges
     yield from _CLASSES

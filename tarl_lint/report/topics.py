@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import count
 from typing import Final, NamedTuple
 
 from tarl_lint.fingerprints import UNKNOWN
@@ -42,6 +43,16 @@ class Picture:
 
     files: tuple[tuple[str, tuple[Part, ...]], ...]
     topics: tuple[Topic, ...]
+
+    def numbers(self) -> dict[str, str]:
+        """Return a short name for every topic, by its key."""
+        return {topic.key: f"t{number}" for number, topic in enumerate(self.topics)}
+
+    def boxes(self) -> Iterator[tuple[str, tuple[tuple[str, Part], ...]]]:
+        """Yield each file's title and its parts, each part with a short name of its own."""
+        numbers = count()
+        for title, parts in self.files:
+            yield title, tuple((f"p{next(numbers)}", part) for part in parts)
 
 
 def picture(result: Result) -> Picture:

@@ -202,8 +202,6 @@ class Execution(Branches):
             elif known and obj.kind == "mapping" and self.content(obj) is BOTTOM:
                 self.store.put((obj, item_field(key)), ABSENT)
 
-    # --- branches -----------------------------------------------------------------------------------------
-
     # --- definitions --------------------------------------------------------------------------------------
 
     def _define(self, s: ir.Define, frame: Frame) -> bool:

@@ -46,7 +46,7 @@ def test_the_picture_is_what_is_drawn(output):
 
 
 def test_the_annotation_is_what_is_written(output):
-    (shown,) = (line for line in CI.splitlines() if line.startswith("::error"))
+    (shown,) = (line for line in CI.splitlines() if line.startswith("::") and "title=TARL" in line)
     assert shown in output("examples/shuttle/traveller.py", "--format", "github").splitlines()
 
 

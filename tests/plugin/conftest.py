@@ -21,6 +21,8 @@ for package in (tarl_lint, pytest_tarl):
 def tank(pytester: pytest.Pytester) -> pytest.Pytester:
     """A project of its own: a node, and a simulation test of it."""
     pytester.makefile(".py", keeper=NODE, test_tank=TEST)
-    # What shuffles tests, or warns that it is not set up, is asked for where it is the subject.
-    pytester.makeini("[pytest]\nfilterwarnings = error\naddopts = -p no:randomly -p no:asyncio\n")
+    # What shuffles tests, warns that it is not set up, or leaves a thread with each run is asked for where it is the
+    # subject.
+    quiet = "-p no:randomly -p no:asyncio -p no:rerunfailures"
+    pytester.makeini(f"[pytest]\nfilterwarnings = error\naddopts = {quiet}\n")
     return pytester

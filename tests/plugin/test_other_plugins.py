@@ -47,7 +47,7 @@ def expected(tank: pytest.Pytester, plain: dict[str, bytes]) -> bytes:
 
 TOOLS = {
     "pytest_timeout": ("--timeout=60",),
-    "pytest_rerunfailures": ("--reruns=2",),
+    "pytest_rerunfailures": ("-p", "rerunfailures", "--reruns=2"),
     "pytest_randomly": ("-p", "randomly"),
     "pytest_cov": ("--cov=.", "--cov-branch"),
 }
@@ -70,7 +70,7 @@ THEIRS = tuple(flag for tool, flags in TOOLS.items() if importlib.util.find_spec
 def test_the_fixture_is_the_same_beside(
     tank: pytest.Pytester, expected: bytes, flags: tuple[str, ...]
 ) -> None:
-    told = tank.runpytest(*FEW, *flags)
+    told = tank.runpytest_subprocess(*FEW, *flags)
     assert told.ret == pytest.ExitCode.OK
     assert fixture_file(tank).read_bytes() == expected
     told.stdout.fnmatch_lines(["*wrote .tarl/utility/*", "*1 passed*"])
@@ -119,7 +119,7 @@ def test_a_coroutine_that_nobody_runs_is_told(tank: pytest.Pytester) -> None:
 def test_a_mission_that_failed_is_not_run_again(tank: pytest.Pytester, mark: str) -> None:
     changed(tank, *BROKEN)
     changed(tank, "test_tank", MARK, f"{mark}{MARK}")
-    told = tank.runpytest(*FEW, "--reruns", "2")
+    told = tank.runpytest_subprocess(*FEW, "-p", "rerunfailures", "--reruns", "2")
     told.assert_outcomes(failed=1, deselected=1)
     assert "rerun" not in told.parseoutcomes()
 
@@ -158,7 +158,7 @@ def test_an_episode_that_hangs_ends_the_recording_and_is_named(tank: pytest.Pyte
 
 def covered(tank: pytest.Pytester, *flags: str) -> object:
     path = tank.path / "coverage.json"
-    tank.runpytest("--cov=.", "--cov-branch", f"--cov-report=json:{path}", "-k", "fills", *flags)
+    tank.runpytest_subprocess("--cov=.", "--cov-branch", f"--cov-report=json:{path}", "-k", "fills", *flags)
     found = json.loads(path.read_text())["files"]["keeper.py"]
     return [
         found[key] for key in ("executed_lines", "missing_lines", "executed_branches", "missing_branches")

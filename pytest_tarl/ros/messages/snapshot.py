@@ -140,6 +140,11 @@ def _copied(value: Any) -> Any:
 
 
 def _through_the_wire(message: Any) -> Any:
+    from genpy import SerializationError
+
     buffer = BytesIO()
-    message.serialize(buffer)
+    try:
+        message.serialize(buffer)
+    except SerializationError as error:
+        raise FieldError(str(error)) from error
     return type(message)().deserialize(buffer.getvalue())

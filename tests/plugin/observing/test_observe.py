@@ -25,6 +25,7 @@ STEPS = 30
 
 @pytest.fixture
 def recorded(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> Path:
+    pytester.makeini("[pytest]\naddopts = -p no:rerunfailures\n")
     pytester.path.joinpath("keeper.py").write_text(NODE)
     pytester.path.joinpath("test_tank.py").write_text(TEST)
     assert pytester.runpytest_inprocess(*RECORD).ret == 0
