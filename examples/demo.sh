@@ -5,6 +5,8 @@ set -eu
 cd "$(dirname "$0")/shuttle"
 [ -z "${BIN:-}" ] || PATH="$BIN:$PATH"
 rm -rf .tarl
+# Plugins of the development environment that the demo has no use for would be heard in it
+export PYTEST_ADDOPTS="-p no:asyncio -p no:randomly -p no:rerunfailures"
 
 # run EXPECTED COMMAND...: print, run, and stop where the exit code is not the expected one
 run() {
