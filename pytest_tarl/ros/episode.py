@@ -25,7 +25,7 @@ class Ros:
     """Nodes, their bus and their clock, for one episode.
 
     `parameters` are given to every node (`kp`, `~kp` or `/node/kp`), `remappings` are old → new names.
-    `watchdog_limit` is the wall time in seconds after which a node that does not wait is stopped.
+    `watchdog_limit` is the CPU time in seconds after which a node that does not wait is stopped.
     """
 
     def __init__(

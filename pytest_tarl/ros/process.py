@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from pytest_tarl.errors import NodeError, StuckNodeError, TarlError, UnsupportedApiError
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.scheduler import Scheduler, Spinning, Task, current_task, running_task
+from pytest_tarl.ros.watchdog import WATCHDOG
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.bus import Bus
@@ -123,8 +124,9 @@ class Process:
     def spins(self, place: blame.Place | None) -> NodeError:
         """Say that the node never waits."""
         return StuckNodeError(
-            f"Node {self.label!r} never waits: {self.ros.watchdog_limit:g} s went by while virtual time stood "
-            f"still, at {blame.describe(place)}. Call Rate.sleep(), rospy.sleep() or a spin function in that loop."
+            f"Node {self.label!r} never waits: {WATCHDOG.hanging(self.ros.watchdog_limit)} went by while virtual "
+            f"time stood still, at {blame.describe(place)}. Call Rate.sleep(), rospy.sleep() or a spin function in "
+            "that loop."
         )
 
     def _ended_in(self, error: BaseException) -> NodeError:

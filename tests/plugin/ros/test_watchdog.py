@@ -1,0 +1,71 @@
+"""Who is stopped: a node that computes without end or hangs outside of ROS, none that a busy machine lets wait."""
+
+import time
+
+import pytest
+
+from pytest_tarl.ros import watchdog
+from pytest_tarl.ros.watchdog import Spinning, Watchdog
+
+
+def _sleep(seconds: float) -> None:
+    """Let wall time go by in many short waits, as a starved thread or a polling one does."""
+    for _ in range(round(seconds / 0.02)):
+        time.sleep(0.02)
+
+
+def _compute_without_end() -> None:
+    while True:
+        pass
+
+
+def test_wall_time_alone_stops_nobody() -> None:
+    dog = Watchdog()
+    dog.arm(0.2)
+    _sleep(0.6)
+    assert not dog.disarm()
+
+
+def test_endless_computing_is_stopped() -> None:
+    dog = Watchdog()
+    dog.arm(0.1)
+    with pytest.raises(Spinning):
+        _compute_without_end()
+    assert dog.disarm()
+    assert dog.hanging(0.1) == "0.1 s of computing"
+
+
+def test_computing_between_moves_of_the_clock_stops_nobody() -> None:
+    dog = Watchdog()
+    dog.arm(0.3)
+    start = time.thread_time()
+    while time.thread_time() - start < 0.7:
+        dog.beat()
+    assert not dog.disarm()
+
+
+def test_endless_waiting_outside_of_ros_is_stopped_much_later(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(watchdog, "_PATIENCE", 3)
+    dog = Watchdog()
+    dog.arm(0.1)
+    with pytest.raises(Spinning):
+        _sleep(600)
+    assert dog.disarm()
+    assert "waiting for something outside" in dog.hanging(0.1)
+
+
+def test_debugger_may_stand_still(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(watchdog, "_PATIENCE", 1)
+    dog = Watchdog()
+    prompt = {"__name__": "pdb", "wait": _sleep}
+    dog.arm(0.1)
+    exec("def interaction():\n    wait(0.4)", prompt)
+    prompt["interaction"]()
+    assert not dog.disarm()
+
+
+def test_thread_without_a_clock_of_its_own_is_measured_by_the_process(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(watchdog, "_CLOCK_OF", None)
+    test_endless_computing_is_stopped()
