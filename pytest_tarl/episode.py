@@ -92,10 +92,13 @@ class Tarl:
         name: str | None = None,
         argv: Sequence[str] = (),
         parameters: Mapping[str, Any] | None = None,
+        entry: str | None = None,
     ) -> None:
         """Start a node: a file relative to the test's folder, run as a program. Raises NodeError when it fails.
 
-        `argv` as on its command line, remappings included; `parameters` are added to those of all nodes.
+        `entry` names the function that an entry point of `setup.py` calls, where there is one: `entry="main"` for
+        `driver = robot.driver:main`. `argv` as on its command line, remappings included; `parameters` are added to
+        those of all nodes.
         """
         path = (self._folder / script).resolve()
         if not path.is_file():
@@ -106,7 +109,10 @@ class Tarl:
         imports = self._imports
 
         def program() -> None:
-            imports.run_script(path)
+            if entry is None:
+                imports.run_script(path)
+            else:
+                imports.run_entry(path, entry)
 
         self.ros.start(program, name=name or path.stem, argv=argv)
 

@@ -126,6 +126,7 @@ def _add_observe(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     flag = observe.add_argument
     flag("node", type=Path, help="the node's script")
     flag("argv", nargs="*", metavar="-- ARGUMENT", help="what the node itself is given, after --")
+    flag("--entry", metavar="FUNCTION", help="call this function of it, as the entry point in setup.py does")
     flag(
         "--log", type=Path, default=Path(".tarl/missions.log"), help="default .tarl/missions.log; appended to"
     )
@@ -155,6 +156,7 @@ def _observe(arguments: argparse.Namespace) -> int:
     order = Order(
         node=arguments.node,
         argv=tuple(arguments.argv),
+        entry=arguments.entry,
         log=arguments.log,
         fixture=arguments.fixture,
         modules=tuple(arguments.module),

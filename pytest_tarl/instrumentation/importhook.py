@@ -7,18 +7,21 @@ from __future__ import annotations
 
 import builtins
 import contextlib
-import linecache
 import sys
 import warnings
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import lru_cache
+from importlib import import_module
 from importlib.machinery import ModuleSpec, SourceFileLoader
+from itertools import accumulate
+from operator import attrgetter
 from pathlib import Path
 from types import CodeType, FrameType, MappingProxyType, ModuleType
 from typing import Any
 
 from pytest_tarl.instrumentation.codecache import CodeCache
 from pytest_tarl.instrumentation.instrument import HOOK
+from pytest_tarl.instrumentation.launching import importable, on_search_path, restored_interpreter, shown
 from pytest_tarl.instrumentation.nodecode import NodeCode
 from pytest_tarl.instrumentation.sites import Position, Positions
 
@@ -65,9 +68,9 @@ class NodeImports:
         early = self._early()
         self._open.callback(self._warn, early)
         self._open.callback(self._forget_modules)
-        self._open.enter_context(_restored_interpreter())
+        self._open.enter_context(restored_interpreter())
         for path, text in self._overlay.items():
-            self._open.enter_context(_shown(path, text))
+            self._open.enter_context(shown(path, text))
         sys.meta_path.insert(0, self)
         self._open.callback(sys.meta_path.remove, self)
         return self
@@ -86,20 +89,38 @@ class NodeImports:
         return self._code.compile(path)
 
     def run_script(self, path: Path, name: str = "__main__") -> ModuleType:
-        """Execute a file as `python path` does, in a fresh module that `sys.modules` holds under `name`."""
+        """Execute a file as `python path` does, in a fresh module that `sys.modules` holds under `name`.
+
+        A file of a package knows its package, as under `python -m`: its relative imports work.
+        """
         __tracebackhide__ = True
+        root, full_name = importable(path)
+        package = full_name.rpartition(".")[0]
         module = ModuleType(name)
+        loader = NodeLoader(name, str(path), self)
         module.__file__ = str(path)
-        module.__loader__ = NodeLoader(name, str(path), self)
+        module.__loader__ = loader
         module.__dict__.update(__builtins__=builtins, __cached__=None)
+        if package:
+            module.__spec__ = ModuleSpec(full_name, loader, origin=str(path))
+            module.__package__ = package
         code = self.compile_file(path)
         sys.modules[name] = module
-        folder = str(path.parent)
-        if folder not in sys.path:
-            sys.path.insert(0, folder)
+        on_search_path(path.parent, root)
         self.prepare(module, path)
         exec(code, module.__dict__)  # noqa: S102 - running the node is the purpose
         return module
+
+    def run_entry(self, path: Path, entry: str) -> None:
+        """Import a file under its own name and call `entry` in it, as a `console_scripts` entry point does."""
+        __tracebackhide__ = True
+        root, name = importable(path)
+        on_search_path(root)
+        for part in accumulate(name.split("."), "{}.{}".format):
+            self._imported.add(part)
+        found = attrgetter(entry)(import_module(name))()
+        if found:
+            raise SystemExit(found)
 
     def prepare(self, module: ModuleType, path: Path) -> None:
         """Give a module what its instrumented code needs, before it is executed."""
@@ -225,27 +246,3 @@ def _tail(path: Path) -> str:
 
 def _of_tests(file: Path) -> bool:
     return file.name == "conftest.py" or file.name.startswith("test_") or file.name.endswith("_test.py")
-
-
-@contextlib.contextmanager
-def _restored_interpreter() -> Iterator[None]:
-    """Put back what a running script changes: the search path and `__main__`."""
-    path, main = list(sys.path), sys.modules["__main__"]
-    try:
-        yield
-    finally:
-        sys.path[:] = path
-        sys.modules["__main__"] = main
-
-
-@contextlib.contextmanager
-def _shown(path: Path, text: str) -> Iterator[None]:
-    """Let tracebacks and `inspect` show the text that runs, not the one on disk."""
-    before = linecache.cache.pop(str(path), None)
-    linecache.cache[str(path)] = (len(text), None, text.splitlines(keepends=True), str(path))
-    try:
-        yield
-    finally:
-        linecache.cache.pop(str(path), None)
-        if before is not None:
-            linecache.cache[str(path)] = before

@@ -26,6 +26,7 @@ class Order:
 
     node: Path
     argv: tuple[str, ...] = ()
+    entry: str | None = None  # the function that the node's entry point calls
     log: Path = Path(".tarl/missions.log")
     fixture: Path | None = None
     modules: tuple[Path, ...] = ()  # further files of the node
@@ -71,7 +72,10 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
         observer.begin()
     with imports, command_line([str(order.node), *order.argv]):
         try:
-            imports.run_script(order.node.resolve())
+            if order.entry is None:
+                imports.run_script(order.node.resolve())
+            else:
+                imports.run_entry(order.node.resolve(), order.entry)
         except SystemExit as ended:
             observer.end(passed=ended.code in (None, 0), failure=f"exit status {ended.code}")
             raise

@@ -378,3 +378,57 @@ def test_no_import_is_searched_for_twice(project, monkeypatch):
         node.run_script(project / "node.py")
         monkeypatch.undo()
     assert asked.count("gains") == 1
+
+
+@pytest.fixture
+def package(project: Path) -> Path:
+    """`robot.arm.driver`, which imports from beside and from above it."""
+    (project / "src" / "robot" / "arm").mkdir(parents=True)
+    (project / "src" / "robot" / "__init__.py").write_text("")
+    (project / "src" / "robot" / "arm" / "__init__.py").write_text("")
+    (project / "src" / "robot" / "limits.py").write_text(
+        "seen = []\n\n\ndef bound(x):\n    return min(x, 1.0)\n"
+    )
+    driver = project / "src" / "robot" / "arm" / "driver.py"
+    driver.write_text(
+        "from ..limits import bound, seen\nfrom robot import limits\n\n\n"
+        "def main():\n    seen.append(bound(3.0))\n    return len(seen) - 1\n\n\n"
+        "if __name__ == '__main__':\n    main()\n"
+    )
+    return driver
+
+
+LIMIT = {(5, 5): 0}
+
+
+def test_a_script_of_a_package_knows_its_package(project, package):
+    plan = {package.parent.parent / "limits.py": LIMIT}
+    for _ in range(2):
+        recorder = Recorder()
+        with imports(project, recorder, plan=plan) as node:
+            module = node.run_script(package)
+        assert (module.__package__, module.seen) == ("robot.arm", [1.0])
+        assert module.limits.seen is module.seen
+        assert recorded(recorder) == [(0, 1.0)]
+    assert not [name for name in sys.modules if name.startswith("robot")]
+
+
+def test_an_entry_point_is_called_in_a_module_of_its_own_name(project, package):
+    plan = {package.parent.parent / "limits.py": LIMIT, package: {(7, 5): 1}}
+    for _ in range(2):
+        recorder = Recorder()
+        with imports(project, recorder, plan=plan) as node:
+            node.run_entry(package, "main")
+            assert sys.modules["robot.arm.driver"].seen == [1.0]
+        assert recorded(recorder) == [(0, 1.0), (1, 0.0)]
+    assert not [name for name in sys.modules if name.startswith("robot")]
+
+
+def test_what_an_entry_point_returns_is_the_exit_status(project):
+    (project / "fails.py").write_text(
+        "class App:\n    @staticmethod\n    def run():\n        return 'no motor'\n"
+    )
+    with imports(project, Recorder(), plan={}) as node, pytest.raises(SystemExit, match="no motor"):
+        node.run_entry(project / "fails.py", "App.run")
+    with imports(project, Recorder(), plan={}) as node, pytest.raises(AttributeError, match="main"):
+        node.run_entry(project / "fails.py", "main")

@@ -1,0 +1,48 @@
+"""Where a node's file is imported from and under which name, and the interpreter put back once it has run."""
+
+from __future__ import annotations
+
+import contextlib
+import linecache
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+
+def importable(path: Path) -> tuple[Path, str]:
+    """Return the folder that a file is imported from and its name there: `driver`, in a package `robot.driver`."""
+    root, parts = path.parent, [path.stem]
+    while (root / "__init__.py").is_file():
+        root, parts = root.parent, [root.name, *parts]
+    return root, ".".join(parts)
+
+
+def on_search_path(*folders: Path) -> None:
+    """Let imports search these folders before all others, the first of them first."""
+    for folder in reversed(folders):
+        if str(folder) not in sys.path:
+            sys.path.insert(0, str(folder))
+
+
+@contextlib.contextmanager
+def restored_interpreter() -> Iterator[None]:
+    """Put back what a running script changes: the search path and `__main__`."""
+    path, main = list(sys.path), sys.modules["__main__"]
+    try:
+        yield
+    finally:
+        sys.path[:] = path
+        sys.modules["__main__"] = main
+
+
+@contextlib.contextmanager
+def shown(path: Path, text: str) -> Iterator[None]:
+    """Let tracebacks and `inspect` show the text that runs, not the one on disk."""
+    before = linecache.cache.pop(str(path), None)
+    linecache.cache[str(path)] = (len(text), None, text.splitlines(keepends=True), str(path))
+    try:
+        yield
+    finally:
+        linecache.cache.pop(str(path), None)
+        if before is not None:
+            linecache.cache[str(path)] = before
