@@ -5,11 +5,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pytest_tarl.episode import Tarl
+    from pytest_tarl.searching.asking import Constant, Optimiser
     from pytest_tarl.sensors import Sensor
 
-__all__ = ["Sensor", "Tarl"]
+__all__ = ["Constant", "Optimiser", "Sensor", "Tarl"]
 
-_HOMES = {"Sensor": "pytest_tarl.sensors", "Tarl": "pytest_tarl.episode"}
+_HOMES = {
+    "Constant": "pytest_tarl.searching.asking",
+    "Optimiser": "pytest_tarl.searching.asking",
+    "Sensor": "pytest_tarl.sensors",
+    "Tarl": "pytest_tarl.episode",
+}
 
 
 def __getattr__(name: str) -> Any:

@@ -43,5 +43,9 @@ class RepairError(TarlError):
     """A mutation cannot be written into the source."""
 
 
+class SearchError(TarlError):
+    """A search that was plugged in does not do what is asked of it."""
+
+
 class RefusedError(TarlError):
     """A command can be understood but would do harm as things are, so nothing was changed."""

@@ -51,10 +51,17 @@ FLAGS = (
     ),
     Flag(
         "--tarl-search",
-        "sweep (default) or epsilon-greedy; given twice, both run and the first accepted repair counts",
+        "sweep (default), halving, epsilon-greedy, or module:factory of an optimiser of your own; given twice, both "
+        "run and the first accepted repair counts",
         asks=True,
         metavar="METHOD",
         many=True,
+    ),
+    Flag(
+        "--tarl-localize",
+        "with --tarl-repair: repair (default) ends when a repair is accepted, full goes on until all sites are ranked",
+        asks=True,
+        metavar="KIND",
     ),
     Flag(
         "--tarl-budget",

@@ -209,6 +209,7 @@ class Comparison:
     searches: tuple[SearchTrace, ...] = ()
     repair: Repair | None = None
     notes: tuple[str, ...] = ()
+    ranking: str = ""  # how certain the order of the culprits is
     parts: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # part → mean off-line, on-line
     lost: Mapping[str, tuple[Cell, ...]] = field(default_factory=dict)  # part → where it earns less on-line
     target: str = ""  # the test as it is typed where pytest was started

@@ -80,6 +80,18 @@ def _options(config: pytest.Config) -> Options:
     from pytest_tarl.settings import options
 
     try:
-        return options({flag.key: config.getoption(flag.name) for flag in FLAGS})
+        chosen = options({flag.key: config.getoption(flag.name) for flag in FLAGS})
+        _look_for_plugged(config, chosen)
     except SettingsError as error:
         raise pytest.UsageError(str(error)) from None
+    return chosen
+
+
+def _look_for_plugged(config: pytest.Config, options: Options) -> None:
+    """Look for searches of the user's own now, not after all the episodes of a comparison. Raises SettingsError."""
+    named = [name for name in options.searches if ":" in name and options.mode == "repair"]
+    if named:
+        from pytest_tarl.searching.asking import factory
+
+        for name in named:
+            factory(name, (config.invocation_params.dir, config.rootpath))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
@@ -11,6 +11,7 @@ from typing import Protocol
 from pytest_tarl.instrumentation.trace import Trace
 
 AHEAD = 2  # episodes per worker that are begun before anybody asks for them
+KEPT = 6  # and that are kept though something else was asked for
 
 
 @dataclass(frozen=True)
@@ -106,3 +107,44 @@ def in_order(rollout: Rollout, plans: Iterable[EpisodePlan]) -> Iterator[Pending
     finally:
         for one in begun:
             one.cancel()
+
+
+class Ahead:
+    """Begins episodes that are foreseen, so that workers are busy while one result is looked at.
+
+    What is run for whom does not depend on it: an episode that is asked for is the same, begun before or not, and one
+    that is never asked for leaves no trace but the time it took. Keys tell episodes apart.
+    """
+
+    def __init__(self, rollout: Rollout) -> None:
+        self.rollout = rollout
+        self._foreseen: Iterator[tuple[Hashable, EpisodePlan]] = iter(())
+        self._begun: dict[Hashable, Pending] = {}
+        self._lately: set[Hashable] = set()  # begun since something was foreseen, and not asked for yet
+
+    def foresee(self, wanted: Iterable[tuple[Hashable, EpisodePlan]]) -> None:
+        """Tell what will probably be asked for next, in this order, in place of what was told before."""
+        if self.rollout.workers > 1:
+            self._foreseen, self._lately = iter(wanted), set()
+            self._begin()
+
+    def __call__(self, key: Hashable, plan: EpisodePlan) -> EpisodeRun:
+        """Run an episode, or wait for it where it was begun. Raises TarlError where it cannot be run."""
+        pending = self._begun.pop(key, None) or self.rollout.begin(plan)
+        self._lately.discard(key)
+        self._begin()
+        return pending.result()
+
+    def _begin(self) -> None:
+        while len(self._lately) < AHEAD * self.rollout.workers:
+            following = next(self._foreseen, None)
+            if following is None:
+                break
+            key, plan = following
+            if key not in self._begun:
+                self._begun[key] = self.rollout.begin(plan)
+            self._lately.add(key)
+        for key in [key for key in self._begun if key not in self._lately]:
+            if len(self._begun) <= KEPT * self.rollout.workers:
+                break
+            self._begun.pop(key).cancel()

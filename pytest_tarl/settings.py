@@ -15,7 +15,8 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.sensors import Sensor
 
 Mode = Literal["plain", "record", "online", "repair"]
-SEARCHES = ("sweep", "epsilon-greedy")
+SEARCHES = ("sweep", "halving", "epsilon-greedy")
+RANKINGS = ("repair", "full")
 UTILITIES = ("batch", "sarsa", "expected-sarsa", "td-lambda")
 ROS_KINDS = ("embedded", "real", "auto")
 MOST_EPISODES = 10**6  # that a search may spend
@@ -32,6 +33,7 @@ class Options:
     episodes: int | None = None  # overrides the marker off-line, the default on-line
     alpha: float = 0.05
     searches: tuple[str, ...] = ("sweep",)
+    localize: str = "repair"  # what ends the search: an accepted repair, or the ranking of all sites
     budget: int = 300  # episodes that a search may spend
     seconds: float | None = None  # that a search may take instead
     strict: bool = False
@@ -101,7 +103,8 @@ def options(given: Mapping[str, Any]) -> Options:
     """Check the flags of a run. Raises SettingsError with a sentence."""
     if not (given["record"] or given["online"] or given["repair"]):
         stray = next(
-            (name for name in ("drift", "search", "strict", "log", "bag", "holm") if given[name]), "drift"
+            (name for name in ("drift", "search", "localize", "strict", "log", "bag", "holm") if given[name]),
+            "drift",
         )
         raise SettingsError(f"--tarl-{stray} goes with --tarl-online, and does nothing without it.")
     if given["record"] and given["online"]:
@@ -119,7 +122,16 @@ def options(given: Mapping[str, Any]) -> Options:
         raise SettingsError("--tarl-drift goes with --tarl-online: it chooses one of the marker's drifts.")
     searches = tuple(dict.fromkeys(given["search"] or ("sweep",)))
     for name in searches:
-        _known("--tarl-search", name, SEARCHES)
+        if not re.fullmatch(
+            r"[\w.]+:\w+", name
+        ):  # an optimiser of the user's own is looked for by the session
+            _known("--tarl-search", name, (*SEARCHES, "module:factory"))
+    localize = given["localize"] or "repair"
+    _known("--tarl-localize", localize, RANKINGS)
+    if given["localize"] and not given["repair"]:
+        raise SettingsError(
+            "--tarl-localize goes with --tarl-repair: sites are ranked by what a search finds."
+        )
     _known("--tarl-utility", given["utility"], UTILITIES)
     _known("--tarl-ros", given["ros"], ROS_KINDS)
     if given["episodes"] is not None:
@@ -135,6 +147,7 @@ def options(given: Mapping[str, Any]) -> Options:
         episodes=given["episodes"],
         alpha=_number("--tarl-alpha", "it", given["alpha"], float, 1e-6, 0.5),
         searches=searches,
+        localize=localize,
         budget=budget[0],
         seconds=budget[1],
         strict=given["strict"],

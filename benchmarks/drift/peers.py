@@ -19,7 +19,7 @@ from stage import Stage
 from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
-from pytest_tarl.repairing import repair as repairing
+from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
 from pytest_tarl.searching import candidates
@@ -120,7 +120,7 @@ def peer(stage: Stage, seed: int, name: str, guarded: bool) -> dict[str, Any]:
     mutants = Mutants(order)
     guard = _first_guard(order) if guarded else candidates.ALWAYS
     trials = Trials(lambda candidate, at: mutants.run(candidate, at, order.drift), BUDGET)
-    operands = repairing.operands(order)
+    operands = strategies.operands(order)
     optimiser = OPTIMISERS[name](len(operands), seeds.generator(seed, name))
     found = None
     try:
@@ -169,6 +169,6 @@ def _turn(
 
 
 def _first_guard(order: Order) -> Guard:
-    evidence = repairing.evidence(order)
+    evidence = strategies.evidence(order)
     guards = candidates.candidate_guards(evidence)
-    return candidates.telling(guards, evidence, repairing.MOST_GUARDS)[0]
+    return candidates.telling(guards, evidence, strategies.MOST_GUARDS)[0]

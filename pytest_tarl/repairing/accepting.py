@@ -122,12 +122,15 @@ class Examiner:
         goal, offline = self.order.goal, self.order.fixture.sample
         known = dict(zip(offline.seeds, offline.total.tolist(), strict=True))
         slack = self.order.reference.mean - goal.near
+        trials.expect((candidate, pair.seed) for pair in goal.pairs[:QUICK])
         for pair in goal.pairs[:QUICK]:
             if not goal.reached(trials(candidate, pair.seed)):
                 return "gain too small"
         if trials.gain(candidate, goal.pairs[:QUICK]) < self.bar:
             return "gain too small"
-        for seed in self._firing(candidate)[:QUICK]:
+        firing = self._firing(candidate)[:QUICK]
+        self.mutants.foresee([(candidate, seed) for seed in firing], None)
+        for seed in firing:
             trials.charge()
             if self.mutants.run(candidate, seed, None).total < known[seed] - slack:
                 return "nominal gets worse"
@@ -135,19 +138,23 @@ class Examiner:
 
     def _tested(self, candidate: Candidate) -> Acceptance:
         """Test a candidate on fresh seeds, the k-th one at α/2ᵏ."""
-        order, mutants = self.order, self.mutants
+        order = self.order
         firing = len(self._firing(candidate)) / order.fixture.sample.episodes
         losing = sum(total < order.goal.near for total in order.comparison.totals["online"])
-        nominal = World(lambda seed: mutants.run(candidate, seed, None), firing) if firing else None
+        nominal = self._world(candidate, None, firing) if firing else None
         return accept(
-            World(
-                lambda seed: mutants.run(candidate, seed, order.drift),
-                losing / len(order.comparison.totals["online"]) or 1.0,
-            ),
+            self._world(candidate, order.drift, losing / len(order.comparison.totals["online"]) or 1.0),
             nominal,
             seeds.episode_seeds(order.options.seed, f"acceptance {self.tested}", LOOKS[-1]),
             order.reference,
             order.options.alpha / 2**self.tested,
+        )
+
+    def _world(self, candidate: Candidate, drift: str | None, exposure: float) -> World:
+        return World(
+            lambda seed: self.mutants.run(candidate, seed, drift),
+            exposure,
+            lambda chosen: self.mutants.foresee([(candidate, seed) for seed in chosen], drift),
         )
 
     def _firing(self, candidate: Candidate) -> tuple[int, ...]:

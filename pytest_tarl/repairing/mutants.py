@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
-from pytest_tarl.errors import TarlError
+from pytest_tarl.errors import RepairError, TarlError
 from pytest_tarl.patching.mutate import Mutation, is_integral, mutations, rewrite
 from pytest_tarl.recording import sound
 from pytest_tarl.repairing.order import Order
-from pytest_tarl.rollout import EpisodePlan, Rollout
+from pytest_tarl.rollout import Ahead, EpisodePlan, EpisodeRun, Rollout
 from pytest_tarl.searching.accept import Outcome
-from pytest_tarl.searching.search import Candidate
+from pytest_tarl.searching.search import Candidate, Wanted
 from tarl_lint.model import Operand
 
 MOST_KEPT = 128  # sources of candidates that are not written anew
 
 
 class Mutants:
-    """Writes candidates into the source and runs them."""
+    """Writes candidates into the source and runs them, where there are workers also ahead of being asked."""
 
     def __init__(self, order: Order) -> None:
         self.order = order
+        self._ahead = Ahead(order.rollout)
         self._sources: dict[Candidate, Mapping[Path, str]] = {}
 
     def mutate(self, operand: Operand, factor: float) -> Mutation | None:
@@ -38,23 +39,41 @@ class Mutants:
             self._sources[candidate] = {order.root / path: text for path, text in texts.items()}
         return self._sources[candidate]
 
+    def foresee(self, wanted: Iterable[Wanted], drift: str | None) -> None:
+        """Tell which episodes will probably be asked for next, in this order."""
+        self._ahead.foresee(self._foreseen(wanted, drift))
+
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
         """Run one episode of a candidate. Raises RepairError when it cannot be written into the source."""
-        return self.run_at(self.order.rollout, self.order.worst, candidate, seed, drift)
+        plan = EpisodePlan(seed, drift, self.source(candidate))
+        return _outcome(lambda: self._ahead((candidate, seed, drift), plan), self.order.worst)
 
-    def run_at(
-        self, rollout: Rollout, worst: float, candidate: Candidate, seed: int, drift: str | None
-    ) -> Outcome:
-        """Run one episode of a test with a candidate in its nodes; `worst` is what it earns that breaks the test.
+    def run_at(self, rollout: Rollout, worst: float, candidate: Candidate, seed: int) -> Outcome:
+        """Run one episode of another test, off-line; `worst` is what it earns that breaks that test."""
+        plan = EpisodePlan(seed, None, self.source(candidate))
+        return _outcome(lambda: rollout(plan), worst)
 
-        The test ran before, so whatever breaks it now (a node that fell silent, a reward that is no number) is the
-        candidate's doing. Such an episode, or one that the node did not live to see the end of, earns as little as the
-        worst one recorded: what it had until then says nothing.
-        """
-        source = self.source(candidate)
-        try:
-            run = sound(rollout(EpisodePlan(seed, drift, source)))
-        except TarlError:
-            return Outcome(worst, passed=False)
-        total = float(run.trace.reward.sum())
-        return Outcome(min(total, worst) if run.crashed else total, run.passed)
+    def _foreseen(
+        self, wanted: Iterable[Wanted], drift: str | None
+    ) -> Iterator[tuple[tuple[Candidate, int, str | None], EpisodePlan]]:
+        for candidate, seed in wanted:
+            try:
+                source = self.source(candidate)
+            except RepairError:
+                continue  # whoever asks for it will hear why
+            yield (candidate, seed, drift), EpisodePlan(seed, drift, source)
+
+
+def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
+    """Run an episode with a candidate in the nodes and say what it earned.
+
+    The test ran before, so whatever breaks it now (a node that fell silent, a reward that is no number) is the
+    candidate's doing. Such an episode, or one that the node did not live to see the end of, earns as little as the
+    worst one recorded: what it had until then says nothing.
+    """
+    try:
+        ended = sound(run())
+    except TarlError:
+        return Outcome(worst, passed=False)
+    total = float(ended.trace.reward.sum())
+    return Outcome(min(total, worst) if ended.crashed else total, ended.passed)

@@ -64,7 +64,7 @@ def _compared(
     sample = neighbour.fixture.sample
     recorded = [float(sample.total[at]) for at in chosen]
     outcomes = [
-        mutants.run_at(neighbour.rollout, float(sample.total.min()), candidate, sample.seeds[at], None)
+        mutants.run_at(neighbour.rollout, float(sample.total.min()), candidate, sample.seeds[at])
         for at in chosen
     ]
     failed = sum(

@@ -7,23 +7,20 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from time import monotonic
 
-from pytest_tarl import seeds
 from pytest_tarl.learning import localize
 from pytest_tarl.model import Comparison, Guard, OperandEffect, SearchTrace, SitePlace
+from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.accepting import Accepted, Examiner, Refused
 from pytest_tarl.repairing.delivering import attempts, delivered, withheld
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.sureness import sureness
 from pytest_tarl.repairing.unnamed import unnamed_modules
 from pytest_tarl.repairing.watching import Watch
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import Outcome
-from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
+from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Strategy, Trials
-from pytest_tarl.searching.sweep import Sweep
-from tarl_lint.model import Operand
-
-MOST_GUARDS = 3  # that a search runs under
 
 
 @dataclass(frozen=True)
@@ -47,19 +44,21 @@ class _Findings:
     episodes: int = 0
     interrupted: bool = False
     late: bool = False  # the time of a search was up
+    ranking: Ranking | None = None  # where all sites were ranked
 
 
 def repair(order: Order) -> Repaired:
     """Run the searches asked for; the first candidate that is accepted counts."""
     mutants = Mutants(order)
-    hints = evidence(order)
+    hints = strategies.evidence(order)
     guards = candidates.candidate_guards(hints)
+    searched = candidates.telling(guards, hints, strategies.MOST_GUARDS)
     examiner = Examiner(mutants, guards)
     watch = Watch(order)
     found = _Findings()
     for method in order.options.searches:
         trials = _trials(mutants, method, watch, found)
-        strategy = _strategy(mutants, method, candidates.telling(guards, hints, MOST_GUARDS), trials)
+        strategy = strategies.strategy(mutants, method, searched, trials)
         try:
             if found.accepted is None:
                 found.accepted = examiner.first(strategy.candidates(), trials)
@@ -73,26 +72,9 @@ def repair(order: Order) -> Repaired:
         found.episodes += trials.spent
         if found.interrupted:
             break
+    if order.options.localize == "full" and not found.interrupted:
+        _rank(mutants, found, searched[0], watch)
     return _concluded(mutants, examiner, found, watch)
-
-
-def operands(order: Order) -> tuple[Operand, ...]:
-    """Return all operands of the analysed flows, those of the sites that the slices rank first in front."""
-    rank = {culprit.site.id: i for i, culprit in enumerate(order.comparison.culprits)}
-    steps = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
-    return tuple(dict.fromkeys(o for step in steps for o in order.analysis.operands(step.site)))
-
-
-def evidence(order: Order) -> candidates.Evidence:
-    """Return what guards can be read from."""
-    comparison = order.comparison
-    return candidates.Evidence(
-        comparison.sensors,
-        order.fixture.sample,
-        order.online.recorded.sample,
-        comparison.region,
-        comparison.changes,
-    )
 
 
 def _trials(mutants: Mutants, method: str, watch: Watch, found: _Findings) -> Trials:
@@ -110,24 +92,23 @@ def _trials(mutants: Mutants, method: str, watch: Watch, found: _Findings) -> Tr
         watch.saw(candidate, seed, outcome)
         return outcome
 
-    trials = Trials(run, order.options.budget)
+    trials = Trials(run, order.options.budget, foresee=lambda wanted: mutants.foresee(wanted, order.drift))
     return trials
 
 
-def _strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Trials) -> Strategy:
-    order = mutants.order
-    if method == "sweep":
-        generator = seeds.generator(order.options.seed, method)
-        return Sweep(operands(order), mutants.mutate, guards, trials, order.goal, generator)
-    return EpsilonGreedy(
-        operands(order),
-        mutants.mutate,
-        tuple(dict.fromkeys((guards[0], candidates.ALWAYS))),
-        trials,
-        order.goal,
-        seeds.episode_seeds(order.options.seed, "search", EpsilonGreedy.episodes(trials.budget)),
-        seeds.generator(order.options.seed, method),
-    )
+def _rank(mutants: Mutants, found: _Findings, guard: Guard, watch: Watch) -> None:
+    """Go on until all sites are ranked, under the guard of the repair or else the one that tells most."""
+    if found.accepted is not None:
+        guard = found.accepted.candidate.guard
+    trials = _trials(mutants, "ranking", watch, found)
+    ranking = strategies.ranking(mutants, guard, trials)
+    try:
+        ranking.run()
+    except KeyboardInterrupt:
+        found.interrupted = True
+    found.effects, found.method, found.ranking = ranking.effects() or found.effects, "ranking", ranking
+    found.curves += (SearchTrace("ranking", tuple(trials.totals), tuple(trials.labels)),)
+    found.episodes += trials.spent
 
 
 def _exhibit(strategy: Strategy) -> None:
@@ -161,6 +142,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         if accepted
         else withheld(order, refused, history),
         notes=(*order.comparison.notes, *_notes(order, examiner, found)),
+        ranking=sureness(order, found.effects or {}, accepted, found.ranking),
     )
     episodes = {"search": found.episodes, "acceptance": examiner.spent}
     return Repaired(comparison, accepted, episodes, found.interrupted)

@@ -39,6 +39,7 @@ def _entries(
         yield "parts", list(_parts(comparison))
         yield "where", [words.region_words(comparison) or "no single situation stands out"]
         yield "lines", list(_culprits(comparison, width - LABEL - 2, root))
+        yield "ranking", [comparison.ranking] if comparison.ranking else []
         yield "slices", list(_slices(comparison, root))
     yield "repair", list(_repair(comparison))
     yield "note", list(_some([words.one_line(note) for note in comparison.notes]))

@@ -205,11 +205,12 @@ def command(comparison: Comparison, *flags: str) -> str:
 
 def repeat(comparison: Comparison) -> str:
     """Return the command that repeats all that was done, searches included."""
-    methods = [search.method for search in comparison.searches]
+    methods = [search.method for search in comparison.searches if search.method != "ranking"]
+    full = ["--tarl-localize", "full"] if len(methods) < len(comparison.searches) else []
     chosen = (
         [flag for method in methods for flag in ("--tarl-search", method)] if methods != ["sweep"] else []
     )
-    return command(comparison, *(["--tarl-repair", *chosen] if comparison.repair else []))
+    return command(comparison, *(["--tarl-repair", *chosen, *full] if comparison.repair else []))
 
 
 def next_steps(comparison: Comparison) -> Iterator[str]:

@@ -41,15 +41,21 @@ class Reference:
         return fmean(self.totals)
 
 
+def unforeseen(wanted: Sequence[object]) -> None:
+    """Begin nothing ahead."""
+
+
 @dataclass(frozen=True, slots=True)
 class World:
     """Where a candidate is run, by seed; `exposure` is the share of missions in which there is something to see.
 
-    In the drifted world those that lose without repair, in the nominal one those in which the guard holds.
+    In the drifted world those that lose without repair, in the nominal one those in which the guard holds. `foresee`
+    is told the seeds that will be asked for, unless the test ends before.
     """
 
     run: Callable[[int], Outcome]
     exposure: float = 1.0
+    foresee: Callable[[Sequence[int]], None] = unforeseen
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +84,7 @@ def accept(
     reasons: tuple[Reason, ...] = ("gain too small", "nominal gets worse")
     for world, reason in zip(worlds, reasons, strict=False):
         first = episodes_to_see(world.exposure, alpha)
+        world.foresee(seeds)
         held, outcomes = _holds(map(world.run, seeds), reference, alpha / len(LOOKS), first)
         runs.append(outcomes)
         if not held:

@@ -27,23 +27,30 @@ def screened(
 ) -> Generator[Candidate, None, tuple[Unit, ...]]:
     """Yield candidates that hold by chance; the generator's value is all units, those of the best effect first."""
     units = together.units
+    drawn = [_drawn(units, generator) for _ in range(ceil(RUNS * sqrt(len(units))))]
+    joints = [Joint(tuple((units[i], NEAR[turn]) for i, turn in one), guard) for one in drawn]
     design: list[np.ndarray] = []
     gains: list[float] = []
-    for _ in range(ceil(RUNS * sqrt(len(units)))):
-        chosen = generator.choice(len(units), AT_ONCE, replace=False).tolist()
-        turns = generator.integers(len(NEAR), size=AT_ONCE).tolist()
-        joint = Joint(tuple((units[i], NEAR[turn]) for i, turn in zip(chosen, turns, strict=True)), guard)
+    for at, (joint, moved) in enumerate(zip(joints, drawn, strict=True)):
+        together.expect(joints[at:])
         gained = yield from together.gain(joint)
         if gained is None:
             continue
         row = np.zeros(len(units) * len(NEAR))
-        row[[i * len(NEAR) + turn for i, turn in zip(chosen, turns, strict=True)]] = 1.0
+        row[[i * len(NEAR) + turn for i, turn in moved]] = 1.0
         design.append(row)
         gains.append(gained)
     if not design:
         return tuple(units)
     effects = main_effects(np.array(design), np.array(gains)).reshape(len(units), len(NEAR)).max(axis=1)
     return tuple(units[i] for i in np.argsort(-effects, kind="stable").tolist())
+
+
+def _drawn(units: Sequence[Unit], generator: np.random.Generator) -> list[tuple[int, int]]:
+    """Draw the units that a run mutates, and which way each."""
+    chosen = generator.choice(len(units), AT_ONCE, replace=False).tolist()
+    turns = generator.integers(len(NEAR), size=AT_ONCE).tolist()
+    return list(zip(chosen, turns, strict=True))
 
 
 def main_effects(design: np.ndarray, gains: np.ndarray) -> np.ndarray:

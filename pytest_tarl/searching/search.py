@@ -12,10 +12,11 @@ from typing import Protocol
 
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.patching.mutate import Mutation
-from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.accept import Outcome, unforeseen
 from tarl_lint.model import Operand
 
 Mutate = Callable[[Operand, float], Mutation | None]
+Wanted = tuple["Candidate", int]  # an episode: a candidate and the seed to run it with
 
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
 CONFIRMATIONS = 5  # further seeds that a promising candidate must hold on
@@ -65,12 +66,14 @@ class BudgetSpentError(Exception):
 class Trials:
     """Runs candidates in the drifted world, each seed once, and keeps count and history.
 
-    `beside` counts the episodes of the same budget that were run elsewhere, in the nominal world.
+    `beside` counts the episodes of the same budget that were run elsewhere, in the nominal world; `foresee` is told
+    what will probably be asked for next.
     """
 
     run: Callable[[Candidate, int], Outcome]
     budget: int
     beside: int = 0
+    foresee: Callable[[Sequence[Wanted]], None] = unforeseen
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
@@ -85,6 +88,11 @@ class Trials:
             self.totals.append(self._known[key].total)
             self.labels.append(label(candidate))
         return self._known[key]
+
+    def expect(self, wanted: Iterable[Wanted]) -> None:
+        """Tell which episodes will probably be asked for next, in this order: workers may begin them."""
+        left = max(self.budget - self.spent, 0)
+        self.foresee([one for one in wanted if one not in self._known][:left])
 
     def charge(self) -> None:
         """Count an episode that is about to be run elsewhere. Raises BudgetSpentError."""
@@ -145,6 +153,7 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
     """
     others = [goal.pairs[(first + i) % len(goal.pairs)] for i in range(1, len(goal.pairs))][:CONFIRMATIONS]
     outcomes: list[Outcome] = []
+    trials.expect((candidate, pair.seed) for pair in others)
     for pair in others:
         outcomes.append(trials(candidate, pair.seed))
         if sum(not goal.reached(outcome) for outcome in outcomes) > 1:

@@ -8,7 +8,7 @@ the way there, the most gaining first. Where no operand suffices, those that gai
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import sqrt
 from typing import TYPE_CHECKING
 
@@ -106,7 +106,8 @@ class Sweep:
         """Try one factor on several operands, then refine what gains most."""
         pair = self._turn % len(self.goal.pairs)
         self._turn += 1
-        for unit in among:
+        for at, unit in enumerate(among):
+            self._expect([(each, guard, factor) for each in among[at:]], pair)
             yield from self._try(unit, guard, factor, pair)
         if 0.0 < factor < 1.0:
             for unit in self._leading(factor, guard, self.slack)[:FLIPPED]:
@@ -144,6 +145,12 @@ class Sweep:
             if holds:
                 yield candidate
 
+    def _expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
+        """Tell what is tried next, unless something comes between."""
+        seed = self.goal.pairs[pair].seed
+        candidates = [Candidate(unit.mutations(self.mutate, factor), guard) for unit, guard, factor in tries]
+        self.trials.expect((one, seed) for one in candidates if one.mutations and one not in self._tried)
+
     def _near(self, candidate: Candidate, pair: int) -> bool | None:
         """Run a candidate once; None where it cannot be written into the source."""
         try:
@@ -171,10 +178,16 @@ class Sweep:
             return
         ordered = [min(gains) / OUTWARD**2, *sorted(gains), max(gains) * OUTWARD**2]
         place = ordered.index(factor)
-        for neighbour in (ordered[place - 1], ordered[place + 1]):
-            if max(factor, neighbour) > FINEST * min(factor, neighbour):
-                self._refined[best] += 1
-                yield from self._try(*best, round(sqrt(factor * neighbour), 3), pair)
+        around = [
+            one
+            for one in (ordered[place - 1], ordered[place + 1])
+            if max(factor, one) > FINEST * min(factor, one)
+        ]
+        between = [round(sqrt(factor * neighbour), 3) for neighbour in around]
+        self._expect([(*best, one) for one in between], pair)
+        for one in between:
+            self._refined[best] += 1
+            yield from self._try(*best, one, pair)
 
     def _together(self) -> Iterator[Candidate]:
         """Add others to what gains most."""

@@ -68,7 +68,9 @@ class Together:
         gain = yield from self.gain(base)
         while gain is not None and len(base.parts) < MOST:
             better, most = base, gain
-            for wider in self._with_another(base):
+            widened = list(self._with_another(base))
+            self.expect(widened)
+            for wider in widened:
                 gained = yield from self.gain(wider)
                 if gained is not None and gained > most:
                     better, most = wider, gained
@@ -84,6 +86,7 @@ class Together:
         while base is not None and len(base.parts) < MOST:
             joints = [base.with_part(*part) for part in parts[: LEADERS + 1] if part not in base.parts]
             base = None
+            self.expect(joints)
             for joint in joints:
                 gained = yield from self.gain(joint)
                 if gained is not None and (best is None or gained > best[1]):
@@ -92,6 +95,11 @@ class Together:
                 break  # two suffice here, though not on fresh seeds: better values help, not more parts
         if best is not None and best[1] > PROMISING * needed:
             yield from self._balanced(*best)
+
+    def expect(self, joints: Sequence[Joint]) -> None:
+        """Tell which joint candidates are run next, unless something comes between."""
+        seed = self.goal.pairs[0].seed
+        self.trials.expect((joint.candidate(self.mutate), seed) for joint in joints)
 
     def gain(self, joint: Joint) -> Generator[Candidate, None, float | None]:
         """Run a joint candidate once and return its gain, None where it cannot run; hand it on when it holds."""

@@ -38,6 +38,7 @@ OFF: Mapping[str, Any] = {
     "report_log": None,
     "stepwise": False,
     "tarl_cluster": None,
+    "tarl_search": None,
     "tarl_workers": "1",
     "trace": False,
     "tx": [],

@@ -28,6 +28,7 @@ FLAGS: dict[str, Any] = {
     "log": None,
     "bag": None,
     "holm": False,
+    "localize": None,
     "looks": None,
     "strict": False,
 }

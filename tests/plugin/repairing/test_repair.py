@@ -186,3 +186,75 @@ def test_a_module_that_the_marker_does_not_name_is_named(tank: pytest.Pytester) 
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     told = " ".join(tank.runpytest(*REPAIR, "--tarl-budget=20").stdout.str().split())
     assert "a flow passes gains.py at keeper.py:22, and the marker does not name that file" in told
+
+
+OWN = """
+import random
+
+
+class Draws:
+    batch = 3
+
+    def __init__(self, constants, seed):
+        self.constants, self.draws = constants, random.Random(seed)
+
+    def ask(self):
+        return [2.0 ** self.draws.uniform(-3, 3) for _ in self.constants]
+
+    def tell(self, factors, gain):
+        with open("told", "a") as file:
+            print(factors, gain, file=file)
+"""
+
+
+def test_a_search_of_the_users_own_is_asked_and_told_the_same_each_time(tank: pytest.Pytester) -> None:
+    tank.makepyfile(mine=OWN)
+    tank.runpytest(*RECORD)
+    told = tank.path / "told"
+    tank.runpytest(*REPAIR, "--tarl-search=mine:Draws").assert_outcomes(failed=1, deselected=1)
+    assert result(tank)["repair"]["accepted"]
+    first, found = told.read_text(), result(tank)
+    told.unlink()
+    tank.runpytest(*REPAIR, "--tarl-search=mine:Draws")
+    assert told.read_text() == first
+    assert result(tank) == found
+
+
+def test_a_search_that_is_nowhere_is_said_before_anything_runs(tank: pytest.Pytester) -> None:
+    done = tank.runpytest(*REPAIR, "--tarl-search=nowhere:Draws")
+    assert done.ret == pytest.ExitCode.USAGE_ERROR
+    done.stderr.fnmatch_lines(["*--tarl-search=nowhere:Draws: No module named 'nowhere'*"])
+
+
+def test_a_search_that_fails_is_the_tests_problem_in_one_sentence(tank: pytest.Pytester) -> None:
+    tank.makepyfile(mine="class Silent:\n    def __init__(self, constants, seed):\n        pass\n")
+    tank.runpytest(*RECORD)
+    done = tank.runpytest(*REPAIR, "--tarl-search=mine:Silent")
+    done.assert_outcomes(failed=1, deselected=1)
+    done.stdout.fnmatch_lines(["*what it made, Silent, has no method ask and no tell*"])
+
+
+def test_a_full_ranking_goes_on_after_the_repair_and_says_how_certain_it_is(tank: pytest.Pytester) -> None:
+    tank.runpytest(*RECORD)
+    done = tank.runpytest(*REPAIR)
+    alone, told = result(tank), " ".join(done.stdout.str().split())
+    assert "lines were simulated, most of them in few runs (--tarl-localize=full ranks all)" in told
+    done = tank.runpytest(*REPAIR, "--tarl-localize=full")
+    full, told = result(tank), " ".join(done.stdout.str().split())
+    assert full["repair"]["edits"] == alone["repair"]["edits"]
+    assert full["repair"]["guard"] == alone["repair"]["guard"]
+    assert full["episodes"]["search"] > alone["episodes"]["search"]
+    assert re.search(
+        r"ranking the repair of the first held on \d+ fresh seeds; 2 of 2 lines .* common seeds\)", told
+    )
+    assert "--tarl-repair --tarl-localize full" in told
+    assert {one["method"] for one in full["culprits"] if one["operands"]} == {"ranking"}
+    (page,) = tank.path.glob(".tarl/report/*.html")
+    assert "How certain: the repair of the first held on" in page.read_text()
+
+
+def test_localize_takes_its_kinds_and_goes_with_a_repair(tank: pytest.Pytester) -> None:
+    done = tank.runpytest(*ONLINE, "--tarl-localize=full")
+    done.stderr.fnmatch_lines(["*--tarl-localize goes with --tarl-repair*"])
+    done = tank.runpytest(*REPAIR, "--tarl-localize=ful")
+    done.stderr.fnmatch_lines(["*did you mean 'full'?*"])

@@ -48,6 +48,8 @@ def reward(mutation: Mutation | None, seed: int) -> float:
         factor = float(mutation.value) / 2.0
     elif mutation is not None and mutation.operand == BIAS:
         return -5.0 + noise
+    if factor <= 0.0:
+        return -9.0 + noise
     return OFFLINE - 6.0 * abs(math.log(NEEDED / factor)) + noise
 
 

@@ -1,0 +1,69 @@
+"""The searches by name, and what each of them is given: operands in order, guards, a generator of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from pytest_tarl import seeds
+from pytest_tarl.model import Guard
+from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.repairing.order import Order
+from pytest_tarl.searching import candidates
+from pytest_tarl.searching.asking import Asking, factory
+from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
+from pytest_tarl.searching.halving import Halving
+from pytest_tarl.searching.ranking import Ranking
+from pytest_tarl.searching.search import Strategy, Trials
+from pytest_tarl.searching.sweep import Sweep
+from tarl_lint.model import Operand
+
+MOST_GUARDS = 3  # that a search runs under
+
+
+def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Trials) -> Strategy:
+    """Return the search of that name. Raises SearchError, SettingsError where one was plugged in and is none."""
+    order = mutants.order
+    generator = seeds.generator(order.options.seed, method)
+    if method == "sweep":
+        return Sweep(operands(order), mutants.mutate, guards, trials, order.goal, generator)
+    if method == "halving":
+        return Halving(operands(order), mutants.mutate, guards, trials, order.goal)
+    if method == "epsilon-greedy":
+        return EpsilonGreedy(
+            operands(order),
+            mutants.mutate,
+            tuple(dict.fromkeys((guards[0], candidates.ALWAYS))),
+            trials,
+            order.goal,
+            seeds.episode_seeds(order.options.seed, "search", EpsilonGreedy.episodes(trials.budget)),
+            generator,
+        )
+    chief = guards[: 2 if guards[0].conjuncts else 1]
+    seed = int(generator.integers(1, 2**31))
+    make = factory(method, (Path.cwd(), order.root))
+    return Asking(method, make, operands(order), mutants.mutate, chief, trials, order.goal, seed)
+
+
+def ranking(mutants: Mutants, guard: Guard, trials: Trials) -> Ranking:
+    """Return what ranks all sites."""
+    return Ranking(operands(mutants.order), mutants.mutate, guard, trials, mutants.order.goal)
+
+
+def operands(order: Order) -> tuple[Operand, ...]:
+    """Return all operands of the analysed flows, those of the sites that the slices rank first in front."""
+    rank = {culprit.site.id: i for i, culprit in enumerate(order.comparison.culprits)}
+    steps = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
+    return tuple(dict.fromkeys(o for step in steps for o in order.analysis.operands(step.site)))
+
+
+def evidence(order: Order) -> candidates.Evidence:
+    """Return what guards can be read from."""
+    comparison = order.comparison
+    return candidates.Evidence(
+        comparison.sensors,
+        order.fixture.sample,
+        order.online.recorded.sample,
+        comparison.region,
+        comparison.changes,
+    )

@@ -1,0 +1,56 @@
+"""How certain the ranking of the sites is, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from pytest_tarl.model import OperandEffect
+from pytest_tarl.repairing.accepting import Accepted
+from pytest_tarl.repairing.order import Order
+from pytest_tarl.report import words
+from pytest_tarl.searching.race import CONFIDENCE
+from pytest_tarl.searching.ranking import Ranking
+
+
+def sureness(
+    order: Order,
+    effects: Mapping[str, Sequence[OperandEffect]],
+    accepted: Accepted | None,
+    ranking: Ranking | None,
+) -> str:
+    """Say what the ranking rests on; empty where nothing was simulated."""
+    if not effects:
+        return ""
+    sites = len({step.site for step in order.analysis.sites})
+    places = (
+        list(dict.fromkeys(str(m.operand.site) for m in accepted.candidate.mutations)) if accepted else []
+    )
+    held = len(accepted.acceptance.drifted) if accepted else 0
+    if len(places) > 1:
+        first = f"the first {len(places)} were repaired together, which held on {held} fresh seeds"
+    elif places:
+        first = f"the repair of the first held on {held} fresh seeds"
+    else:
+        first = "no repair confirms the first"
+    if ranking is None:
+        simulated = f"{len(effects)} of {sites} lines were simulated, most of them in few runs"
+        return f"{first}; {simulated} (--tarl-localize=full ranks all)"
+    cut = "" if ranking.whole else "; the budget ended before all were ranked"
+    return f"{first}; {_raced(ranking, places, effects)}{cut}"
+
+
+def _raced(ranking: Ranking, places: Sequence[str], effects: Mapping[str, Sequence[OperandEffect]]) -> str:
+    first = places[0] if places else max(effects, key=lambda site: max(one.effect for one in effects[site]))
+    found = ranking.certainty(first) if len(places) < 2 else None
+    if found is None:
+        return f"alone, {len(effects)} lines were simulated with every factor"
+    told = f"{found.gaining} of {len(effects)} lines with constants gain anything alone"
+    if found.by is None:
+        return told
+    low, high = found.by
+    span = f"{words.signed(low)} to {words.signed(high)} an episode, {CONFIDENCE:.0%}, {found.seeds} common seeds"
+    if found.ahead:
+        return f"{told}; {found.ahead} gain more than it in the drifted world ({span})"
+    if found.level:
+        return f"{told}; {found.level} cannot be told from it (the next: {span})"
+    return f"{told}; it is ahead of the next ({span})"

@@ -1,0 +1,96 @@
+"""Sequential halving: every operand by every factor, half of them dropped after each round of common seeds.
+
+Beside the halves go those that gain nothing and those that the paired race shows to be behind; the best are refined
+between the rounds (Karnin, Koren & Somekh 2013; the race as in Maron & Moore 1994). What it is good for: it tries
+everything once before it decides, and so costs as many episodes as there are operands times factors, and more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.searching.race import Arm, Race
+from pytest_tarl.searching.search import FACTORS, Candidate, Goal, Mutate, Trials, confirmed, operand_effect
+from pytest_tarl.searching.together import Joint, Together
+from pytest_tarl.searching.units import units
+from tarl_lint.model import Operand
+
+ROUNDS = (1, 2, 4, 8)  # seeds that an arm has run on, after each round
+REFINED = 3  # arms that are refined between two rounds
+SLACK = 0.1  # share of the loss that counts as a gain
+
+
+class Halving:
+    """Sequential halving with local refinement and a paired race, under one guard after the other."""
+
+    def __init__(
+        self,
+        operands: Sequence[Operand],
+        mutate: Mutate,
+        guards: Sequence[Guard],
+        trials: Trials,
+        goal: Goal,
+    ) -> None:
+        self.units = units(operands)
+        self.guards = guards
+        self.goal = goal
+        self.slack = SLACK * max(goal.enough - goal.online, 0.0)
+        self.race = Race(mutate, trials, goal.pairs)
+        self._confirmed: set[Candidate] = set()
+
+    def candidates(self) -> Iterator[Candidate]:
+        """Yield candidates that hold on every seed they were tried on, round by round."""
+        for guard in self.guards:
+            arms = [Arm(unit, factor, guard) for factor in FACTORS for unit in self.units]
+            for seeds in ROUNDS:
+                self.race.run(arms, seeds)
+                yield from self._holding(arms)
+                arms = self._kept(arms)
+            yield from self._together(guard)
+
+    def effects(self) -> dict[str, list[OperandEffect]]:
+        """Return, per site, what each operand's best arm gained over the unmutated runs of the same seeds."""
+        return arm_effects(self.race)
+
+    def _holding(self, arms: Sequence[Arm]) -> Iterator[Candidate]:
+        """Confirm what came near on all seeds of the round, best first."""
+        race = self.race
+        for arm in race.ranked(arms):
+            candidate = arm.candidate(race.mutate)
+            if candidate is None or candidate in self._confirmed:
+                continue
+            run = [pair for pair in self.goal.pairs if pair.seed in race.gains[arm]]
+            if all(self.goal.reached(race.trials(candidate, pair.seed)) for pair in run):
+                self._confirmed.add(candidate)
+                if confirmed(candidate, race.trials, self.goal, 0):
+                    yield candidate
+
+    def _kept(self, arms: Sequence[Arm]) -> list[Arm]:
+        """Return the better half of what gains and is not surely behind, and what lies around the best of it."""
+        gaining = [arm for arm in self.race.abreast(arms) if self.race.gain(arm) > self.slack]
+        kept = gaining[: (len(gaining) + 1) // 2]
+        return list(dict.fromkeys([*kept, *(one for arm in kept[:REFINED] for one in self.race.around(arm))]))
+
+    def _together(self, guard: Guard) -> Iterator[Candidate]:
+        """Where no operand suffices: join the best with others."""
+        race = self.race
+        ranked = race.ranked(arm for arm in race.gains if arm.guard == guard)
+        if ranked and race.gain(ranked[0]) > self.slack:
+            gains = {unit: {a.factor: race.gain(a) for a in ranked if a.unit == unit} for unit in self.units}
+            joining = Together(self.units, race.mutate, race.trials, self.goal, gains, self.slack)
+            yield from joining.candidates(Joint(((ranked[0].unit, ranked[0].factor),), guard))
+
+
+def arm_effects(race: Race) -> dict[str, list[OperandEffect]]:
+    """Return, per site, what each operand gained at its best; of equals the one that was tried first."""
+    best: dict[Operand, OperandEffect] = {}
+    for arm in race.gains:
+        for mutation in arm.unit.mutations(race.mutate, arm.factor):
+            gain = race.gain(arm)
+            if mutation.operand not in best or gain > best[mutation.operand].effect:
+                best[mutation.operand] = operand_effect(mutation, gain)
+    found: dict[str, list[OperandEffect]] = {}
+    for operand, effect in best.items():
+        found.setdefault(str(operand.site), []).append(effect)
+    return found

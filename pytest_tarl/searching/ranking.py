@@ -1,0 +1,131 @@
+"""The full ranking: what every site can gain, and how surely one is ahead of another.
+
+Every operand takes every factor once, the best of each site are refined, and then they race on common seeds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from statistics import fmean
+
+from pytest_tarl.learning.intervals import mean_bounds
+from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.searching.halving import SLACK, arm_effects
+from pytest_tarl.searching.race import CONFIDENCE, LEAST, Arm, Race, behind, paired
+from pytest_tarl.searching.search import FACTORS, BudgetSpentError, Goal, Mutate, Trials
+from pytest_tarl.searching.units import NEAR, units
+from tarl_lint.model import Operand, SiteId
+
+FLIP = -1.0
+OF_A_SITE = 2  # arms of a site that race
+SEEDS = 8  # that they race on
+
+
+@dataclass(frozen=True, slots=True)
+class Certainty:
+    """How surely the first site is ahead of all others.
+
+    `by` is the interval, at `CONFIDENCE`, of what it gains more than the next one, on `seeds` common seeds; None where
+    these are too few. `level` other sites cannot be told from it, `ahead` gain surely more; `gaining` gain at all.
+    """
+
+    gaining: int
+    level: int
+    ahead: int
+    by: tuple[float, float] | None
+    seeds: int
+
+
+class Ranking:
+    """Ranks all sites under one guard."""
+
+    def __init__(
+        self, operands: Sequence[Operand], mutate: Mutate, guard: Guard, trials: Trials, goal: Goal
+    ) -> None:
+        self.units = units(operands)
+        self.guard = guard
+        self.goal = goal
+        self.slack = SLACK * max(goal.enough - goal.online, 0.0)
+        self.race = Race(mutate, trials, goal.pairs)
+        self.whole = False
+
+    def run(self) -> None:
+        """Run the ranking; where the budget ends first, it is as good as it got."""
+        try:
+            self._sweep()
+            self._race()
+            self.whole = True
+        except BudgetSpentError:
+            pass
+
+    def effects(self) -> dict[str, list[OperandEffect]]:
+        """Return, per site, what each operand gained at its best."""
+        return arm_effects(self.race)
+
+    def certainty(self, first: str) -> Certainty | None:
+        """Say how surely a site, named by its id, is the first; None where it was not run."""
+        arms = {str(site): arm for site, arm in self._best().items()}
+        if first not in arms:
+            return None
+        gains = self.race.gains
+        lead, others = (
+            gains[arms[first]],
+            self.race.ranked(arm for site, arm in arms.items() if site != first),
+        )
+        differences = paired(lead, gains[others[0]]) if others else []
+        ahead = [arm for arm in others if behind(lead, gains[arm])]
+        level = [
+            arm
+            for arm in others
+            if arm not in ahead and self.race.gain(arm) > self.slack and not behind(gains[arm], lead)
+        ]
+        return Certainty(
+            sum(self.race.gain(arm) > self.slack for arm in arms.values()),
+            len(level),
+            len(ahead),
+            mean_bounds(differences, CONFIDENCE) if len(differences) >= LEAST else None,
+            len(differences),
+        )
+
+    def _sweep(self) -> None:
+        """Let every operand take every factor on the first seed; what never moves the reward, the near ones only."""
+        for at, factor in enumerate((*FACTORS, FLIP)):
+            moving = self.units if at < len(NEAR) else [unit for unit in self.units if self._moves(unit)]
+            self.race.run([Arm(unit, factor, self.guard) for unit in moving], 1)
+        best = self._best().values()
+        self.race.run(
+            [one for arm in best if self.race.gain(arm) > self.slack for one in self.race.around(arm)], 1
+        )
+
+    def _moves(self, unit: object) -> bool:
+        return any(
+            gain != 0.0 for arm, seen in self.race.gains.items() if arm.unit == unit for gain in seen.values()
+        )
+
+    def _race(self) -> None:
+        """Race the best of each site: the field on a few seeds, what gains on them all."""
+        for seeds in (LEAST, SEEDS):
+            field = [
+                arm
+                for site in self._best()
+                for arm in self.race.ranked(self._of(site))[: OF_A_SITE if seeds == LEAST else 1]
+                if self.race.gain(arm) > self.slack
+            ]
+            self.race.run(field, seeds)
+
+    def _best(self) -> Mapping[SiteId, Arm]:
+        """Return the best arm of every site; what ran on more seeds goes before what was lucky on one."""
+        best: dict[SiteId, Arm] = {}
+        for arm in self.race.gains:
+            site = arm.unit.operands[0].site
+            if site not in best or self._standing(arm) > self._standing(best[site]):
+                best[site] = arm
+        return best
+
+    def _standing(self, arm: Arm) -> tuple[int, float]:
+        gains = self.race.gains[arm]
+        return len(gains), fmean(gains.values())
+
+    def _of(self, site: SiteId) -> list[Arm]:
+        return [arm for arm in self.race.gains if arm.unit.operands[0].site == site]

@@ -1,0 +1,186 @@
+"""Searches that are plugged in: what they are asked, what they are told, what is said of those that are none."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pytest_tarl.errors import SearchError, SettingsError
+from pytest_tarl.patching.mutate import mutations
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.asking import Asking, Constant, factory
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
+from tests.plugin.searching.test_search import GAIN, GOAL, NEEDED, OPERANDS, reward, run
+
+
+class Grid:
+    """Moves one constant after the other; of use to tests since it draws nothing."""
+
+    def __init__(self, constants: Sequence[Constant], seed: int) -> None:
+        self.constants = constants
+        self.seed = seed
+        self.points = [
+            [factor if i == at else 1.0 for i in range(len(constants))]
+            for factor in (2.0, 3.0, 0.4)
+            for at in range(len(constants))
+        ]
+        self.told: list[tuple[Sequence[float], float]] = []
+
+    def ask(self) -> Sequence[float]:
+        if not self.points:
+            raise StopIteration
+        return self.points.pop(0)
+
+    def tell(self, factors: Sequence[float], gain: float) -> None:
+        self.told.append((factors, gain))
+
+
+def asking(make: Any, trials: Trials) -> Asking:
+    return Asking("own:search", make, OPERANDS, mutations, (ALWAYS,), trials, GOAL, seed=7)
+
+
+def test_an_optimiser_is_told_of_the_constants_and_of_what_its_factors_gained() -> None:
+    made: list[Grid] = []
+
+    def make(constants: Sequence[Constant], seed: int) -> Grid:
+        made.append(Grid(constants, seed))
+        return made[0]
+
+    found = next(asking(make, Trials(run, 100)).candidates())
+    assert [mutation.operand for mutation in found.mutations] == [GAIN]
+    (grid,) = made
+    assert grid.seed == 7
+    assert grid.constants[-1] == Constant("node.py", 3, "2.0", 2.0)
+    by_point = {tuple(point): gain for point, gain in grid.told}
+    assert by_point[1.0, 2.0, 1.0] == pytest.approx(0.0, abs=1e-12)  # the same seed, so no noise is left
+    assert by_point[1.0, 1.0, 2.0] == pytest.approx(6 * math.log(2.0))
+
+
+def test_what_a_repair_does_not_need_is_left_out() -> None:
+    class All(Grid):
+        def ask(self) -> Sequence[float]:
+            return [1.0, 1.7, NEEDED]
+
+    def last(candidate: Candidate, seed: int) -> Outcome:
+        return run(Candidate(candidate.mutations[-1:], candidate.guard), seed)
+
+    search = asking(All, Trials(last, 100))
+    found = next(search.candidates())
+    assert [mutation.operand for mutation in found.mutations] == [GAIN]
+    assert list(search.effects()) == [str(GAIN.site)]
+
+
+def test_a_batch_is_asked_for_before_any_of_it_is_told() -> None:
+    seen: list[str] = []
+
+    class Batch(Grid):
+        batch = 3
+
+        def ask(self) -> Sequence[float]:
+            seen.append("ask")
+            return super().ask()
+
+        def tell(self, factors: Sequence[float], gain: float) -> None:
+            seen.append("tell")
+
+    foreseen: list[int] = []
+    trials = Trials(run, 100, foresee=lambda wanted: foreseen.append(len(wanted)))
+    next(asking(Batch, trials).candidates())
+    assert seen[:6] == ["ask"] * 3 + ["tell"] * 3
+    assert foreseen[0] == 3
+
+
+def test_an_optimiser_that_has_no_more_to_propose_ends_the_search() -> None:
+    def never(candidate: Candidate, seed: int) -> Outcome:
+        return Outcome(reward(None, seed), passed=False)
+
+    trials = Trials(never, 100)
+    assert list(asking(Grid, trials).candidates()) == []
+    assert trials.spent < 100
+
+
+def test_an_optimiser_that_proposes_nothing_new_ends_the_search_too() -> None:
+    class Still(Grid):
+        def ask(self) -> Sequence[float]:
+            return [1.0, 1.0, 1.0]
+
+    trials = Trials(run, 100)
+    assert list(asking(Still, trials).candidates()) == []
+    assert trials.spent == 0
+
+
+def test_a_spent_budget_ends_it_even_within_a_batch() -> None:
+    class Away(Grid):
+        batch = 5
+
+        def ask(self) -> Sequence[float]:
+            self.turn = getattr(self, "turn", 0) + 1
+            return [2.0 + self.turn, 1.0, 1.0]
+
+    trials = Trials(run, 12)
+    with pytest.raises(BudgetSpentError):
+        list(asking(Away, trials).candidates())
+    assert trials.spent == 12
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ([1.0], "a finite factor for each of the 3 constants"),
+        ([1.0, 1.0, math.nan], "a finite factor for each of the 3 constants"),
+        (["one", 1.0, 1.0], r"ask\(\) ended in ValueError"),
+        (None, r"ask\(\) ended in TypeError"),
+    ],
+)
+def test_a_proposal_that_is_none_is_said(asked: Any, words: str) -> None:
+    class Wrong(Grid):
+        def ask(self) -> Sequence[float]:
+            return asked  # type: ignore[no-any-return]
+
+    with pytest.raises(SearchError, match=words):
+        next(asking(Wrong, Trials(run, 10)).candidates())
+
+
+def test_what_fails_in_the_plug_in_is_named_with_its_line() -> None:
+    class Broken(Grid):
+        def tell(self, factors: Sequence[float], gain: float) -> None:
+            raise ZeroDivisionError("by nothing")
+
+    with pytest.raises(
+        SearchError, match=r"tell\(\) ended in ZeroDivisionError: by nothing \(test_asking.py, line"
+    ):
+        next(asking(Broken, Trials(run, 10)).candidates())
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda constants, seed: object(), "no method ask and no tell"),
+        (lambda constants: None, "its factory ended in TypeError"),
+        (type("Odd", (Grid,), {"batch": 0}), "batch must be a whole number"),
+    ],
+)
+def test_what_is_no_optimiser_is_said(make: Any, words: str) -> None:
+    with pytest.raises(SearchError, match=words):
+        asking(make, Trials(run, 10))
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("nowhere_to_be_found:Search", "No module named 'nowhere_to_be_found'"),
+        ("mine:Serach", "mine has no 'Serach'"),
+        ("mine:NUMBER", "not a function or a class"),
+        ("torn:Search", r"torn cannot be imported: NameError: .* \(torn.py, line 1\)"),
+    ],
+)
+def test_a_name_that_leads_nowhere_is_said(tmp_path: Path, name: str, words: str) -> None:
+    (tmp_path / "mine.py").write_text("NUMBER = 3\n")
+    (tmp_path / "torn.py").write_text("nothing\n")
+    with pytest.raises(SettingsError, match=words):
+        factory(name, (tmp_path,))

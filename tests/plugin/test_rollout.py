@@ -1,0 +1,89 @@
+"""Episodes that are begun ahead of being asked for: the same ones, and never more than asked for plus a few."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import pytest
+
+from pytest_tarl.rollout import AHEAD, KEPT, Ahead, EpisodePlan
+
+
+@dataclass
+class Answer:
+    """An episode whose result is its seed."""
+
+    crew: Crew
+    seed: int
+
+    def result(self) -> Any:
+        return self.seed
+
+    def cancel(self) -> bool:
+        self.crew.cancelled.append(self.seed)
+        return True
+
+
+@dataclass
+class Crew:
+    """A rollout that keeps what was begun and what was cancelled."""
+
+    workers: int
+    begun: list[int] = field(default_factory=list)
+    cancelled: list[int] = field(default_factory=list)
+
+    def begin(self, plan: EpisodePlan) -> Any:
+        self.begun.append(plan.seed)
+        return Answer(self, plan.seed)
+
+    def __call__(self, plan: EpisodePlan) -> Any:
+        return self.begin(plan).result()
+
+
+def plans(*seeds: int) -> Iterator[tuple[int, EpisodePlan]]:
+    return ((seed, EpisodePlan(seed)) for seed in seeds)
+
+
+@pytest.mark.parametrize("workers", [1, 2, 5])
+def test_who_asks_gets_the_same_whatever_was_foreseen(workers: int) -> None:
+    ahead: Any = Ahead(Crew(workers))
+    got = []
+    for seed in (3, 1, 4, 1, 5):
+        ahead.foresee(plans(9, seed, 2, 6))
+        got.append(ahead(seed, EpisodePlan(seed)))
+    assert got == [3, 1, 4, 1, 5]
+
+
+def test_one_at_a_time_nothing_is_begun_before_it_is_asked_for() -> None:
+    crew = Crew(1)
+    ahead: Any = Ahead(crew)
+    ahead.foresee(plans(1, 2, 3))
+    assert crew.begun == []
+    ahead(2, EpisodePlan(2))
+    assert crew.begun == [2]
+
+
+def test_as_many_are_begun_as_keep_the_workers_busy_and_each_once() -> None:
+    crew = Crew(2)
+    ahead: Any = Ahead(crew)
+    ahead.foresee(plans(*range(20)))
+    assert crew.begun == list(range(AHEAD * 2))
+    for seed in range(3):
+        ahead(seed, EpisodePlan(seed))
+    assert crew.begun == list(range(AHEAD * 2 + 3))
+
+
+def test_what_was_begun_is_kept_for_later_and_what_nobody_asks_for_is_cancelled_at_last() -> None:
+    crew = Crew(2)
+    ahead: Any = Ahead(crew)
+    ahead.foresee(plans(1, 2, 3))
+    ahead.foresee(plans(11, 12))
+    ahead(11, EpisodePlan(11))
+    ahead(1, EpisodePlan(1))
+    assert crew.begun.count(1) == 1
+    for start in range(100, 400, 10):
+        ahead.foresee(plans(*range(start, start + 4)))
+    assert {2, 3, 12} <= set(crew.cancelled)
+    assert len(crew.begun) - len(crew.cancelled) <= KEPT * 2 + 2
