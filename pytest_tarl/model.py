@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from pytest_tarl.sensors import Cell, Sensor
 
@@ -81,6 +81,14 @@ class Region:
     novel: tuple[Cell, ...] = ()
 
 
+class LossInterval(NamedTuple):
+    """The losses per episode that what was seen leaves possible; infinite ends where too little was seen."""
+
+    low: float
+    high: float
+    confidence: float
+
+
 @dataclass(frozen=True, slots=True)
 class Verdict:
     """What the comparison concludes. `loss` and `detectable_loss` are rewards per episode."""
@@ -91,6 +99,7 @@ class Verdict:
     loss: float
     detectable_loss: float
     tolerance: float
+    interval: LossInterval | None = None
 
 
 @dataclass(frozen=True, slots=True)

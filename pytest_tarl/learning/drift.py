@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pytest_tarl.learning.evidence import gathered
+from pytest_tarl.learning.intervals import difference_bounds
 from pytest_tarl.learning.merging import aligned
 from pytest_tarl.learning.permutation import max_statistic, permuted_loss
 from pytest_tarl.learning.tables import Floats, Ints, Sample
-from pytest_tarl.model import Region, Result, Verdict
+from pytest_tarl.model import LossInterval, Region, Result, Verdict
 from pytest_tarl.sensors import Cell, Sensor
 
 POWER = 0.8  # of the smallest loss that is called detectable
@@ -62,7 +63,8 @@ def compare(
     loss = float(offline.total.mean() - online.total.mean())
     p_drift, region, changes = _drift(offline, online, alpha, generator, sensors)
     detectable = max(margin, smallest_detectable_loss(offline.total, online.total, alpha))
-    verdict = judged(Verdict("no difference", p_drift, p_loss, loss, detectable, margin), alpha)
+    interval = LossInterval(*loss_bounds(offline.total, online.total, alpha), 1 - 2 * alpha)
+    verdict = judged(Verdict("no difference", p_drift, p_loss, loss, detectable, margin, interval), alpha)
     found = region if verdict.result != "no difference" else Region()
     return Difference(verdict, found, changes)
 
@@ -75,6 +77,13 @@ def judged(verdict: Verdict, alpha: float) -> Verdict:
     elif verdict.p_drift < alpha:
         result = "drifted"
     return replace(verdict, result=result)
+
+
+def loss_bounds(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
+    """Return the losses that are neither too small nor too large at `risk`; the two worlds may vary differently."""
+    if min(offline.size, online.size) < 2:
+        return -inf, inf
+    return difference_bounds(offline.tolist(), online.tolist(), risk)
 
 
 def smallest_detectable_loss(offline: Floats, online: Floats, alpha: float) -> float:

@@ -38,13 +38,18 @@ def certain(difference: Difference) -> bool:
 
 
 def concluded(seen: Sequence[tuple[Look, Difference]], alpha: float) -> Difference:
-    """Return what the last look found, its p-values those of the whole sequence: the least of p / share."""
+    """Return what the last look found, its figures those of the whole sequence.
+
+    Of p-values that is the least of p / share. The interval is the last look's, at the risk left to that look, so it
+    holds whenever the run ended.
+    """
     last = seen[-1][1]
     p_drift, p_loss = (
         min(1.0, *(getattr(found.verdict, name) / look.share for look, found in seen))
         for name in ("p_drift", "p_loss")
     )
-    verdict = judged(replace(last.verdict, p_drift=p_drift, p_loss=p_loss), alpha)
+    interval = last.verdict.interval and last.verdict.interval._replace(confidence=1 - 2 * alpha)
+    verdict = judged(replace(last.verdict, p_drift=p_drift, p_loss=p_loss, interval=interval), alpha)
     return replace(
         last, verdict=verdict, region=last.region if verdict.result != "no difference" else Region()
     )

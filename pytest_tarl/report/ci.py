@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from pytest_tarl.learning.intervals import difference_bounds
 from pytest_tarl.model import Comparison, Culprit
 from pytest_tarl.report import words
 
@@ -22,7 +21,7 @@ def properties(comparison: Comparison) -> tuple[tuple[str, str], ...]:
         "tarl_p_drift": f"{verdict.p_drift:.3g}",
         "tarl_p_loss": f"{verdict.p_loss:.3g}",
         "tarl_loss": words.amount(verdict.loss),
-        "tarl_loss_interval": _interval(comparison),
+        "tarl_loss_interval": words.loss_interval(comparison),
         "tarl_region": words.region_words(comparison) if verdict.result != "no difference" else "",
         "tarl_culprit": _blamed(comparison.culprits[0]) if _guilty(comparison) else "",
         "tarl_patch": repair.patch if repair else "",
@@ -61,14 +60,6 @@ def _guilty(comparison: Comparison) -> bool:
 
 def _blamed(culprit: Culprit) -> str:
     return f"{culprit.site.path}:{culprit.site.line} {words.one_line(culprit.site.code)}"
-
-
-def _interval(comparison: Comparison) -> str:
-    offline, online = (comparison.totals.get(world, ()) for world in ("offline", "online"))
-    if min(len(offline), len(online)) < 2:
-        return ""
-    low, high = difference_bounds(offline, online, (1 - words.CONFIDENCE) / 2)
-    return f"{words.amount(low)} to {words.amount(high)}"
 
 
 def _in_checkout(path: Path) -> str:

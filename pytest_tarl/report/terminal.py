@@ -11,6 +11,7 @@ from pytest_tarl.report import words
 
 SHOWN = 3  # culprits, lists and notes before "(and 3 more)"
 LABEL = 9  # width of the column of labels
+LEGIBLE = 24  # characters of code beside its place; where fewer would fit, code gets a line of its own
 NARROWEST = 40  # below this, lines are left to the terminal to break
 
 
@@ -50,8 +51,12 @@ def _entries(
 
 def _labelled(label: str, text: str, width: int, *, whole: bool) -> list[str]:
     """Hang `text` beside its label; paths and commands stay `whole`, to be copied."""
-    body = [text] if whole else wrap(text, width - LABEL - 2, break_on_hyphens=False) or [""]
+    body = [text] if whole else [line for part in text.split("\n") for line in _wrapped(part, width)]
     return [f"  {label if i == 0 else '':<{LABEL}}{line}".rstrip() for i, line in enumerate(body)]
+
+
+def _wrapped(text: str, width: int) -> list[str]:
+    return wrap(text, width - LABEL - 2, break_on_hyphens=False) or [""]
 
 
 def _rewards(comparison: Comparison) -> str:
@@ -96,6 +101,8 @@ def _culprit(rank: str, culprit: Culprit, width: int, root: Path) -> str:
         evidence = f"{words.operand_words(best)}: {words.signed(best.effect)}"
     where = f"{rank} {words.place(site.path, site.line, root)}"
     room = width - len(where) - len(evidence) - 6
+    if room < LEGIBLE and room < len(words.one_line(site.code)):
+        return f"{where}  ({evidence})\n{' ' * len(rank)} {words.one_line(site.code, width - len(rank) - 1)}"
     return f"{where}  {words.one_line(site.code, room)}  ({evidence})"
 
 

@@ -9,12 +9,12 @@ from itertools import accumulate
 from pathlib import Path
 from statistics import fmean
 
-from pytest_tarl.learning.intervals import difference_bounds, effect_size, mean_bounds
+from pytest_tarl.learning.intervals import effect_size, mean_bounds
 from pytest_tarl.model import Attempt, Comparison, Edit, OperandEffect, Reason, Repair, Slice
 from pytest_tarl.report.regions import Vocabulary
 
 SIGNIFICANT = 0.05  # p from which a loss is not spoken of
-CONFIDENCE = 0.95  # of the interval around a loss
+CONFIDENCE = 0.95  # of the interval around an average
 NEGLIGIBLE = 0.01  # of what all parts lose: a part that loses less is not spoken of
 SHORTEST = 16  # characters of a code line that are shown however narrow the place is
 REASONS: dict[Reason, str] = {
@@ -116,10 +116,31 @@ def loss_words(comparison: Comparison) -> str:
     offline, online = (comparison.totals.get(world, ()) for world in ("offline", "online"))
     if min(len(offline), len(online)) < 2:
         return ""
-    low, high = difference_bounds(offline, online, (1 - CONFIDENCE) / 2)
     effect = effect_size(offline, online)
-    size = "" if math.isnan(effect) else f"; {abs(effect):.2g} standard deviations"
-    return f"{CONFIDENCE:.0%} confidence {amount(low)} to {amount(high)}{size}"
+    size = "" if math.isnan(effect) else f"{abs(effect):.2g} standard deviations"
+    interval = loss_interval(comparison)
+    verdict = comparison.verdict
+    known = (
+        f"{100 * verdict.interval.confidence:.3g}% confidence {interval}"
+        if verdict.interval and interval
+        else ""
+    )
+    return "; ".join(filter(None, (known, size)))
+
+
+def loss_interval(comparison: Comparison) -> str:
+    """Write the losses that the verdict leaves possible, `15.1 to 18.3`; empty where nothing is ruled out."""
+    interval = comparison.verdict.interval
+    low, high = (interval.low, interval.high) if interval else (-math.inf, math.inf)
+    if math.isinf(low) or math.isinf(high):
+        return (
+            ""
+            if low == -high
+            else f"at least {amount(low)}"
+            if math.isinf(high)
+            else f"at most {amount(high)}"
+        )
+    return f"{amount(low)} to {amount(high)}"
 
 
 def _capital(text: str) -> str:

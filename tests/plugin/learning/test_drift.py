@@ -7,6 +7,7 @@ import numpy as np
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning.drift import (
     compare,
+    loss_bounds,
     outstanding,
     paper_region,
     smallest_detectable_loss,
@@ -89,6 +90,15 @@ def test_the_permutation_test_is_one_sided() -> None:
     low, high = draws.normal(0, 1, 30), draws.normal(3, 1, 20)
     assert permuted_loss(high, low, generator(0, "a")) < 0.01
     assert permuted_loss(low, high, generator(0, "a")) > 0.9
+
+
+def test_the_interval_holds_the_true_loss_as_often_as_it_says_also_where_one_world_varies_more() -> None:
+    draws = np.random.default_rng(5)
+    held = 0
+    for _ in range(300):
+        low, high = loss_bounds(draws.normal(1.7, 0.5, 80), draws.normal(1.0, 3.0, 12), 0.05)
+        held += low <= 0.7 <= high
+    assert 258 <= held <= 282  # 90 %, and a little more than twice the binomial deviation
 
 
 def test_columns_that_do_not_vary_are_never_significant() -> None:

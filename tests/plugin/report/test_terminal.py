@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -24,7 +25,7 @@ def test_the_shuttle_reads_as_one_short_section(shuttle):
         "tests/test_traveller.py::test_delivers[mud]: degraded",
         "  verdict  In the drift scenario 'mud' an episode earns 16.90 less than designed (p < 0.001).",
         "  reward   off-line 9.78, on-line -6.83, repaired 9.42, designed world repaired 10.09",
-        "  loss     16.90 an episode, 95% confidence 14.98 to 18.23; 6.2 standard deviations",
+        "  loss     16.90 an episode, 90% confidence 15.40 to 18.10; 6.2 standard deviations",
         "  parts    progress -9.30",
         "           clearance -7.60",
         "  where    x 4.2-7.1 m, terrain true",
@@ -61,9 +62,17 @@ def test_situations_never_seen_off_line_are_told_apart(two_lists):
 
 
 def test_long_code_is_elided_and_keeps_its_evidence(two_lists):
-    first = next(line for line in told(two_lists, 80).splitlines() if " 1. " in line)
+    first = next(line for line in told(two_lists, 96).splitlines() if " 1. " in line)
     assert first.endswith("…  (self.kp × 2.2: +3.40)")
-    assert len(first) <= 80
+    assert len(first) <= 96
+
+
+def test_code_that_has_no_room_beside_its_place_stands_below_it(two_lists):
+    lines = told(two_lists, 80).splitlines()
+    place, code = next((a, b) for a, b in pairwise(lines) if " 1. " in a)
+    assert place.endswith("src/follower/node.py:63  (self.kp × 2.2: +3.40)")
+    assert code.strip().startswith("twist.angular.z = self.kp")
+    assert len(code) <= 80
 
 
 def test_without_a_repair_the_next_step_is_to_ask_for_one(unrepaired):
