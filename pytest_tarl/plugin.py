@@ -67,6 +67,20 @@ def pytest_runtest_makereport(
     return report
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """Add advice to the error of a test module that imports a ROS that is not installed."""
+    report = yield
+    call: pytest.CallInfo[Any] | None = getattr(report, "call", None)
+    if call is not None and call.excinfo is not None:
+        from pytest_tarl.importhint import import_hint
+
+        hint = import_hint(call.excinfo.value)
+        if hint:
+            report.sections.append(("TARL", hint))
+    return report
+
+
 def _ours(error: BaseException) -> bool:
     return type(error).__module__ == "pytest_tarl.errors"  # told by name: a plain run imports nothing of ours
 

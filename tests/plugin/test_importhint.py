@@ -1,0 +1,35 @@
+"""Test modules that import ROS where none is installed get advice beside the error."""
+
+from __future__ import annotations
+
+import importlib.util
+
+import pytest
+
+bare = pytest.mark.skipif(importlib.util.find_spec("nav_msgs") is not None, reason="a ROS is installed here")
+
+
+@bare
+@pytest.mark.parametrize(
+    ("line", "advice"),
+    [
+        ("from nav_msgs.msg import Odometry", "*message_type('nav_msgs/msg/TYPE'), from pytest_tarl.ros*"),
+        ("import rospy", "*start it by tarl.start*"),
+        ("from rclpy.node import Node", "*start it by tarl.start*"),
+    ],
+)
+def test_an_import_of_ros_that_fails_is_told_what_to_write(
+    tank: pytest.Pytester, line: str, advice: str
+) -> None:
+    tank.makepyfile(test_top=f"{line}\n\ndef test_it():\n    pass\n")
+    told = tank.runpytest("test_top.py")
+    told.assert_outcomes(errors=1)
+    told.stdout.fnmatch_lines(["*ModuleNotFoundError*", "*- TARL -*", advice])
+
+
+@pytest.mark.parametrize("line", ["import colour_of_magic", "1 / 0", "raise ImportError('no')"])
+def test_other_errors_of_a_test_module_get_none(tank: pytest.Pytester, line: str) -> None:
+    tank.makepyfile(test_top=f"{line}\n")
+    told = tank.runpytest("test_top.py")
+    told.assert_outcomes(errors=1)
+    told.stdout.no_fnmatch_line("*TARL*")
