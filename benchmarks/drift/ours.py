@@ -27,7 +27,7 @@ RESTORED = 0.95
 Overlay = Mapping[Path, str]
 
 
-def prepared(stage: Stage, seed: int, budget: int = Options.budget) -> Order:
+def prepared(stage: Stage, seed: int, budget: int = Options.budget, search: str = "sweep") -> Order:
     """Record the task off-line and run it under its drift, as `--tarl-record` and `--tarl-online` do."""
     marked = stage.marked
     chosen = episode_seeds(seed, "offline", marked.episodes)
@@ -36,15 +36,15 @@ def prepared(stage: Stage, seed: int, budget: int = Options.budget) -> Order:
     fixture = Fixture(
         stage.test, seed, marked.sensors, stage.sites.lists, offline.topics, offline.sample, tables
     )
-    options = Options(mode="repair", seed=seed, budget=budget)
+    options = Options(mode="repair", seed=seed, budget=budget, searches=(search,))
     online = run_online(stage.rollout, fixture, marked, options, stage.sites, stage.drift, quiet)
     patches = stage.folder / ".tarl" / "patches"
     return Order(stage.rollout, stage.analysis, stage.folder, fixture, online, options, quiet, patches)
 
 
-def ours(stage: Stage, seed: int) -> dict[str, Any]:
+def ours(stage: Stage, seed: int, search: str = "sweep") -> dict[str, Any]:
     """Repair the task; return where the right sites were ranked, what was restored and what it took."""
-    order = prepared(stage, seed)
+    order = prepared(stage, seed, search=search)
     slices = [culprit.site.id for culprit in order.comparison.culprits]
     outcome = repair(order)
     fixed = outcome.comparison.repair

@@ -13,8 +13,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 import numpy as np
-from ours import judged, prepared
-from stage import Stage
+from ours import judged
 
 from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
@@ -114,9 +113,8 @@ OPTIMISERS: dict[str, Callable[[int, np.random.Generator], Optimiser]] = {
 }
 
 
-def peer(stage: Stage, seed: int, name: str, guarded: bool) -> dict[str, Any]:
+def peer(order: Order, seed: int, name: str, guarded: bool) -> dict[str, Any]:
     """Search with another optimiser; return what it restored and what it took."""
-    order = prepared(stage, seed, BUDGET)
     mutants = Mutants(order)
     guard = _first_guard(order) if guarded else candidates.ALWAYS
     trials = Trials(lambda candidate, at: mutants.run(candidate, at, order.drift), BUDGET)

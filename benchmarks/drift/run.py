@@ -1,10 +1,11 @@
 """Run the benchmark: every method on every task with every seed, side by side, and print the tables.
 
-    python benchmarks/drift/run.py [--seeds 10] [--methods ours,random,…] [--tasks TASK,…] [--workers 2]
+    python benchmarks/drift/run.py [--seeds 10] [--methods ours;random;…] [--tasks TASK,…] [--workers 2]
 
 Results are kept in `results.json` beside this file, one entry per method, task and seed: what is there is not run
 again (`--fresh` forgets the methods and tasks that are asked for), so that a run can be interrupted and carried on.
-`--table` prints the tables from what is there. CMA-ES and Optuna need `pip install cma optuna`.
+`--table` prints the tables from what is there. CMA-ES and Optuna need `pip install cma optuna`; FauxPy, which pins
+other plugins of pytest, is run by the Python of an environment of its own that has tarl as well: `--fauxpy PYTHON`.
 """
 
 from __future__ import annotations
@@ -15,43 +16,44 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from stage import HERE, TASKS, visit
+from fauxpy_peer import FAUXPY, localised
+from stage import HERE, TASKS, Stage, visit
 from table import tables
 
-METHODS = (
-    "ours",
-    "random",
-    "random, our guard",
-    "CMA-ES",
-    "CMA-ES, our guard",
-    "Optuna",
-    "Optuna, our guard",
-)
+OURS = ("ours", "ours, halving")
+PEERS = ("random", "CMA-ES", "Optuna")
+METHODS = ("ours", *(f"{name}{guard}" for name in PEERS for guard in ("", ", our guard")), *FAUXPY)
 RESULTS = HERE / "results.json"
 
 
-def one(method: str, task: str, seed: int) -> dict[str, Any]:
-    """Run one method on one task with one seed, on a copy of the task."""
-    from ours import ours
-    from peers import peer
-
+def one(methods: Sequence[str], task: str, seed: int, python: str | None) -> dict[str, Any]:
+    """Run methods on one task with one seed, on a copy of the task; what they have in common is done once."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder).resolve() / task
         shutil.copytree(HERE / task, copy, ignore=shutil.ignore_patterns("__pycache__"))
-        if method == "ours":
-            found: dict[str, Any] = visit(task, lambda stage: ours(stage, seed), copy)
-        else:
-            name, _, guard = method.partition(", ")
-            found = visit(task, lambda stage: peer(stage, seed, name, bool(guard)), copy)
+        found: dict[str, Any] = visit(task, lambda stage: _found(stage, methods, seed, python), copy)
     return found
 
 
+def _found(stage: Stage, methods: Sequence[str], seed: int, python: str | None) -> dict[str, Any]:
+    from ours import ours, prepared
+    from peers import BUDGET, peer
+
+    if methods[0] in OURS:
+        return {name: ours(stage, seed, name.partition(", ")[2] or "sweep") for name in methods}
+    if methods[0] in FAUXPY:
+        return {name: localised(stage, seed, name, python) for name in methods}
+    order = prepared(stage, seed, BUDGET)
+    return {name: peer(order, seed, name.partition(", ")[0], "guard" in name) for name in methods}
+
+
 def main() -> None:
-    """Run what is missing, each in a process of its own, and print the tables."""
+    """Run what is missing, each task and seed in a process of its own, and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--methods", default=";".join(METHODS), help="separated by semicolons")
@@ -60,42 +62,66 @@ def main() -> None:
     parser.add_argument("--results", type=Path, default=RESULTS)
     parser.add_argument("--fresh", action="store_true", help="forget earlier results of what is asked for")
     parser.add_argument("--table", action="store_true", help="run nothing")
-    parser.add_argument("--one", nargs=3, metavar=("METHOD", "TASK", "SEED"), help="print one result as JSON")
+    parser.add_argument("--fauxpy", metavar="PYTHON", help="of an environment that has fauxpy and tarl")
+    parser.add_argument("--one", nargs=3, metavar=("METHODS", "TASK", "SEED"), help="print results as JSON")
     arguments = parser.parse_args()
     if arguments.one:
-        method, task, seed = arguments.one
-        print("\n" + json.dumps(one(method, task, int(seed)), ensure_ascii=False))
+        methods, task, seed = arguments.one
+        found = one(methods.split(";"), task, int(seed), arguments.fauxpy)
+        print("\n" + json.dumps(found, ensure_ascii=False))
         return
-    methods, tasks = arguments.methods.split(";"), arguments.tasks.split(",")
+    tasks = arguments.tasks.split(",")
     results = json.loads(arguments.results.read_text()) if arguments.results.exists() else {}
     if not arguments.table:
-        jobs = [(m, t, s) for s in range(arguments.seeds) for t in tasks for m in methods]
-        _run(jobs, results, arguments)
+        _run(_jobs(arguments, tasks, {} if arguments.fresh else results), results, arguments)
     kept = {key: found for key, found in results.items() if key.split("/")[1] in tasks}
     print(tables(kept))
 
 
-def _run(jobs: list[tuple[str, str, int]], results: dict[str, Any], arguments: argparse.Namespace) -> None:
-    """Run the jobs that have no result; every result is written down as soon as it is there."""
-    missing = [job for job in jobs if arguments.fresh or _key(job) not in results]
+Job = tuple[tuple[str, ...], str, int]  # methods, task, seed
+
+
+def _jobs(arguments: argparse.Namespace, tasks: Sequence[str], results: Mapping[str, Any]) -> list[Job]:
+    """Return what has no result yet: peers that share a recording go together, all others alone."""
+    jobs = []
+    asked = arguments.methods.split(";")
+    peers = tuple(name for name in asked if name.partition(", ")[0] in PEERS)
+    groups = [peers, *((name,) for name in asked if name not in peers)]
+    for seed in range(arguments.seeds):
+        for task in tasks:
+            for group in groups:
+                missing = tuple(name for name in group if _key(name, task, seed) not in results)
+                if missing and (seed == 0 or not missing[0].startswith("FauxPy MBFL")):
+                    jobs.append((missing, task, seed))  # mutants take minutes, so one seed
+    return jobs
+
+
+def _run(jobs: Sequence[Job], results: dict[str, Any], arguments: argparse.Namespace) -> None:
+    """Run jobs; every result is written down as soon as it is there."""
+    more = ["--fauxpy", arguments.fauxpy] if arguments.fauxpy else []
     with ThreadPoolExecutor(arguments.workers) as pool:
-        for job, done in zip(missing, pool.map(_started, missing), strict=True):
+        started = pool.map(lambda job: _started(job, more), jobs)
+        for (methods, task, seed), done in zip(jobs, started, strict=True):
             if done.returncode:
-                print(f"{_key(job)} failed:\n{done.stderr[-3000:]}", file=sys.stderr)
+                print(
+                    f"{_key(';'.join(methods), task, seed)} failed:\n{done.stderr[-3000:]}", file=sys.stderr
+                )
                 continue
-            results[_key(job)] = json.loads(done.stdout.splitlines()[-1])
+            for name, found in json.loads(done.stdout.splitlines()[-1]).items():
+                results[_key(name, task, seed)] = found
+                print(_key(name, task, seed), file=sys.stderr)
             text = json.dumps(dict(sorted(results.items())), indent=1, ensure_ascii=False)
             arguments.results.write_text(text + "\n")
-            print(_key(job), file=sys.stderr)
 
 
-def _started(job: tuple[str, str, int]) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, __file__, "--one", job[0], job[1], str(job[2])]
+def _started(job: Job, more: Sequence[str]) -> subprocess.CompletedProcess[str]:
+    methods, task, seed = job
+    command = [sys.executable, __file__, "--one", ";".join(methods), task, str(seed), *more]
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
-def _key(job: tuple[str, str, int]) -> str:
-    return f"{job[0]}/{job[1]}/{job[2]}"
+def _key(method: str, task: str, seed: int) -> str:
+    return f"{method}/{task}/{seed}"
 
 
 if __name__ == "__main__":

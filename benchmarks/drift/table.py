@@ -15,7 +15,7 @@ Result = Mapping[str, Any]
 def tables(results: Mapping[str, Result]) -> str:
     """Return the comparison of the methods, and our own figures by task."""
     methods = list(dict.fromkeys(key.split("/")[0] for key in sorted(results, key=_ours_first)))
-    rows = [_row(method, _of(results, method)) for method in methods]
+    rows = [row for method in methods for row in _rows(method, _of(results, method))]
     slices = _slices(_of(results, "ours"))
     return "\n".join([*_head(COLUMNS), *rows[:1], *slices, *rows[1:], "", *_by_task(_of(results, "ours"))])
 
@@ -51,6 +51,27 @@ def _head(columns: Sequence[str]) -> list[str]:
     return [f"| {' | '.join(columns)} |", "|---" * len(columns) + "|"]
 
 
+def _rows(method: str, found: Sequence[tuple[str, Result]]) -> list[str]:
+    """Return a method's row, or one for each metric of a localiser, and why it did not complete."""
+    if not any("ranks" in result for _, result in found):
+        return [_row(method, found)]
+    asked = [(task, result) for task, result in found if _repairable(task)]
+    metrics = dict.fromkeys(metric for _, result in asked for metric in result["ranks"])
+    rows = []
+    for metric in metrics:
+        ranks = [result["ranks"].get(metric) for _, result in asked if result["ranks"]]
+        first, third = (_share(rank is not None and rank <= most for rank in ranks) for most in (1, 3))
+        runs = _mean(result["episodes"]["search"] for _, result in asked if result["ranks"])
+        rows.append(
+            f"| {method}, {metric} | {first} | {third} | – | – | – | – | {runs:.0f} | 0 | 0 | {runs:.0f} |"
+        )
+    failed = dict.fromkeys(result["failed"] for _, result in asked if result["failed"])
+    for reason in failed:
+        times = sum(result["failed"] == reason for _, result in asked)
+        rows.append(f"| {method}, {times} times | {reason} |" + " |" * (len(COLUMNS) - 2))
+    return rows
+
+
 def _row(method: str, found: Sequence[tuple[str, Result]]) -> str:
     repairable = [(task, result) for task, result in found if _repairable(task)]
     others = [result for task, result in found if not _repairable(task)]
@@ -61,10 +82,10 @@ def _row(method: str, found: Sequence[tuple[str, Result]]) -> str:
     cells = [
         method,
         _share(_within(task, result["ranked"], 1) for task, result in repairable)
-        if method == "ours"
+        if method.startswith("ours")
         else "–",
         _share(_within(task, result["ranked"], 3) for task, result in repairable)
-        if method == "ours"
+        if method.startswith("ours")
         else "–",
         _share(result["drifted restored"] for _, result in repairable),
         _share(both(result) for _, result in repairable),
