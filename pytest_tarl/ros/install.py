@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, lru_cache
 from importlib import import_module
 from importlib.machinery import ModuleSpec, PathFinder
 from types import CodeType, FrameType, ModuleType
@@ -113,6 +113,10 @@ _STANDALONE = (
 )  # a real one works without a running ROS and is preferred
 
 
+_IMPORT_DATA = ("__name__", "__spec__", "__loader__", "__file__", "__cached__", "__path__", "__package__",
+                "__builtins__")  # fmt: skip
+
+
 class StandinFinder:
     """A finder for `sys.meta_path`. Every episode gets module objects of its own."""
 
@@ -147,11 +151,8 @@ class StandinFinder:
         """Make a module object that nobody has seen before."""
         name = spec.name
         if name in STANDINS:
-            home = import_module(_HOME + STANDINS[name])
-            module = ModuleType(name, home.__doc__)
-            module.__dict__.update(
-                {key: value for key, value in vars(home).items() if not _is_import_data(key)}
-            )
+            module = ModuleType(name)
+            module.__dict__.update(_contents(_HOME + STANDINS[name]))
         else:
             made = package_module(self._kind or "ros2", name)
             if made is None:
@@ -196,7 +197,18 @@ class StandinFinder:
         return kind
 
 
+@cache
+def _contents(home: str) -> Mapping[str, object]:
+    """Return what a stand-in holds; every episode's module gets a copy of it."""
+    return {key: value for key, value in vars(import_module(home)).items() if key not in _IMPORT_DATA}
+
+
 def _is_ordinary_package(root: str) -> bool:
+    return _is_ordinary_on(root, tuple(sys.path))
+
+
+@lru_cache(maxsize=256)
+def _is_ordinary_on(root: str, _path: tuple[str, ...]) -> bool:
     spec = PathFinder.find_spec(root)
     return (
         spec is not None
@@ -224,11 +236,6 @@ def _kind_named_by(frame: FrameType | None) -> Kind | None:
 
 def _imports(code: CodeType) -> set[str]:
     return {name.partition(".")[0] for name in code.co_names}
-
-
-def _is_import_data(key: str) -> bool:
-    return key in ("__name__", "__doc__", "__spec__", "__loader__", "__file__", "__cached__", "__path__", "__package__",
-                   "__builtins__")  # fmt: skip
 
 
 @contextmanager

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from heapq import heappop, heappush
 from typing import TYPE_CHECKING, Any
 
@@ -101,12 +102,15 @@ class Scheduler:
 
     def wait(self, until: int | None = None) -> bool:
         """Hand over until the instant `until` or until woken; tell whether woken. Called within a task."""
-        task = current_task()
+        worker = getcurrent()
+        task = worker.task if isinstance(worker, Worker) else None
+        if task is None or worker.parent is None:
+            raise RuntimeError("only a task can wait")
         task.parked = True
         if until is not None:
             self._sequence += 1
             heappush(self._sleeping, (until, self._sequence, task, task.ticket))
-        return bool(hand_over())
+        return bool(worker.parent.switch())
 
     def yield_now(self) -> None:
         """Let everything run that is ready, then go on at the same instant."""
@@ -120,14 +124,14 @@ class Scheduler:
         if task.parked:
             task.parked = False
             task.ticket += 1
-            self._ready.append(lambda: self._resume(task, True))
+            self._ready.append(partial(self._resume, task, True))
 
     def spawn(self, process: Process, function: Callable[..., Any], *args: Any) -> Task:
         """Start a task: at once when called from outside, when the running task waits otherwise."""
         task = Task(process, function, args)
         process.tasks.append(task)
         if running_task() is not None:
-            self._ready.append(lambda: self._resume(task, True))
+            self._ready.append(partial(self._resume, task, True))
         else:
             self._resume(task, True)
         return task
@@ -138,12 +142,14 @@ class Scheduler:
 
     def settle(self) -> None:
         """Run everything that is ready now."""
-        while self._ready and self.failure is None:
-            self._ready.popleft()()
+        ready = self._ready
+        while ready and self.failure is None:
+            ready.popleft()()
 
     def advance(self, until: int) -> None:
         """Move the clock to `until`, running what falls due in the order of its instants."""
-        self.settle()
+        if self._ready:
+            self.settle()
         sleeping = self._sleeping
         while sleeping and sleeping[0][0] <= until and self.failure is None:
             time, _, task, ticket = heappop(sleeping)

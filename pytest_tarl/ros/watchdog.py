@@ -42,8 +42,10 @@ class Watchdog:
 
     def arm(self, limit: float) -> None:
         """Watch the calling thread from now on for `limit` seconds of its CPU time."""
-        self._target = threading.get_ident()
-        self._clock = -1 if _CLOCK_OF is None else _CLOCK_OF(self._target)
+        thread = threading.get_ident()
+        if thread != self._target:
+            self._target = thread
+            self._clock = -1 if _CLOCK_OF is None else _CLOCK_OF(thread)
         self._limit = limit
         self.fired = False
         self._moves += 1
@@ -98,7 +100,8 @@ class Watchdog:
         if self._clock != -1 and _read_clock is not None:
             try:
                 return _read_clock(self._clock)
-            except OSError:  # the thread has ended
+            except OSError:  # that thread has ended, and another one has its number
+                self._target = 0
                 return 0.0
         return _process_time()
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from functools import cache
+from struct import Struct
+from struct import error as StructError  # noqa: N812 (a class)
 from typing import Any, ClassVar
 
 from pytest_tarl.ros.messages import values
@@ -234,7 +236,8 @@ def _converter(field: Field) -> Callable[[Any, str], Any]:
             else bytes(values.as_numbers(value, "uint8", size, name))
         )
     if field.base in values.CODES:
-        return _packed_converter(field.base, size)
+        packed = _packed_converter(field.base, size)
+        return _same_doubles(size, packed) if field.base == "float64" and size else packed
     convert = _element_converter(field)
     return lambda value, name: values.as_list(value, size, name, convert)
 
@@ -251,6 +254,28 @@ def _packed_converter(base: str, size: int) -> Callable[[Any, str], Any]:
         return last
 
     return convert
+
+
+def _same_doubles(size: int, convert: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
+    """Spare the conversion where the bytes are those of the last time: covariances hardly ever change."""
+    pack = Struct(f"{size}d").pack
+    last: tuple[bytes, Any] = (b"", ())
+
+    def convert_new(value: Any, name: str) -> Any:
+        nonlocal last
+        if value is last[1]:
+            return value
+        if value.__class__ is not list:
+            return convert(value, name)
+        try:
+            content = pack(*value)
+        except StructError:
+            return convert(value, name)  # says what is wrong
+        if content != last[0]:
+            last = (content, convert(value, name))
+        return last[1]
+
+    return convert_new
 
 
 def _element_converter(field: Field) -> Callable[[Any, str], Any]:

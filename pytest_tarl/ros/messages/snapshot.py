@@ -12,7 +12,9 @@ from pytest_tarl.ros.clock import NANOSECONDS
 from pytest_tarl.ros.messages.values import FieldError, as_float32
 
 _COPIERS: dict[type, Callable[[Any], Any]] = {}  # by message class; filled at first use, never changed
-_STAMPED: dict[type, bool] = {}  # whether messages of a class have a header with a stamp; likewise
+_STAMPS: dict[
+    type, tuple[str, str] | None
+] = {}  # what a class's header calls the parts of its stamp; likewise
 
 
 def snapshot(message: Any, wanted: type | None = None) -> Any:
@@ -81,16 +83,28 @@ def is_message(value: Any) -> bool:
 def stamp_if_unset(message: Any, now: int) -> None:
     """Give the header of `message` the present time (ns) unless it has a stamp."""
     own = type(message)
-    if own not in _STAMPED:
-        _STAMPED[own] = hasattr(getattr(message, "header", None), "stamp")
-    if not _STAMPED[own]:
+    if own not in _STAMPS:
+        _STAMPS[own] = _stamp_parts(message)
+    parts = _STAMPS[own]
+    if parts is None:
         return
+    whole, rest = parts
     stamp: Any = message.header.stamp
+    if not (getattr(stamp, whole) or getattr(stamp, rest)):
+        seconds, nanoseconds = divmod(now, NANOSECONDS)
+        setattr(stamp, whole, seconds)
+        setattr(stamp, rest, nanoseconds)
+
+
+def _stamp_parts(message: Any) -> tuple[str, str] | None:
+    stamp = getattr(getattr(message, "header", None), "stamp", None)
+    if stamp is None:
+        return None
     if hasattr(stamp, "nsecs"):
-        if not (stamp.secs or stamp.nsecs):
-            stamp.secs, stamp.nsecs = divmod(now, NANOSECONDS)
-    elif not (stamp.sec or stamp.nanosec):
-        stamp.sec, stamp.nanosec = divmod(now, NANOSECONDS)
+        return "secs", "nsecs"
+    return (
+        ("_sec", "_nanosec") if hasattr(stamp, "_tarl_fields") else ("sec", "nanosec")
+    )  # ours need no checks
 
 
 def _copier(own: type) -> Callable[[Any], Any]:

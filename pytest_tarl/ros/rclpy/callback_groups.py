@@ -54,19 +54,19 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
     def __init__(self) -> None:
         super().__init__()
-        self._active: Any = None
+        self.active: Any = None
 
     def can_execute(self, entity: Any) -> bool:
         """Tell whether none is running."""
-        return self._active is None
+        return self.active is None
 
     def beginning_execution(self, entity: Any) -> bool:
         """Let it start if none is running."""
-        if self._active is not None:
+        if self.active is not None:
             return False
-        self._active = entity
+        self.active = entity
         return True
 
     def ending_execution(self, entity: Any) -> None:
         """Make room for the next."""
-        self._active = None
+        self.active = None

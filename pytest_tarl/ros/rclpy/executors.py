@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.process import current_process
+from pytest_tarl.ros.rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from pytest_tarl.ros.rclpy.context import Context
 from pytest_tarl.ros.rclpy.task import Future, Task
 from pytest_tarl.ros.scheduler import Task as RunningTask
@@ -115,7 +116,9 @@ class Executor:
     def spin(self) -> None:
         """Run callbacks until ROS is shut down."""
         while self.context.ok() and not self._is_shutdown:
-            self.spin_once()
+            work = self._next_work(None, None)
+            if work is not None:
+                self._run(work)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Run one callback, waiting up to `timeout_sec` for it (None: as long as it takes)."""
@@ -169,6 +172,11 @@ class Executor:
     def _begins(self, entity: Entity) -> bool:
         """Ask the entity's group whether its callback may start now."""
         group = entity.callback_group
+        if type(group) is MutuallyExclusiveCallbackGroup and group.active is None:
+            group.active = (
+                entity  # what the two questions below come to, for the group that nearly all are in
+            )
+            return True
         if group is None or (group.can_execute(entity) and group.beginning_execution(entity)):
             return True
         self._stirred = True  # a group decides anew whenever it is asked
@@ -194,7 +202,8 @@ class Executor:
             self._tasks = [task for task in self._tasks if task.pending()]
             found += [task for task in self._tasks if task.is_ready()]
         for node in self._nodes:
-            found += [entity for kind in node.entities for entity in kind if entity.is_ready()]
+            for kind in node.entities:
+                found += [entity for entity in kind if entity.is_ready()]
         return found
 
     def _wait(self, until: int | None) -> None:
@@ -202,7 +211,7 @@ class Executor:
         for node in self._nodes:
             for timer in node.timers_:
                 due = timer.due
-                if due > now and (earliest is None or due < earliest) and not timer.is_canceled():
+                if due > now and (earliest is None or due < earliest) and not timer.canceled:
                     earliest = due
         task = current_task()
         self._waiting.append(task)

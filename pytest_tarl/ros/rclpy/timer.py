@@ -34,25 +34,25 @@ class Timer:
         self.callback_group = group
         self.timer_period_ns = period
         self._clock = node.process.scheduler
-        self._canceled = False
+        self.canceled = False
         self._last = self._clock.time
         self.due = self._clock.time + period
 
     def is_ready(self) -> bool:
         """Tell whether it is time."""
-        return not self._canceled and self._clock.time >= self.due
+        return not self.canceled and self._clock.time >= self.due
 
     def is_canceled(self) -> bool:
         """Tell whether it was cancelled."""
-        return self._canceled
+        return self.canceled
 
     def cancel(self) -> None:
         """Stop until `reset`."""
-        self._canceled = True
+        self.canceled = True
 
     def reset(self) -> None:
         """Start a new period now."""
-        self._canceled = False
+        self.canceled = False
         self.due = self._clock.time + self.timer_period_ns
         self.node.notify()
 
@@ -62,7 +62,7 @@ class Timer:
 
     def time_until_next_call(self) -> int | None:
         """Return nanoseconds until it is ready; None while cancelled."""
-        return None if self._canceled else self.due - self._clock.time
+        return None if self.canceled else self.due - self._clock.time
 
     def destroy(self) -> None:
         """Forget it."""

@@ -33,6 +33,16 @@ def test_name_tells_the_generation() -> None:
     assert message_type("nav_msgs/Odometry") is message_type("nav_msgs/Odometry")
 
 
+@given(st.lists(st.lists(st.sampled_from([0.0, -0.0, 1.0, 1, float("nan"), 0.1]), min_size=36, max_size=36)))
+def test_covariances_arrive_bit_by_bit_whatever_came_before(sent: list[list[float]]) -> None:
+    message = message_type("geometry_msgs/PoseWithCovariance")()
+    for covariance in sent:
+        message.covariance = list(covariance)
+        arrived = snapshot.snapshot(message).covariance
+        assert isinstance(arrived, tuple)
+        assert [float(number).hex() for number in arrived] == [float(number).hex() for number in covariance]
+
+
 def test_unknown_types_and_wrong_names_are_told() -> None:
     with pytest.raises(UnsupportedApiError, match="nav_msgs/Odometri is not known here"):
         message_type("nav_msgs/Odometri")
