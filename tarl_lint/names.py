@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterable, Mapping
-from typing import Generic, Protocol, TypeVar
+from typing import Final, Generic, Protocol, TypeVar
+
+LIBRARIES: Final = frozenset(
+    ["rospy", "rclpy", "message_filters", "actionlib", "tf2_ros"]
+)  # known by the catalog
 
 
 class Named(Protocol):
@@ -39,9 +43,12 @@ class Index(Generic[M]):
             self._by_name.setdefault(module.name, []).append(module)
 
     def find(self, name: str, importer: Named) -> M | None:
-        """Return the module that `importer` means: of several, the one that shares most of its path."""
+        """Return the module that `importer` means: of several, the one that shares most of its path.
+
+        What the catalog describes is never looked up in its source, which may be among the files.
+        """
         candidates = self._by_name.get(name)
-        if not candidates:
+        if not candidates or name.partition(".")[0] in LIBRARIES:
             return None
         if len(candidates) == 1:
             return candidates[0]

@@ -21,25 +21,32 @@ IMPORT: Final = re.compile(
     re.VERBOSE | re.MULTILINE,
 )
 COMMENT: Final = re.compile(r"#[^\n]*")
+PROSE: Final = re.compile(
+    r"""(?P<kept> (?: [fF][rR]? | [rR][fF] ) (?: "{3}[\s\S]*?"{3} | '{3}[\s\S]*?'{3} )
+          | (?! "{3} | '{3} ) (?: "(?: [^"\\\n] | \\[\s\S] )*" | '(?: [^'\\\n] | \\[\s\S] )*' )
+        ) | "{3}[\s\S]*?"{3} | '{3}[\s\S]*?'{3} | \#[^\n]*""",
+    re.VERBOSE,
+)
 DOTTED: Final = re.compile(r"(?:^|,)[\s\\(]*([.\w]+)")
 
 
 def concerned(modules: Sequence[Named], config: Config) -> bool:
     """Tell whether any module subscribes or publishes, as far as words tell: if none does, nothing is found."""
-    return any(True for _ in _mentioning(modules, config))
+    return any(True for _ in mentioning(modules, config))
 
 
 def relevant(modules: Sequence[M], config: Config) -> list[M]:
     """Return the modules that a flow may pass through, or a subscription or publisher that leads nowhere."""
-    return sorted((m for group in groups(modules, config) for m in group), key=lambda m: m.path)
+    return [m for group in groups(modules, config) for m in group]
 
 
 def groups(modules: Sequence[M], config: Config) -> list[tuple[M, ...]]:
     """Return the modules that can matter, apart as far as none of one group imports one of another.
 
-    Those that subscribe or publish matter, those that import them, and what all of these import.
+    Those that subscribe or publish matter, those that import them, and what all of these import. In a group, what a
+    module imports comes before it, where circles allow that.
     """
-    start = list(_mentioning(modules, config))
+    start = list(mentioning(modules, config))
     if not start:
         return []
     index = Index(modules)
@@ -50,16 +57,22 @@ def groups(modules: Sequence[M], config: Config) -> list[tuple[M, ...]]:
             importers[imported.path].append(module)
     kept = {m.path: m for m in _closure(_closure(start, importers), imports)}
     either = {p: [n for n in (*imports[p], *importers[p]) if n.path in kept] for p in kept}
-    return list(_connected(kept, either))
+    turn = {path: number for number, path in enumerate(_in_turn(kept, imports))}
+    return [tuple(sorted(g, key=lambda m: turn[m.path])) for g in _connected(kept, either)]
 
 
-def _mentioning(modules: Iterable[M], config: Config) -> Iterator[M]:
+def mentioning(modules: Iterable[M], config: Config) -> Iterator[M]:
     """Yield the modules with a word without which a module neither subscribes nor publishes."""
     named = (*(w.name for w in config.wrappers), *config.sources, *config.sinks)
     words = {*catalog.SOURCE_WORDS, *catalog.SINK_WORDS, *(name.rpartition(".")[2] for name in named)}
     words |= set(catalog.LOOKUPS) if config.tf2 else set()
     search = re.compile("|".join(_whole(word) for word in sorted(words))).search
-    return (m for m in modules if search(m.text))
+    return (m for m in modules if search(m.text) and search(code(m.text)))
+
+
+def code(text: str) -> str:
+    """Return a file's text without comments and texts over several lines, which are prose mostly."""
+    return PROSE.sub(lambda found: found["kept"] or "", text)
 
 
 def _whole(word: str) -> str:
@@ -78,27 +91,43 @@ def _closure(start: Iterable[M], edges: Mapping[str, Sequence[M]]) -> list[M]:
     return list(found.values())
 
 
-def _connected(modules: Mapping[str, M], edges: Mapping[str, Sequence[M]]) -> Iterator[tuple[M, ...]]:
+def _connected(modules: Mapping[str, M], edges: Mapping[str, Sequence[M]]) -> Iterator[list[M]]:
     left = dict(sorted(modules.items()))
     while left:
         _, first = next(iter(left.items()))
         group = _closure([first], edges)
         for module in group:
             del left[module.path]
-        yield tuple(sorted(group, key=lambda m: m.path))
+        yield group
+
+
+def _in_turn(modules: Iterable[str], imports: Mapping[str, Sequence[Named]]) -> list[str]:
+    """Return paths so that what a module imports comes before it."""
+    done: dict[str, None] = {}
+    entered: set[str] = set()
+    pending = [(path, False) for path in sorted(modules, reverse=True)]
+    while pending:
+        path, left = pending.pop()
+        if left:
+            done[path] = None
+        elif path not in entered:
+            entered.add(path)
+            pending.append((path, True))
+            pending += [(m.path, False) for m in reversed(imports[path]) if m.path not in entered]
+    return list(done)
 
 
 def _imports(module: M, index: Index[M]) -> Iterator[M]:
     """Yield the modules of the set that a module imports anywhere."""
     if "import" not in module.text:
         return
-    for name in dict.fromkeys(_imported_names(module)):
+    for name in dict.fromkeys(_names(module)):
         found = index.find(name, module)
         if found is not None:
             yield found
 
 
-def _imported_names(module: Named) -> Iterator[str]:
+def _names(module: Named) -> Iterator[str]:
     """Yield the dotted names in import statements, and what looks like one in a text."""
     for statement in IMPORT.finditer(module.text):
         base, inside, members, modules = statement.groups()

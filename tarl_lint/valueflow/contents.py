@@ -13,20 +13,26 @@ class Contents(Heap):
     """Collects the data inside objects."""
 
     def deep(self, objects: frozenset[Obj]) -> Nodes:
-        """Return all nodes whose data is inside objects."""
-        known: dict[Obj, Nodes] = {}
+        """Return all nodes whose data is inside objects, as long as nothing is stored the same as before."""
         if len(objects) == 1:
             (obj,) = objects
             if not obj.laden:
                 self.store.doubt(obj)
                 return NONE
-            inside = self._deep(obj, known, 0)
-            self._count(len(known))
+        now = (self.graph.grown, self.stack[-1] if self.stack else None)
+        if self.store.looked != now:
+            self.store.looked = now
+            self.store.insides.clear()
+        inside = self.store.insides.get(objects)
+        if inside is not None:
             return inside
+        known: dict[Obj, Nodes] = {}
         found = NONE
         for obj in in_order(objects):
             found |= self._deep(obj, known, 0)
         self._count(len(known))
+        if self.graph.grown == now[0]:
+            self.store.insides[objects] = found
         return found
 
     def _count(self, looks: int) -> None:
@@ -65,7 +71,10 @@ class Contents(Heap):
         """Return what is inside the objects that a field holds, as it arrives through the field."""
         inner = NONE
         for target in in_order(value.pts):
-            inner |= self._deep(target, known, depth)
+            if target.laden:
+                inner |= self._deep(target, known, depth)
+            elif target.kind not in HOLLOW:
+                self.store.doubt(target)
         return self.graph.through(inner, value.deps) if inner else inner
 
     def _node_like(self, obj: Obj) -> bool:

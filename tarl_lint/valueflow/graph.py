@@ -46,6 +46,7 @@ class Graph:
     arriving: dict[tuple[int, int], None] = field(
         default_factory=dict
     )  # (node of a carrier, what it carries)
+    grown: int = 0  # how often something new was inside an object that was passed on
     asked: int = 0  # how much was looked at to tell through whom content arrives
     asking: set[tuple[int, int]] = field(default_factory=set)  # questions that are being answered
 
@@ -167,5 +168,9 @@ class Graph:
 
     def hold(self, carrier: int, content: Nodes) -> None:
         """Remember what was inside an object when `carrier` passed it on."""
-        if content:
-            self.held.setdefault(carrier, set()).update(content)
+        if not content:
+            return
+        held = self.held.setdefault(carrier, set())
+        if not content <= held:
+            held |= content
+            self.grown += 1

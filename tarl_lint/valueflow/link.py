@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Callable, Iterator, Sequence
 
 from tarl_lint import catalog
@@ -19,6 +20,7 @@ from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, ClassInfo, Frame
 MAX_ROUNDS = 12
 EXCHANGED = 40  # values that a root shares while it waits, in the time of a statement
 STARTS = frozenset(["init_node", "init", "create_node", "spin", "Subscriber", "create_subscription"])
+STARTING = re.compile(rf"\.\s*({'|'.join(sorted(STARTS))})\s*\(")  # without it a file starts nothing
 
 
 class Linker(Execution):
@@ -205,10 +207,12 @@ class Linker(Execution):
         """Run functions and make nodes that are there to be started from outside (entry points)."""
         for program in list(self.programs.values()):
             module = self.module_objects[program.name]
+            starts = STARTING.search(self.modules[program.path].text) is not None
             for statement in _definitions(program.body):
                 if isinstance(statement, ir.Define):
-                    self._main_function(statement, module)
-                else:
+                    if starts or statement.function.name == "main":
+                        self._main_function(statement, module)
+                elif starts:
                     self._node_class(statement, program)
 
     def _main_function(self, statement: ir.Define, module: Obj) -> None:

@@ -115,6 +115,8 @@ class Store:
     foreign: dict[Key, Value] = field(default_factory=dict)  # what others stored while this root waited
     now: Delta = field(default_factory=dict)
     hidden: list[dict[Key, Value | None]] = field(default_factory=lambda: [{}])
+    insides: dict[frozenset[Obj], frozenset[int]] = field(default_factory=dict)  # data inside objects now
+    looked: object = None  # what else that was true of when somebody looked
 
     def get(self, key: Key) -> Value | None:
         """Return the value now, None where nothing was stored."""
@@ -139,6 +141,8 @@ class Store:
         layer[key] = self.now[key] = value
         owner, name = key
         owner.fields[name] = None
+        if self.insides and owner.kind != "frame":
+            self.insides.clear()
         laden = bool(value.deps)
         for obj in value.pts:
             if obj.kind == "lib":
@@ -166,12 +170,14 @@ class Store:
             self.layers.append({})
             self.hidden.append({})
             return
+        self.insides.clear()
         self.layers.append(dict(delta))
         self.hidden.append({key: self.now.get(key) for key in delta})
         self.now.update(delta)
 
     def pop(self) -> Delta:
         """Close the top layer and return it."""
+        self.insides.clear()
         for key, value in self.hidden.pop().items():
             if value is None:
                 del self.now[key]

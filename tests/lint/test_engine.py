@@ -96,8 +96,31 @@ def test_modules_that_cannot_matter_are_left_out():
     tools = module("tools", "def helper(x):\n    return x\ndef clean(x):\n    return x")
     apart = module("apart", "x = 1")
     user = module("user", "import node")
-    assert [m.name for m in relevant([apart, node, tools, user], Config())] == ["node", "tools", "user"]
+    assert [m.name for m in relevant([apart, node, tools, user], Config())] == ["tools", "node", "user"]
     assert relevant([apart, tools], Config()) == []
+
+
+def test_what_only_prose_speaks_of_matters_not():
+    prose = '''
+        """Ask pub.publish(msg) of a Publisher."""
+        topic = "it's"  # as rospy.Subscriber has it
+        said = f"{topic} # no comment"
+        '''
+    assert relevant([module("prose", prose)], Config()) == []
+    assert relevant([module("code", prose + 'send = f"{pub.publish(said)}"')], Config())
+
+
+def test_modules_that_import_each_other_come_in_the_order_of_their_paths():
+    one, two = module("one", "import two\npublish = 1"), module("two", "import one, three")
+    three = module("three", "x = 1")
+    assert [m.name for m in relevant([one, two, three], Config())] == ["three", "two", "one"]
+    assert relevant([three, two, one], Config()) == relevant([one, two, three], Config())
+
+
+def test_the_catalog_holds_where_the_source_of_ros_is_among_the_files():
+    library = module("rospy", "class Subscriber: ...\nclass Publisher: ...")
+    node = module("node", NODE.format(value="msg.data"))
+    assert kinds(library, node) == kinds(node) == [("explicit", ("a",), ("b",))]
 
 
 def test_classes_that_only_others_start_are_started():
