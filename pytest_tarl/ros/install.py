@@ -101,11 +101,25 @@ STANDINS: Mapping[str, str] = {  # what a node imports → what it gets
     "cv_bridge.core": "cv_bridge",
     "tf.transformations": "transformations",
     "tf_transformations": "transformations",
+    "rclpy.parameter_client": "rclpy.parameter_client",
+    "ros_numpy": "ros_numpy",
+    "ros_numpy.geometry": "ros_numpy",
+    "ros_numpy.image": "ros_numpy",
+    "ros_numpy.occupancy_grid": "ros_numpy",
+    "ros_numpy.point_cloud2": "ros_numpy",
+    "rosgraph": "tools.rosgraph",
+    "rosgraph.masterapi": "tools.rosgraph",
+    "rosnode": "tools.rosnode",
+    "rosparam": "tools.rosparam",
+    "rosservice": "tools.rosservice",
+    "rostopic": "tools.rostopic",
+    "tf2_ros.buffer_client": "tf2_ros.serving",
 }
 _TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_transformations", "tf2_ros", "tf2_py",
-            "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py")  # fmt: skip
-_MISSING = ("rosgraph", "rosnode", "rostopic", "rosservice", "rosparam", "roslaunch", "moveit_commander",
-            "image_transport", "tf2_sensor_msgs", "tf2_kdl", "ros_numpy", "nav2_simple_commander")  # fmt: skip
+            "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py", "ros_numpy", "rosgraph",
+            "rosnode", "rosparam", "rosservice", "rostopic")  # fmt: skip
+_MISSING = ("roslaunch", "moveit_commander", "image_transport", "tf2_sensor_msgs", "tf2_kdl",
+            "nav2_simple_commander")  # fmt: skip
 _STANDALONE = (
     "cv_bridge",
     "rospkg",

@@ -83,6 +83,14 @@ from pytest_tarl.ros.rospy.topics import (
     wait_for_message,
 )
 
+
+def get_master() -> Any:
+    """Return who knows nodes, topics and parameters; it answers with (code, status, value)."""
+    from pytest_tarl.ros.tools.rosgraph import MasterProxy
+
+    return MasterProxy()
+
+
 __version__ = "1.16.0"
 
 
@@ -122,6 +130,7 @@ __all__ = [
     "delete_param",
     "exceptions",
     "get_caller_id",
+    "get_master",
     "get_name",
     "get_namespace",
     "get_node_uri",

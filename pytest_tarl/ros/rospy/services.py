@@ -47,7 +47,7 @@ class Service:
         error_handler: Callable[..., Any] | None = None,
     ) -> None:
         node = this_node("Service")
-        self._process = node.process
+        self.process = node.process
         self.resolved_name = node.resolve(name)
         self.service_class = service_class
         self.request_type: type = service_class._request_class
@@ -57,7 +57,7 @@ class Service:
         if self.resolved_name in self._directory:
             raise ServiceException(f"service [{self.resolved_name}] already registered")
         self._directory.add(self.resolved_name, self)
-        self._process.at_end(self.shutdown)
+        self.process.at_end(self.shutdown)
 
     def shutdown(self, reason: str = "") -> None:
         """Stop serving."""
@@ -65,12 +65,12 @@ class Service:
 
     def spin(self) -> None:
         """Wait until the node is shut down."""
-        while not self._process.ending:
-            self._process.scheduler.wait()
+        while not self.process.ending:
+            self.process.scheduler.wait()
 
     def handle(self, request: Any, answer: Answer) -> None:
         """Handle a request in a task of this node; `answer` gets the response, None where the handler gave none."""
-        self._process.scheduler.spawn(self._process, self._serve, request, answer)
+        self.process.scheduler.spawn(self.process, self._serve, request, answer)
 
     def _serve(self, request: Any, answer: Answer) -> None:
         """Handle a request; as in rospy, an exception of the handler is the caller's failure, not the node's end."""

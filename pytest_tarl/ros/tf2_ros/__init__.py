@@ -11,6 +11,7 @@ from pytest_tarl.ros.tf2_ros.broadcasting import (
     TransformListener,
 )
 from pytest_tarl.ros.tf2_ros.buffer import Buffer, BufferInterface, TransformRegistration, TypeException
+from pytest_tarl.ros.tf2_ros.serving import BufferClient, BufferServer
 from pytest_tarl.ros.transforms import (
     ConnectivityException,
     ExtrapolationException,
@@ -21,9 +22,9 @@ from pytest_tarl.ros.transforms import (
 )
 
 __all__ = [
-    "Buffer", "BufferInterface", "ConnectivityException", "ExtrapolationException", "InvalidArgumentException",
-    "LookupException", "StaticTransformBroadcaster", "TimeoutException", "TransformBroadcaster", "TransformException",
-    "TransformListener", "TransformRegistration", "TypeException",
+    "Buffer", "BufferClient", "BufferInterface", "BufferServer", "ConnectivityException", "ExtrapolationException",
+    "InvalidArgumentException", "LookupException", "StaticTransformBroadcaster", "TimeoutException",
+    "TransformBroadcaster", "TransformException", "TransformListener", "TransformRegistration", "TypeException",
 ]  # fmt: skip
 
 

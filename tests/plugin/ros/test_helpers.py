@@ -236,8 +236,9 @@ def test_node_that_polls_its_keyboard_waits_in_virtual_time(start: Start) -> Non
 
 def test_missing_libraries_and_names_are_named(start: Start) -> None:
     for said, line in {
-        r"rosgraph is not in": "import rosgraph",
-        r"tf2_ros\.BufferClient is not in": "from tf2_ros import BufferClient",
+        r"rosgraph\.Master\.registerPublisher is not in": "import rosgraph; rosgraph.Master('/me').registerPublisher",
+        r"roslaunch is not in": "import roslaunch",
+        r"tf2_ros\.Spaceship is not in": "from tf2_ros import Spaceship",
         r"actionlib\.ActionServer is not in": "import actionlib; actionlib.ActionServer",
         r"tf2_ros\.spaceship is not in": "import tf2_ros.spaceship",
         r"OpenCV": "import sys; sys.modules['cv2'] = None; from cv_bridge import CvBridge;"

@@ -489,9 +489,9 @@ def test_loop_that_sleeps_for_no_time_is_stopped_too(start: Start) -> None:
 
 def test_what_is_missing_is_named(start: Start) -> None:
     for missing, line in {
-        r"rospy\.get_master": "import rospy; rospy.get_master()",
+        r"rospy\.get_node_info": "import rospy; rospy.get_node_info()",
         r"rospy\.impl": "import rospy.impl",
-        r"rosgraph": "import rosgraph",
+        r"rosgraph\.network": "import rosgraph.network",
         r"tf2_kdl": "import tf2_kdl",
         r"Spaceship": "import rospy; from std_msgs.msg import Spaceship",
     }.items():

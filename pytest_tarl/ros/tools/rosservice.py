@@ -1,0 +1,62 @@
+"""rosservice: which services are there, and calling them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pytest_tarl.ros.missing import refuse
+from pytest_tarl.ros.rospy.services import ServiceProxy
+from pytest_tarl.ros.tools import graph
+
+__all__ = [
+    "ROSServiceException", "ROSServiceIOException", "call_service", "get_service_class_by_name", "get_service_list",
+    "get_service_node", "get_service_type",
+]  # fmt: skip
+
+
+class ROSServiceException(Exception):  # noqa: N818 (these names are rosservice's)
+    """A service could not be asked about."""
+
+
+class ROSServiceIOException(ROSServiceException):
+    """The master could not be asked."""
+
+
+def get_service_list(node: str | None = None, namespace: str | None = None) -> list[str]:
+    """List services, of one node or one namespace where that is given."""
+    entries = [(name, nodes) for name, nodes in graph.ends()[2] if graph.below(name, namespace)]
+    return sorted(name for name, nodes in entries if node is None or graph.resolved(node) in nodes)
+
+
+def get_service_type(service_name: str) -> str | None:
+    """Return the type of a service, None for an unknown one."""
+    found = graph.services().get(graph.resolved(service_name))
+    return None if found is None else str(found._type)
+
+
+def get_service_class_by_name(service_name: str) -> Any:
+    """Return the class of a service. Raises ROSServiceException for an unknown one."""
+    found = graph.services().get(graph.resolved(service_name))
+    if found is None:
+        raise ROSServiceException(f"Service [{service_name}] is not available.")
+    return found
+
+
+def get_service_node(service_name: str) -> str | None:
+    """Return who serves it."""
+    return next((nodes[0] for name, nodes in graph.ends()[2] if name == graph.resolved(service_name)), None)
+
+
+def call_service(service_name: str, service_args: Any, service_class: Any = None) -> tuple[Any, Any]:
+    """Call a service with a list of values or a mapping of fields; return request and response."""
+    made = service_class or get_service_class_by_name(service_name)
+    if isinstance(service_args, list) and len(service_args) == 1 and isinstance(service_args[0], dict):
+        service_args = service_args[0]
+    given = isinstance(service_args, dict)
+    request = made._request_class(**service_args) if given else made._request_class(*service_args)
+    return request, ServiceProxy(service_name, made).call(request)
+
+
+def __getattr__(name: str) -> Any:
+    """Name what is missing."""
+    raise refuse("rosservice", name)

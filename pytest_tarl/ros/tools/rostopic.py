@@ -1,0 +1,63 @@
+"""rostopic: what a topic carries."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from pytest_tarl.ros.clock import nanoseconds
+from pytest_tarl.ros.messages import find_class
+from pytest_tarl.ros.missing import refuse
+from pytest_tarl.ros.process import current_process
+from pytest_tarl.ros.tools import graph
+from pytest_tarl.sensors import field_value
+
+__all__ = ["ROSTopicException", "ROSTopicIOException", "get_topic_class", "get_topic_type"]
+
+Evaluate = Callable[[Any], Any] | None
+_LOOK = nanoseconds(0.1)  # between two looks of a blocking question
+
+
+class ROSTopicException(Exception):  # noqa: N818 (these names are rostopic's)
+    """A topic could not be asked about."""
+
+
+class ROSTopicIOException(ROSTopicException):
+    """The master could not be asked."""
+
+
+def get_topic_type(topic: str, blocking: bool = False) -> tuple[str | None, str | None, Evaluate]:
+    """Return type, name and a function that picks the field where `topic` names one of a message; None for unknown."""
+    process = current_process("rostopic.get_topic_type")
+    while True:
+        found = _known(topic)
+        if found[0] is not None or not blocking or process.ending:
+            return found
+        process.scheduler.wait(process.scheduler.time + _LOOK)
+
+
+def get_topic_class(topic: str, blocking: bool = False) -> tuple[Any, str | None, Evaluate]:
+    """Return message class, name and the function of `get_topic_type`. Raises ROSTopicException for unknown types."""
+    kind, name, evaluate = get_topic_type(topic, blocking)
+    if kind is None:
+        return None, None, None
+    made = find_class("ros1", *kind.split("/"))
+    if made is None:
+        raise ROSTopicException(f"Cannot load message class for [{kind}]. Are your messages built?")
+    return made, name, evaluate
+
+
+def _known(topic: str) -> tuple[str | None, str | None, Evaluate]:
+    types, wanted = graph.topic_types(), graph.resolved(topic)
+    if wanted in types:
+        return types[wanted], wanted, None
+    longest = max((name for name in types if wanted.startswith(name + "/")), key=len, default=None)
+    if longest is None:
+        return None, None, None
+    field = wanted[len(longest) + 1 :].replace("/", ".")
+    return types[longest], longest, lambda message: field_value(message, field)
+
+
+def __getattr__(name: str) -> Any:
+    """Name what is missing."""
+    raise refuse("rostopic", name)
