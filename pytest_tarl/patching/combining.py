@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.agreeing import agreed
 from pytest_tarl.patching.patch import BASE, bytes_diff, split_lines
 from pytest_tarl.patching.reading import Patch, Replacement
 
@@ -85,12 +86,19 @@ def same_change(first: Patch, second: Patch) -> bool:
 
 
 def _in_order(wanted: Sequence[Replacement]) -> list[Replacement]:
-    """Return each replacement once, from the top of the file down."""
-    return sorted(dict.fromkeys(wanted), key=lambda one: (one.start, one.end))
+    """Return each replacement once, from the top of the file down; those that agree are one."""
+    ordered: list[Replacement] = []
+    for one in sorted(dict.fromkeys(wanted), key=lambda one: (one.start, one.end)):
+        joined = agreed(ordered[-1], one) if ordered else None
+        if joined is None:
+            ordered.append(one)
+        else:
+            ordered[-1] = joined
+    return ordered
 
 
 def _clash(one: Replacement, other: Replacement) -> bool:
     """Tell whether two replacements overlap; what is only put in does not take the place of anything."""
-    if one == other:
+    if one == other or agreed(one, other) is not None:
         return False
     return one.start < other.end and other.start < one.end

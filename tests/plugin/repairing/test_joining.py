@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from pytest_tarl.commands.cli import main
 from pytest_tarl.patching.reading import read
 from pytest_tarl.repairing.joining import joined
 from tests.plugin.commands.test_applying import AGAIN, NODE, git, guarded, repair, robot
@@ -42,6 +43,69 @@ def test_a_conflict_is_told_with_its_lines_and_both_stay(robot: Path) -> None:
         f"node.py:9 is changed in two ways, by {first.name} and by {second.name}: apply one"
     )
     assert len(found.commands) == 2
+
+
+BOTH = "from std_msgs.msg import Bool, Float32, Float64"
+IMPORTING = NODE.replace("import rospy\n", "import rospy\nfrom std_msgs.msg import Float64\n")
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+def test_names_that_two_repairs_add_to_one_import_go_together(robot: Path, ending: str) -> None:
+    (robot / "node.py").write_bytes(IMPORTING.replace("\n", ending).encode())
+    git("commit", "-qam", "it imports", cwd=robot)
+    bool_too = IMPORTING.replace("import Float64", "import Bool, Float64").replace("low = 1", "low = 3")
+    float_too = IMPORTING.replace("import Float64", "import Float32, Float64").replace("GAIN = 5", "GAIN = 7")
+    first, second = repair(robot, {"node.py": bool_too}), repair(robot, {"node.py": float_too}, "wind")
+    found = joined([first, second], robot)
+    assert "go together" in found.lines[0]
+    git(*found.commands[0].split()[1:], cwd=robot)
+    wanted = IMPORTING.replace("from std_msgs.msg import Float64", BOTH)
+    wanted = wanted.replace("low = 1", "low = 3").replace("GAIN = 5", "GAIN = 7")
+    assert (robot / "node.py").read_bytes() == wanted.replace("\n", ending).encode()
+
+
+def test_what_was_applied_at_once_is_reverted_at_once(robot: Path) -> None:
+    (robot / "node.py").write_text(IMPORTING)
+    git("commit", "-qam", "it imports", cwd=robot)
+    added = "from nav_msgs.msg import Odometry\nfrom std_msgs.msg import Bool, Float64"
+    first = repair(robot, {"node.py": IMPORTING.replace("from std_msgs.msg import Float64", added)})
+    second = repair(
+        robot, {"node.py": IMPORTING.replace("import Float64", "import Float32, Float64")}, "wind"
+    )
+    assert main(["apply", str(first), str(second)]) == 0
+    both = (robot / "node.py").read_text()
+    assert f"from nav_msgs.msg import Odometry\n{BOTH}\n" in both
+    assert main(["revert", str(first), str(second)]) == 0
+    assert (robot / "node.py").read_text() == IMPORTING
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("from std_msgs.msg import Bool, Float64", "from std_msgs.msg import Float64 as Number"),
+        ("from std_msgs.msg import Bool, Float64  # told", "from std_msgs.msg import Float32, Float64"),
+        ("GAIN = 2", "from std_msgs.msg import Float32, Float64"),
+    ],
+)
+def test_imports_that_lose_a_name_or_a_comment_or_are_none_are_a_conflict(
+    robot: Path, one: str, other: str
+) -> None:
+    (robot / "node.py").write_text(IMPORTING)
+    git("commit", "-qam", "it imports", cwd=robot)
+    first, second = (
+        repair(robot, {"node.py": IMPORTING.replace("from std_msgs.msg import Float64", text)}, drift)
+        for text, drift in ((one, "mud"), (other, "wind"))
+    )
+    assert "node.py:2 is changed in two ways" in joined([first, second], robot).lines[0]
+
+
+def test_what_one_repair_adds_is_not_added_twice_when_the_other_adds_more(robot: Path) -> None:
+    first = repair(robot, {"node.py": NODE.replace("low = 1\n", "low = 1\nterrain = None\n")})
+    more = NODE.replace("low = 1\n", "low = 1\nterrain = None\nrain = None\n").replace("GAIN = 5", "GAIN = 6")
+    second = repair(robot, {"node.py": more}, "wind")
+    found = joined([first, second], robot)
+    git(*found.commands[0].split()[1:], cwd=robot)
+    assert (robot / "node.py").read_text() == more
 
 
 def test_the_same_change_is_applied_once(robot: Path) -> None:
