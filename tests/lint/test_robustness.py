@@ -74,7 +74,7 @@ def reasons(result: Result) -> dict[str, str]:
         (b"import rospy\ndef f(:\n", "The file is not valid Python (invalid syntax): mend this line, or exclude"),
         (b"import rospy\nprint 'x'\n", "This is Python 2, which is not analysed: port the file to Python 3."),
         (b"import rospy\nx = " + b"(" * 5_000 + b")" * 5_000, "too many nested parentheses"),
-        (b"import rospy\nx = " + b"-" * 5_000 + b"1", "The code is nested too deeply to be parsed: split"),
+        (b"import rospy\nx = " + b"-" * 9_000 + b"1", "The code is nested too deeply to be parsed: split"),
         (b"import rospy\n" + b"x = 1\n" * (LARGEST // 6), "The file has more than 2 MB: move data out"),
     ],
 )  # fmt: skip

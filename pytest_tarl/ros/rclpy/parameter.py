@@ -15,7 +15,10 @@ _FIELDS = {
 
 
 class ParameterType(IntEnum):
-    """The types of parameters, as rcl_interfaces numbers them."""
+    """The types of parameters, as rcl_interfaces numbers them; written as numbers, which they are there."""
+
+    __str__ = int.__repr__
+    __format__ = int.__format__
 
     NOT_SET = 0
     BOOL = 1

@@ -45,6 +45,9 @@ def forget(*modules: str) -> None:
     for name in list(sys.modules):
         if any(name == module or name.startswith(f"{module}.") for module in modules):
             del sys.modules[name]
+            package, _, tail = name.rpartition(".")
+            if package in sys.modules and hasattr(sys.modules[package], tail):
+                delattr(sys.modules[package], tail)
 
 
 def outcome(module: str) -> list[Any]:
