@@ -17,8 +17,11 @@ _FIELDS = {
 class ParameterType(IntEnum):
     """The types of parameters, as rcl_interfaces numbers them; written as numbers, which they are there."""
 
-    __str__ = int.__repr__
-    __format__ = int.__format__
+    def __str__(self) -> str:
+        return str(int(self))
+
+    def __format__(self, form: str) -> str:
+        return format(int(self), form)
 
     NOT_SET = 0
     BOOL = 1
