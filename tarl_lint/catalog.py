@@ -198,10 +198,19 @@ DRAWING: Final = frozenset(
 ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
     **{f"cv2.{name}": 0 for name in sorted(DRAWING)},
     "numpy.copyto": 0, "numpy.put": 0, "numpy.place": 0, "numpy.putmask": 0, "random.shuffle": 0,
-    "numpy.fill_diagonal": 0, "setattr": 0,
+    "numpy.fill_diagonal": 0, "setattr": 0, "struct.pack_into": 1,
     **dict.fromkeys(("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"), 0),
     **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), 0),
 }  # fmt: skip
+METHODS_WRITING: Final = {"pack_into": 0, "readinto": 0, "recv_into": 0}  # position of what they fill
+DEVICE_WRITERS: Final = frozenset(["write", "writelines", "send", "sendall", "sendto"])
+DEVICE_READERS: Final = frozenset(
+    ["read", "readline", "readlines", "read_until", "read_all", "readinto", "recv", "recvfrom", "recv_into",
+     "inWaiting"]
+)  # fmt: skip
+MEASURES: Final = frozenset(
+    ["shape", "size", "ndim", "dtype", "nbytes"]
+)  # of an array; no store changes them
 KEEPERS: Final = frozenset(
     [
         "functools.wraps",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import posixpath
+import sys
 from collections.abc import Iterable, Mapping
 from typing import Final, Generic, Protocol, TypeVar
 
@@ -47,12 +48,19 @@ class Index(Generic[M]):
 
         What the catalog describes is never looked up in its source, which may be among the files.
         """
-        candidates = self._by_name.get(name)
+        candidates = self._by_name.get(name) or self._beside(name, importer)
         if not candidates or name.partition(".")[0] in LIBRARIES:
             return None
         if len(candidates) == 1:
             return candidates[0]
         return max(candidates, key=lambda m: (_shared(m.path, importer.path), m.path))
+
+    def _beside(self, name: str, importer: Named) -> list[M]:
+        """Return what a file of a package means that is run as a script: a module in its own directory."""
+        package = importer.name if importer.is_package else importer.name.rpartition(".")[0]
+        if not package or name.partition(".")[0] in sys.stdlib_module_names:
+            return []
+        return self._by_name.get(f"{package}.{name}", [])
 
     @property
     def names(self) -> Mapping[str, list[M]]:

@@ -12,6 +12,7 @@ from tarl_lint.valueflow.graph import Place
 from tarl_lint.valueflow.link import Linker
 from tarl_lint.valueflow.machine import SinkRecord, SourceRecord
 from tarl_lint.valueflow.sites import Texts, Written
+from tarl_lint.valueflow.values import Branches
 
 ROLES: Mapping[str, Role] = {
     "Return": "return",
@@ -72,8 +73,35 @@ class Tracer:
         graph = self.graph
         on_data = closure(record.nodes & reach.data, [graph.data], reach.data) if explicit else set()
         on_any = closure(ends, [graph.data, graph.control], reach.any)
+        on_any |= self.made_there(on_any)
         steps = self.steps(origin, on_data, on_any, record)
         return Flow("explicit" if explicit else "implicit", source, sink, steps)
+
+    def made_there(self, nodes: set[int]) -> set[int]:
+        """Return the constants that conditions among the nodes choose, with the statements that make them."""
+        graph = self.graph
+        found: set[int] = set()
+        for node in nodes:
+            if node in graph.gates:
+                dep, choice = graph.gates[node]
+                self._makers(dep, frozenset(b for b in choice if b[0] in nodes), found)
+            for former in graph.data[node] & graph.stands_for.keys():
+                dep = graph.stands_for[former]
+                ways = frozenset(b for b in graph.branches[dep] - graph.branches[node] if b[0] in nodes)
+                if ways:
+                    found.add(dep)
+                    self._makers(dep, ways, found)
+        return found
+
+    def _makers(self, dep: int, ways: Branches, found: set[int]) -> None:
+        """Add what a value is made from, as far as it stands under the conditions that choose it."""
+        pending = [dep] if ways else []
+        while pending:
+            for near in self.graph.data[pending.pop()]:
+                former = self.graph.stands_for.get(near, near)
+                if former not in found and not ways.isdisjoint(self.graph.branches[former]):
+                    found.add(former)
+                    pending.append(former)
 
     # --- steps --------------------------------------------------------------------------------------------
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from tarl_lint import catalog
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.calls import Calls
 from tarl_lint.valueflow.heap import ANY, LENGTH, item_field
@@ -29,6 +30,7 @@ QUEUES = frozenset(
     for module in ("queue", "Queue", "asyncio", "multiprocessing")
     for name in ("Queue", "LifoQueue", "PriorityQueue", "SimpleQueue", "JoinableQueue")
 )
+SENT = "<sent>"  # the field of a port, file or socket that holds what was written to it
 FLAG = "<flag>"  # the field of an event that says whether it is set
 FLAGGING = frozenset(["set", "clear"])
 IN_ORDER = frozenset(["list", "tuple", "deque", "iter", "reversed"])  # keep their argument's elements apart
@@ -50,6 +52,9 @@ class Containers(Calls):
         plain, named = arguments
         if name in FLAGGING and not plain:
             self._flag(base, name, frame, call)
+        if name in catalog.DEVICE_WRITERS and base.pts and all(map(is_device, base.pts)):
+            self._transmit(base, plain, frame, call)
+            return
         if name == "clear":
             for obj in base.pts if len(base.pts) == 1 else ():
                 self.empty(obj)
@@ -74,6 +79,19 @@ class Containers(Calls):
         """Set or clear an event of a library: whoever asks it learns what decided that."""
         events = Value(base.deps, frozenset(o for o in base.pts if o.kind == "lib"))
         self.write_field(events, FLAG, self.through_statement(const(name == "set"), frame, call))
+
+    def _transmit(self, base: Value, plain: list[Value], frame: Frame, call: ir.Call) -> None:
+        """Send something through a port, file or socket: it holds that, but does not give it back when read."""
+        news = self.through_statement(join_all(plain), frame, call) if plain else BOTTOM
+        for obj in base.pts if news is not BOTTOM else ():
+            self.weaken(obj, SENT, news)
+
+    def received(self, base: Value, arguments: Arguments) -> Nodes:
+        """Return what reading from a port, file or socket uses: not what was sent there."""
+        deps = base.deps | self.all_used(arguments)
+        for obj in base.pts:
+            deps |= self.content(obj).deps
+        return deps
 
     def _update(
         self, base: Value, plain: list[Value], named: Mapping[str, Value], frame: Frame, call: ir.Call
@@ -221,6 +239,11 @@ class Containers(Calls):
         values = [self.elements(plain[0])] if len(plain) == 1 else plain
         result = self.ordered_by(join_all(values), it)
         return Value(result.deps | self.all_used(it.arguments), result.pts)
+
+
+def is_device(obj: Obj) -> bool:
+    """Tell whether reading an object of a library gives other things than what was written to it."""
+    return obj.kind == "lib" and not obj.name.startswith("io.")
 
 
 READERS: Mapping[str, Callable[..., Value]] = {

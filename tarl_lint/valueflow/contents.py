@@ -58,7 +58,7 @@ class Contents(Heap):
         for name in list(obj.fields):
             value = self.store.get((obj, name))
             if value is not None:
-                found |= value.deps
+                found |= self.settled(value) if name.isidentifier() else value.deps
                 if value.pts:
                     found |= self._behind(value, known, depth + 1)
         for name, sub in list(obj.subs.items()):

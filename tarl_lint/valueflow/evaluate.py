@@ -19,6 +19,7 @@ from tarl_lint.valueflow.values import (
     Value,
     const,
     join,
+    join_all,
     pointer,
 )
 
@@ -65,7 +66,7 @@ class Evaluation(Displays):
             value = self._opened(frame.module, name)
         if value is not BOTTOM:
             return value
-        stars = [s for s in frame.program.stars if s not in self.module_objects]
+        stars = [s for s in self.opened_by(frame.module) if s not in self.module_objects]
         for star in stars:
             if fact(f"{star}.{name}") is not None:
                 return self.external(f"{star}.{name}")
@@ -116,7 +117,9 @@ class Evaluation(Displays):
             return Value(extra)
         result = Value(extra, consts=frozenset())
         for obj in base.pts:
-            if index.consts and not index.pts:
+            if obj.kind == "class":
+                result = join(result, self.arrive(self.member(obj, index), base.deps))
+            elif index.consts and not index.pts:
                 for key in index.consts:
                     result = join(result, self.arrive(self.element(obj, key), base.deps))
             else:
@@ -125,6 +128,16 @@ class Evaluation(Displays):
                     found = self.missing(obj, ANY)
                 result = join(result, self.arrive(found, base.deps))
         return Value(result.deps | extra, result.pts, result.consts)
+
+    def member(self, cls: Obj, name: Value) -> Value:
+        """Return what `Class[name]` may be: a member of an enumeration, any of them when the name is not known."""
+        names = name.texts() or tuple(n for n in cls.fields if not n.startswith("_"))
+        return join_all(v for n in names if not (v := self.read_field(cls, n)).pts & self.functions(cls))
+
+    def functions(self, cls: Obj) -> frozenset[Obj]:
+        """Return the functions that a class holds."""
+        held = (self.store.get((cls, n)) for n in list(cls.fields))
+        return frozenset(o for v in held if v is not None for o in v.pts if o.kind in ("closure", "bound"))
 
     def element(self, obj: Obj, key: object) -> Value:
         """Return one element by a constant index or key."""

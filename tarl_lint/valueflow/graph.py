@@ -35,6 +35,8 @@ class Graph:
     data: list[set[int]] = field(default_factory=list)
     control: list[set[int]] = field(default_factory=list)
     branches: list[Branches] = field(default_factory=list)
+    gates: dict[int, tuple[int, Branches]] = field(default_factory=dict)  # node → value, choice
+    stands_for: dict[int, int] = field(default_factory=dict)  # node → another that nothing chose
     held: dict[int, set[int]] = field(default_factory=dict)
     numbers: dict[Hashable, int] = field(default_factory=dict)
     literals: dict[int, tuple[object, ir.Pos, str]] = field(default_factory=dict)  # node → constant it is
@@ -66,12 +68,24 @@ class Graph:
         edges = self.data[node]
         mine = self.branches[node]
         for dep in deps:
+            if dep == node:
+                self.control[node].update(branch[0] for branch in mine)  # how often it ran is a choice, too
             if dep in edges or dep == node:
                 continue
             edges.add(dep)
             theirs = self.branches[dep]
             if theirs and not theirs <= mine:
                 self._choose(dep, theirs - mine, node)
+
+    def unchosen(self, dep: int) -> int:
+        """Return a node that stands for another one where it does not matter what led there."""
+        if dep in self.stands_for:
+            return dep
+        node = self.node((dep, "unchosen"), self.places[dep], frozenset())
+        self.stands_for[node] = dep
+        self.copies.add(node)
+        self.data[node].add(dep)
+        return node
 
     def choice(self, deps: Iterable[int], node: int) -> None:
         """Let only the choice that was made for `deps` reach `node`, not their data."""
@@ -83,6 +97,7 @@ class Graph:
     def _choose(self, dep: int, choice: Branches, node: int) -> None:
         """Say that which value arrives at `node` was decided by conditions that `node` is not under."""
         gate = self.node((dep, choice), self.places[dep], self.branches[node])
+        self.gates[gate] = (dep, choice)
         self.control[gate].update(branch[0] for branch in choice)
         self.control[node].add(gate)
 

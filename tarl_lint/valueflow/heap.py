@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from tarl_lint.catalog import MEASURES
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.allocation import Allocation
 from tarl_lint.valueflow.values import (
     BOTTOM,
+    BY_CLASS,
     NONE,
     UNKNOWN,
     ClassInfo,
@@ -82,6 +84,8 @@ class Heap(Allocation):
             content = self.content(obj)
             if content.pts and name.startswith("["):
                 return content
+            if kind == "lib" and obj.info is not BY_CLASS and name in MEASURES:
+                return Value(self.deep(frozenset([obj])))
             return pointer(obj.sub(name))
         if kind in ("sequence", "mapping"):
             return self.content(obj) if name.startswith("[") else BOTTOM
@@ -161,16 +165,24 @@ class Heap(Allocation):
     def _opened(self, module: Obj, name: str) -> Value:
         """Return a name of a module that came in through `import *`."""
         result = BOTTOM
-        program = self.programs.get(module.name)
-        if program is None:
-            return result
-        for star in program.stars:
+        for star in self.opened_by(module):
             target = self.module_objects.get(star)
-            if target is not None and target is not module:
-                value = self.store.get((target, name))
-                if value is not None:
-                    result = join(result, value)
+            value = self.store.get((target, name)) if target is not None else None
+            if value is not None:
+                result = join(result, value)
         return result
+
+    def opened_by(self, module: Obj) -> list[str]:
+        """Return the modules that a module opens by `import *`, and those that these open in turn."""
+        found: dict[str, None] = {}
+        pending = [module.name]
+        while pending:
+            program = self.programs.get(pending.pop())
+            for star in program.stars if program is not None else ():
+                if star not in found and star != module.name:
+                    found[star] = None
+                    pending.append(star)
+        return list(found)
 
     def read_any(self, obj: Obj) -> Value:
         """Return what any element of an object may be."""

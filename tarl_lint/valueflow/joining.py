@@ -9,6 +9,8 @@ from tarl_lint.valueflow.contents import Contents
 from tarl_lint.valueflow.store import Delta
 from tarl_lint.valueflow.values import (
     ABSENT,
+    BOTTOM,
+    BY_CLASS,
     Obj,
     Value,
     join,
@@ -36,15 +38,32 @@ class Joining(Contents):
         result: Delta = {}
         for key in keys:
             value: Value | None = None
+            blank: Value | None = None
             for delta in deltas:
                 here = delta.get(key)
                 if here is None or here is ABSENT:
                     here = self._former(key) if here is None else self.default(*key)
+                    if here is not None and self._unset(key, here):
+                        blank = here
+                        continue
                 if here is not None:
                     value = here if value is None else join(value, here)
+            if blank is not None and (value is None or not _zero(value)):
+                value = blank if value is None else join(value, blank)
             if value is not None:
                 result[key] = value
         return result
+
+    def _unset(self, key: tuple[Obj, str], value: Value) -> bool:
+        """Tell whether a value is a field of a new message, to which nothing was stored yet."""
+        owner = key[0]
+        return (
+            owner.kind == "lib"
+            and owner.root().info is BY_CLASS
+            and not value.deps
+            and all(o.parent is owner and not o.fields for o in value.pts)
+            and self.content(owner) is BOTTOM
+        )
 
     def _former(self, key: tuple[Obj, str]) -> Value | None:
         """Return what a continuation that does not store leaves."""
@@ -57,3 +76,9 @@ class Joining(Contents):
         if owner.kind != "message" and self.store.get((owner.root(), BORN)) is None:
             return None  # the object does not exist there
         return self.content(owner) if name == "*" else self.default(owner, name)
+
+
+def _zero(value: Value) -> bool:
+    """Tell whether a value is what a field of a message is at first: zero, false, an empty text."""
+    known, constant = value.constant()
+    return known and constant is not None and not constant

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from tarl_lint import catalog
 from tarl_lint.catalog import Fact
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.containers import CONTAINERS, QUEUES
+from tarl_lint.valueflow.containers import CONTAINERS, QUEUES, is_device
 from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.futures import READERS
 from tarl_lint.valueflow.heap import ANY
@@ -92,9 +92,9 @@ class Library(Texts):
             same = qualified == "builtins.float" and len(arguments[0]) == 1
             return Value(deps, arguments[0][0].pts if same else frozenset())
         made = self.new_object(arguments, deps, frame, call, fields=name[:1].isupper())
-        if self.config.named and name[:1].isupper():
+        if qualified.startswith("io.") or (self.config.named and name[:1].isupper()):
             for obj in made.pts:
-                obj.name = qualified  # the settings may speak of its methods
+                obj.name = qualified  # settings may speak of its methods; from io.* comes what was written
         return made
 
     def new_object(
@@ -188,11 +188,18 @@ class Library(Texts):
         self, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
     ) -> Value:
         self.call_back(arguments, frame, call)
+        written = catalog.METHODS_WRITING.get(name)
+        if written is not None and written < len(arguments[0]):
+            news = self.through_statement(Value(self.use(base) | self.all_used(arguments)), frame, call)
+            self.change(arguments[0][written], news, call.arguments[written:], frame)
         if name in TEXT_METHODS and not base.pts and base.consts:
             return Value(
                 self.use(base) | self.all_used(arguments), consts=self.text_of(base, name, arguments)
             )
-        deps = self.use(base) | self.all_used(arguments)
+        if name in catalog.DEVICE_READERS and base.pts and all(map(is_device, base.pts)):
+            deps = self.received(base, arguments)
+        else:
+            deps = self.use(base) | self.all_used(arguments)
         if not deps and not base.pts:
             return UNKNOWN
         return self.new_object(arguments, deps, frame, call, fields=False)

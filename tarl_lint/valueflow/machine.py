@@ -214,7 +214,7 @@ class Machine:
         """Return the value as passed on by a statement's node."""
         content = self.deep(value.pts) if value.pts else NONE
         if value.deps:
-            self.graph.flow(value.deps, node)
+            self.graph.flow(self.settled(value), node)
         elif not content and not self.kept(node):
             return value
         if content:
@@ -237,11 +237,17 @@ class Machine:
     def use(self, value: Value) -> Nodes:
         """Return the nodes whose data is used when the whole value is."""
         if not value.pts:
-            return value.deps
+            return self.settled(value)
         content = self.deep(value.pts)
         if not content:
             return value.deps
         return value.deps | self.graph.through(content, value.deps)
+
+    def settled(self, value: Value) -> Nodes:
+        """Return what a value is made from. What is the same constant on every way was chosen by nothing."""
+        if not value.deps or not value.fixed():
+            return value.deps
+        return frozenset(self.graph.unchosen(d) for d in value.deps if not self.graph.control[d])
 
     def nothing_yet(self, value: Value) -> bool:
         """Tell whether nothing was stored so far where a value was looked for, or only None."""

@@ -59,7 +59,7 @@ class Presence(Combining):
         """Yield where a variable or a field of a variable is stored; a class stands for its instances too."""
         if isinstance(expr, ir.Name):
             yield self.holder(expr, frame), expr.name
-        elif isinstance(expr, ir.Attribute) and isinstance(expr.base, ir.Name):
+        elif isinstance(expr, ir.Attribute) and isinstance(expr.base, (ir.Name, ir.Attribute, ir.Item)):
             for base in self.evaluate(expr.base, frame).pts:
                 for owner in (base, *_classes(base)):
                     yield owner, expr.name

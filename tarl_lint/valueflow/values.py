@@ -205,6 +205,10 @@ class Value:
             return True, next(iter(self.consts))
         return False, None
 
+    def fixed(self) -> bool:
+        """Tell whether the value is one constant, whichever way it came."""
+        return self.consts is not None and len(self.consts) == 1 and not self.pts
+
     def texts(self) -> tuple[str, ...]:
         """Return the texts it may be, sorted; none when it may be another thing."""
         if self.consts is None or not all(isinstance(c, str) for c in self.consts):

@@ -1,0 +1,3 @@
+from common import *
+
+LIMIT = 0.5
