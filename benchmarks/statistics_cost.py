@@ -10,7 +10,7 @@ Times are CPU time of this process, minimum of several; the speed-up by workers 
 from __future__ import annotations
 
 import argparse
-import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -34,6 +34,12 @@ from pytest_tarl.sensors import Sensor
 SITES = 12
 REPEATS = 5
 GROWTH = (1, 2, 4, 8)
+RECORDINGS = (
+    ("shuttle", "test_shuttle.py::test_delivers", 200),
+    ("shuttle", "test_shuttle.py::test_delivers", 1000),
+    ("quadrotor", "test_quadrotor.py", 100),
+    ("quadrotor", "test_quadrotor.py", 400),
+)
 
 
 def main() -> None:
@@ -48,7 +54,9 @@ def main() -> None:
     for line in growth():
         print(line)
     if arguments.workers:
-        print("\n| 60 episodes of 0.2 s | wall s |\n|---|---|")
+        print(
+            "\n| recording | CPU s of the run | of its workers | wall s | speed-up |\n|---|---|---|---|---|"
+        )
         for line in speed_up():
             print(line)
 
@@ -173,19 +181,34 @@ def episode(seed: int, steps: int, cells: int, sites: int) -> Trace:
 
 
 def speed_up() -> Iterator[str]:
-    """Record a simulation that takes its time, here and on two workers."""
+    """Record the examples in one process and with two workers.
+
+    The ratio of the wall times is the one that counts, where two cores are free. What no load changes is the CPU time
+    of the run itself and that of its workers: with as many cores as workers it takes the first and its share of the
+    second.
+    """
+    for example, test, episodes in RECORDINGS:
+        what = f"{example}, {episodes} episodes"
+        whole, _, wall = recorded_example(example, test, episodes, 1)
+        yield f"| {what}, here | {whole:.1f} | | {wall:.1f} | |"
+        own, theirs, took = recorded_example(example, test, episodes, 2)
+        ratio = f"{whole / (own + theirs / 2):.2f} by CPU, {wall / took:.2f} by wall"
+        yield f"| {what}, 2 workers | {own:.1f} | {theirs:.1f} | {took:.1f} | {ratio} |"
+
+
+def recorded_example(example: str, test: str, episodes: int, workers: int) -> tuple[float, float, float]:
+    """Return CPU seconds of a recording, of its workers, and wall seconds; what pytest needs to start is left out."""
+    source = Path(__file__).resolve().parent.parent / "examples" / example
     with tempfile.TemporaryDirectory() as folder:
-        root = Path(folder)
-        (root / "node.py").write_text(NODE)
-        (root / "test_slow.py").write_text(TEST)
-        seconds = {}
-        for workers in (1, 2):
-            command = [sys.executable, "-m", "pytest", "-q", "--tarl-record", f"--tarl-workers={workers}"]
-            before = time.perf_counter()
-            subprocess.run(command, cwd=root, check=True, stdout=subprocess.DEVNULL, env=dict(os.environ))
-            seconds[workers] = time.perf_counter() - before
-            yield f"| {workers} worker{'s' * (workers > 1)} | {seconds[workers]:.1f} |"
-        yield f"| ratio | {seconds[1] / seconds[2]:.2f} |"
+        root = Path(folder, example)
+        shutil.copytree(source, root, ignore=shutil.ignore_patterns(".tarl", "__pycache__"))
+        flags = ["-q", "-p", "no:cacheprovider", test, "--tarl-record"]
+        flags += [f"--tarl-episodes={episodes}", f"--tarl-workers={workers}"]
+        told = subprocess.run(
+            [sys.executable, "-c", MEASURED, *flags], cwd=root, check=True, capture_output=True, text=True
+        )
+    own, theirs, wall = map(float, told.stdout.rpartition("MEASURED")[2].split())
+    return own, theirs, wall
 
 
 def least(work: Callable[[], object], repeats: int = REPEATS) -> float:
@@ -198,38 +221,17 @@ def least(work: Callable[[], object], repeats: int = REPEATS) -> float:
     return min(times)
 
 
-NODE = """\
-import rospy
-from std_msgs.msg import Float64
-
-def heard(msg):
-    out.publish(2.0 * msg.data)
-
-rospy.init_node("doubler")
-out = rospy.Publisher("/out", Float64, queue_size=1)
-rospy.Subscriber("/in", Float64, heard)
-rospy.spin()
-"""
-TEST = """\
-import time
-import pytest
-from pytest_tarl import Sensor
-from pytest_tarl.ros import message_type
-
-Float64 = message_type("std_msgs/msg/Float64")
-
-X = Sensor("x", topic="/in", field="data", low=0, high=1, bins=4)
-
-@pytest.mark.tarl(nodes=["node.py"], sensors=[X], episodes=60)
-def test_doubles(tarl):
-    tarl.start("node.py")
-    for value in tarl.rng("world").uniform(size=10):
-        tarl.bus.publish("/in", Float64(data=float(value)))
-        tarl.step(0.1)
-        until = time.process_time() + 0.02  # a simulation that computes
-        while time.process_time() < until:
-            pass
-        tarl.reward(1.0)
+MEASURED = """
+import sys, time
+from resource import RUSAGE_CHILDREN, RUSAGE_SELF, getrusage
+import numpy, pytest, pytest_tarl.session
+def cpu(who):
+    used = getrusage(who)
+    return used.ru_utime + used.ru_stime
+own, wall = cpu(RUSAGE_SELF), time.perf_counter()
+code = pytest.main(sys.argv[1:])
+print("MEASURED", cpu(RUSAGE_SELF) - own, cpu(RUSAGE_CHILDREN), time.perf_counter() - wall)
+sys.exit(code)
 """
 
 if __name__ == "__main__":

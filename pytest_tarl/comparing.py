@@ -16,7 +16,7 @@ from pytest_tarl.learning.drift import Difference, compare, paper_region
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.looks import Look, certain, concluded, planned
 from pytest_tarl.learning.merging import aligned, merge
-from pytest_tarl.learning.permutation import permuted_loss
+from pytest_tarl.learning.permutation import permutations_for, permuted_loss
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled, tiled_batch
 from pytest_tarl.logged import read_log
@@ -148,6 +148,7 @@ class _Watch:
             tolerance=self.designation.tolerance,
             sensors=self.designation.sensors,
             generator=seeds.generator(self.options.seed, "compare"),
+            permutations=permutations_for(self.options.alpha, self.options.comparisons),
         )
         self.seen.append((look, difference))
         return certain(difference)

@@ -74,6 +74,8 @@ class TarlSession:
         if self.options.drift is not None:
             self._check_drift(marked)
             marked = [item for item in marked if self._chosen(item)]
+        if self.options.holm:
+            self.options = replace(self.options, comparisons=max(len(marked), 1))
         kept = set(marked)
         others = [item for item in items if item not in kept]
         if others:

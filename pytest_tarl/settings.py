@@ -44,6 +44,7 @@ class Options:
     looks: int | None = None  # at the verdict, at most
     log: Path | None = None  # missions of a robot, instead of on-line episodes
     holm: bool = False  # whether verdicts are corrected over all tests of the run
+    comparisons: int = 1  # how many those are
     bags: tuple[Path, ...] = ()  # recorded missions, likewise
 
     ONLINE_EPISODES = 40

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from pytest_tarl.learning.evidence import gathered
 from pytest_tarl.learning.intervals import difference_bounds
 from pytest_tarl.learning.merging import aligned
-from pytest_tarl.learning.permutation import max_statistic, permuted_loss
+from pytest_tarl.learning.permutation import PERMUTATIONS, max_statistic, permuted_loss
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.model import LossInterval, Region, Result, Verdict
 from pytest_tarl.sensors import Cell, Sensor
@@ -52,16 +52,18 @@ def compare(
     tolerance: float | None,
     generator: np.random.Generator,
     sensors: Sequence[Sensor] = (),
+    permutations: int = PERMUTATIONS,
 ) -> Difference:
     """Judge the on-line world against the off-line one; `tolerance` is the loss per episode that nobody minds.
 
-    `sensors` tell which of them are tiled; without them utility is a table.
+    `sensors` tell which of them are tiled; without them utility is a table. `permutations` are more where verdicts are
+    corrected over many comparisons.
     """
     offline, online = aligned(offline, online)
     margin = tolerated(offline, tolerance)
-    p_loss = permuted_loss(offline.total, online.total, generator)
+    p_loss = permuted_loss(offline.total, online.total, generator, permutations)
     loss = float(offline.total.mean() - online.total.mean())
-    p_drift, region, changes = _drift(offline, online, alpha, generator, sensors)
+    p_drift, region, changes = _drift(offline, online, alpha, generator, sensors, permutations)
     detectable = max(margin, smallest_detectable_loss(offline.total, online.total, alpha))
     interval = LossInterval(*loss_bounds(offline.total, online.total, alpha), 1 - 2 * alpha)
     verdict = judged(Verdict("no difference", p_drift, p_loss, loss, detectable, margin, interval), alpha)
@@ -99,12 +101,17 @@ def smallest_detectable_loss(offline: Floats, online: Floats, alpha: float) -> f
 
 
 def _drift(
-    offline: Sample, online: Sample, alpha: float, generator: np.random.Generator, sensors: Sequence[Sensor]
+    offline: Sample,
+    online: Sample,
+    alpha: float,
+    generator: np.random.Generator,
+    sensors: Sequence[Sensor],
+    permutations: int,
 ) -> tuple[float, Region, dict[Cell, float]]:
     """Return p_drift, the region and the change by cell; both samples share their cells."""
     evidence = gathered(offline, online, sensors)
     blocks = evidence.columns()
-    p_values = max_statistic(np.concatenate(blocks, axis=1), online.episodes, generator)
+    p_values = max_statistic(np.concatenate(blocks, axis=1), online.episodes, generator, permutations)
     ends = np.cumsum([block.shape[1] for block in blocks])
     move, reward, novel, wide_move, wide_reward, _ = (part < alpha for part in np.split(p_values, ends[:-1]))
     found: tuple[tuple[Floats, NDArray[np.bool_]], ...] = (

@@ -5,23 +5,44 @@ Corrected over many columns by the distribution of the largest statistic, step b
 
 from __future__ import annotations
 
+from math import ceil, comb
+
 import numpy as np
 
 from pytest_tarl.learning.tables import Floats
 
 PERMUTATIONS = 999
+MOST_PERMUTATIONS = 19_999
 
 
-def permuted_loss(offline: Floats, online: Floats, generator: np.random.Generator) -> float:
+def permutations_for(alpha: float, comparisons: int) -> int:
+    """Return how many shuffles it takes so that a correction over so many comparisons can leave one significant."""
+    return (
+        min(max(PERMUTATIONS, ceil(2 * comparisons / alpha) - 1), MOST_PERMUTATIONS)
+        if comparisons > 1
+        else PERMUTATIONS
+    )
+
+
+def least_p_value(offline: int, online: int, permutations: int) -> float:
+    """Return the smallest p-value that so many episodes and shuffles can give."""
+    return max(1 / (1 + permutations), 1 / comb(offline + online, online))
+
+
+def permuted_loss(
+    offline: Floats, online: Floats, generator: np.random.Generator, permutations: int = PERMUTATIONS
+) -> float:
     """Return the one-sided permutation p-value for a lower mean on-line; inputs have shape (episodes,)."""
     pooled = np.concatenate((online, offline))
     pooled -= pooled.mean()
-    shuffled = labels(pooled.size, online.size, generator) @ pooled
+    shuffled = labels(pooled.size, online.size, generator, permutations) @ pooled
     tie = 1e-9 * float(np.abs(pooled).sum())  # sums of the same numbers in another order
     return (1 + int(np.count_nonzero(shuffled[1:] <= shuffled[0] + tie))) / shuffled.size
 
 
-def max_statistic(columns: Floats, first: int, generator: np.random.Generator) -> Floats:
+def max_statistic(
+    columns: Floats, first: int, generator: np.random.Generator, permutations: int = PERMUTATIONS
+) -> Floats:
     """Return each column's p-value corrected over all columns, shape (columns,).
 
     The first `first` rows are one group, the others the other. The statistic is the difference of the groups' means in
@@ -35,7 +56,7 @@ def max_statistic(columns: Floats, first: int, generator: np.random.Generator) -
     if not alive.size or not 0 < first < columns.shape[0]:
         return p_values
     standard = deviation[:, alive] / scale[alive]
-    statistic = np.abs(labels(columns.shape[0], first, generator) @ standard)
+    statistic = np.abs(labels(columns.shape[0], first, generator, permutations) @ standard)
     order = np.argsort(statistic[0], kind="stable")
     largest = np.maximum.accumulate(statistic[:, order], axis=1)
     reached = (largest[1:] >= largest[0] - 1e-9).sum(axis=0)
@@ -44,10 +65,10 @@ def max_statistic(columns: Floats, first: int, generator: np.random.Generator) -
     return p_values
 
 
-def labels(rows: int, first: int, generator: np.random.Generator) -> Floats:
-    """Return group indicators, shape (1 + PERMUTATIONS, rows): as observed, then shuffled."""
-    drawn = np.argpartition(generator.random((PERMUTATIONS, rows)), first, axis=1)[:, :first]
-    indicators = np.zeros((1 + PERMUTATIONS, rows))
+def labels(rows: int, first: int, generator: np.random.Generator, permutations: int = PERMUTATIONS) -> Floats:
+    """Return group indicators, shape (1 + permutations, rows): as observed, then shuffled."""
+    drawn = np.argpartition(generator.random((permutations, rows)), first, axis=1)[:, :first]
+    indicators = np.zeros((1 + permutations, rows))
     indicators[0, :first] = 1.0
     np.put_along_axis(indicators[1:], drawn, 1.0, axis=1)
     return indicators

@@ -115,12 +115,26 @@ def test_holm_corrects_the_verdicts_of_all_tests_when_they_have_run(drifting: py
 def test_a_loss_that_is_significant_alone_may_not_be_so_among_many(drifting: pytest.Pytester) -> None:
     many = ", ".join(f'"fine{n}": 1.0' for n in range(9))
     changed(drifting, "test_tank", '"fine": 1.0', many)
-    alpha = "--tarl-alpha=0.002"  # the least p value that the permutations allow is 0.001
-    short = ("--tarl-online", "--tarl-episodes=4", alpha)
+    short = (
+        "--tarl-online",
+        "--tarl-episodes=2",
+    )  # so few that the least p value is far from 0
     drifting.runpytest(*short, "--tarl-drift=clogged", "--tarl-looks=1").assert_outcomes(
         failed=1, deselected=1
     )
-    drifting.runpytest(*short, "--tarl-holm").assert_outcomes(passed=10, deselected=1)
+    told = drifting.runpytest(*short, "--tarl-holm")
+    told.assert_outcomes(passed=10, deselected=1)
+    told.stdout.fnmatch_lines(
+        ["*too few*", "*Whatever this test had found, it could not have been significant*"]
+    )
+
+
+def test_many_comparisons_get_the_permutations_that_they_need(drifting: pytest.Pytester) -> None:
+    many = ", ".join(f'"fine{n}": 1.0' for n in range(9))
+    changed(drifting, "test_tank", '"fine": 1.0', many)
+    told = drifting.runpytest("--tarl-online", "--tarl-episodes=8", "--tarl-alpha=0.002", "--tarl-holm")
+    told.assert_outcomes(failed=1, passed=9, deselected=1)
+    told.stdout.no_fnmatch_line("*could not have been significant*")
 
 
 @pytest.mark.parametrize(
