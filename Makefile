@@ -74,11 +74,19 @@ $(ROS2_VENV)/.installed: pyproject.toml
 bench-paper: setup
 	$(BIN)/python benchmarks/paper.py
 
-bench-drift: setup
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check cma optuna
-	$(BIN)/python benchmarks/drift/run.py
+# FauxPy pins other plugins of pytest, so it lives in an environment of its own
+FAUXPY_VENV ?= .venv-fauxpy
+
+$(FAUXPY_VENV)/.installed: pyproject.toml
+	@$(PYTHON) -m venv $(FAUXPY_VENV)
+	$(FAUXPY_VENV)/bin/python $(PIP_INSTALL) --editable ".[ros]" fauxpy
+	@touch $@
+
+bench-drift: setup $(FAUXPY_VENV)/.installed
+	$(BIN)/python $(PIP_INSTALL) cma optuna
+	$(BIN)/python benchmarks/drift/run.py --fauxpy $(abspath $(FAUXPY_VENV))/bin/python
 
 clean:
-	rm -rf $(VENV) $(ROS1_VENV) $(ROS2_VENV) .mypy_cache .pytest_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) $(ROS1_VENV) $(ROS2_VENV) $(FAUXPY_VENV) .mypy_cache .pytest_cache .ruff_cache .import_linter_cache
 	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
 	rm -rf examples/*/.tarl

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import itertools
+from statistics import NormalDist
 
 import numpy as np
 import pytest
 
 from pytest_tarl.searching.accept import (
     LOOKS,
+    SHARES,
     Outcome,
     Reference,
     World,
@@ -65,6 +67,16 @@ def test_a_repair_just_below_the_margin_is_rarely_accepted() -> None:
 
 def test_looks_are_increasing() -> None:
     assert all(a < b for a, b in itertools.pairwise(LOOKS))
+
+
+@pytest.mark.parametrize("risk", [0.05, 0.025, 0.0125, 0.00625, 0.003125, 0.0015625])
+def test_all_looks_together_err_no_more_often_than_the_risk(risk: float) -> None:
+    paths = 400_000
+    steps = np.diff(LOOKS, prepend=0)
+    sums = np.cumsum(np.random.default_rng(1).normal(size=(paths, len(LOOKS))) * np.sqrt(steps), axis=1)
+    limits = [NormalDist().inv_cdf(1 - risk * share) for share in SHARES]
+    erring = float(np.mean(np.any(sums / np.sqrt(LOOKS) > limits, axis=1)))
+    assert erring <= risk + 3 * np.sqrt(risk / paths)
 
 
 def in_some_missions(share: float, lost: float, seed: int) -> World:
