@@ -174,13 +174,16 @@ def test_what_is_no_optimiser_is_said(make: Any, words: str) -> None:
     ("name", "words"),
     [
         ("nowhere_to_be_found:Search", "No module named 'nowhere_to_be_found'"),
-        ("mine:Serach", "mine has no 'Serach'"),
-        ("mine:NUMBER", "not a function or a class"),
-        ("torn:Search", r"torn cannot be imported: NameError: .* \(torn.py, line 1\)"),
+        ("plugged_mine:Serach", "plugged_mine has no 'Serach'"),
+        ("plugged_mine:NUMBER", "not a function or a class"),
+        (
+            "plugged_torn:Search",
+            r"plugged_torn cannot be imported: NameError: .* \(plugged_torn.py, line 1\)",
+        ),
     ],
 )
 def test_a_name_that_leads_nowhere_is_said(tmp_path: Path, name: str, words: str) -> None:
-    (tmp_path / "mine.py").write_text("NUMBER = 3\n")
-    (tmp_path / "torn.py").write_text("nothing\n")
+    (tmp_path / "plugged_mine.py").write_text("NUMBER = 3\n")
+    (tmp_path / "plugged_torn.py").write_text("nothing\n")
     with pytest.raises(SettingsError, match=words):
         factory(name, (tmp_path,))
