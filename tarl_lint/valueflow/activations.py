@@ -8,7 +8,7 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.allocation import BORN
 from tarl_lint.valueflow.evaluate import Evaluation
 from tarl_lint.valueflow.heap import item_field
-from tarl_lint.valueflow.machine import MANY, MAX_CALLS, MAX_FRAMES, OFTEN, Arguments
+from tarl_lint.valueflow.machine import LEISURE, MANY, MAX_CALLS, MAX_FRAMES, OFTEN, Arguments
 from tarl_lint.valueflow.store import Delta
 from tarl_lint.valueflow.values import (
     BOTTOM,
@@ -71,7 +71,22 @@ class Activations(Evaluation):
     def invoke(
         self, closure: Obj, arguments: Arguments, caller: Frame, call: ir.Call, owner: Obj | None = None
     ) -> Value:
-        """Run a function on arguments."""
+        """Run a function on arguments; where no data goes in and nothing takes part, only so far."""
+        before, start = self.leisure, self.spent
+        matters = not isinstance(closure.info, tuple) or closure.info[2].takes_part or carries(arguments)
+        if not matters and before is not None and start > before:
+            return self._again(closure, arguments)
+        if matters:
+            self.leisure = None
+        elif before is None:
+            self.leisure = start + LEISURE
+        result = self._invoke(closure, arguments, caller, call, owner)
+        self.leisure = before + self.spent - start if matters and before is not None else before
+        return result
+
+    def _invoke(
+        self, closure: Obj, arguments: Arguments, caller: Frame, call: ir.Call, owner: Obj | None
+    ) -> Value:
         receiver = arguments[0][0].pts if owner is not None and arguments[0] else None
         frame = self.make_frame(closure, caller, call, receiver, owner)
         if frame is None:
@@ -227,6 +242,12 @@ def _lasting(delta: Delta, frame: Frame) -> Delta:
     if frame.captured:
         return delta
     return {key: value for key, value in delta.items() if key[0] is not frame}
+
+
+def carries(arguments: Arguments) -> bool:
+    """Tell whether any data is in what is passed."""
+    plain, named = arguments
+    return any(v.deps or any(o.laden for o in v.pts) for v in (*plain, *named.values()))
 
 
 def _receiver(value: Value) -> bool:

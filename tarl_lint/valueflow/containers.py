@@ -206,7 +206,7 @@ class Containers(Calls):
         if not decides:
             return NONE
         node = self.node(frame, ("filter", slot), "condition")
-        self.graph.control[node].update(decides)
+        self.graph.depend(node, decides)
         return frozenset([node])
 
     def ordered_by(self, elements: Value, it: Invocation) -> Value:

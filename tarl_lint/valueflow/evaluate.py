@@ -172,7 +172,7 @@ class Evaluation(Displays):
         other = self.under_guard(expr.other, (guard, "other"), frame)
         node = self.node(frame, ("choice", expr.slot), "condition")
         if self.kept(guard):
-            self.graph.control[node].add(guard)
+            self.graph.depend(node, (guard,))
         both = join(then, other)
         return Value(both.deps | self.kept(node), both.pts, both.consts)
 

@@ -49,6 +49,8 @@ class Graph:
         default_factory=dict
     )  # (node of a carrier, what it carries)
     grown: int = 0  # how often something new was inside an object that was passed on
+    live: set[int] = field(default_factory=set)  # nodes that sources lead to, by data or by decisions
+    onward: dict[int, list[int]] = field(default_factory=dict)  # where nodes lead that are not live yet
     asked: int = 0  # how much was looked at to tell through whom content arrives
     asking: set[tuple[int, int]] = field(default_factory=set)  # questions that are being answered
 
@@ -69,10 +71,11 @@ class Graph:
         mine = self.branches[node]
         for dep in deps:
             if dep == node:
-                self.control[node].update(branch[0] for branch in mine)  # how often it ran is a choice, too
+                self.depend(node, [branch[0] for branch in mine])  # how often it ran is a choice, too
             if dep in edges or dep == node:
                 continue
             edges.add(dep)
+            self._lead(dep, node)
             theirs = self.branches[dep]
             if theirs and not theirs <= mine:
                 self._choose(dep, theirs - mine, node)
@@ -85,6 +88,7 @@ class Graph:
         self.stands_for[node] = dep
         self.copies.add(node)
         self.data[node].add(dep)
+        self._lead(dep, node)
         return node
 
     def choice(self, deps: Iterable[int], node: int) -> None:
@@ -98,8 +102,32 @@ class Graph:
         """Say that which value arrives at `node` was decided by conditions that `node` is not under."""
         gate = self.node((dep, choice), self.places[dep], self.branches[node])
         self.gates[gate] = (dep, choice)
-        self.control[gate].update(branch[0] for branch in choice)
-        self.control[node].add(gate)
+        self.depend(gate, [branch[0] for branch in choice])
+        self.depend(node, (gate,))
+
+    def depend(self, node: int, decisions: Iterable[int]) -> None:
+        """Let a node depend on decisions."""
+        edges = self.control[node]
+        for decision in decisions:
+            if decision not in edges:
+                edges.add(decision)
+                self._lead(decision, node)
+
+    def begin(self, node: int) -> None:
+        """Say that a node is a source, which makes all that it leads to live, now and later."""
+        pending = [node]
+        while pending:
+            current = pending.pop()
+            if current not in self.live:
+                self.live.add(current)
+                pending += self.onward.pop(current, ())
+
+    def _lead(self, former: int, node: int) -> None:
+        """Let a node be live as soon as what it is made from or depends on is."""
+        if former not in self.live:
+            self.onward.setdefault(former, []).append(node)
+        elif node not in self.live:
+            self.begin(node)
 
     def through(self, content: Nodes, carriers: Nodes) -> Nodes:
         """Return content as it arrives through pointers that the carriers passed on.
@@ -152,7 +180,11 @@ class Graph:
         if carrier in (item, origin):
             return item
         node = self.node(("carry", carrier, origin), self.places[carrier], self.branches[carrier])
-        self.carried[node] = (carrier, origin)
+        if node not in self.carried:
+            self.carried[node] = (carrier, origin)
+            for decision, _ in self.branches[item]:
+                self._lead(decision, node)
+        self._lead(item, node)
         if item != node:
             self.arriving[node, item] = None
         return node

@@ -328,4 +328,5 @@ class Program:
     body: Sequence[Stmt]
     function: Function
     package: str = ""
+    takes_part: bool = True  # something in it subscribes or publishes, as far as words tell
     stars: list[str] = field(default_factory=list)

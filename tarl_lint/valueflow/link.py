@@ -8,12 +8,13 @@ from collections.abc import Callable, Iterator, Sequence
 
 from tarl_lint import catalog
 from tarl_lint.config import Config
+from tarl_lint.relevance import mentioning
 from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import ROOT_CALL
 from tarl_lint.valueflow.execute import Execution
 from tarl_lint.valueflow.lower import lower_module
-from tarl_lint.valueflow.machine import HASTE, MAX_STATEMENTS, PATIENCE
+from tarl_lint.valueflow.machine import HASTE, LEISURE, MAX_STATEMENTS, PATIENCE
 from tarl_lint.valueflow.store import Root, Store
 from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, ClassInfo, Frame, Obj, Value, lineage, pointer
 
@@ -43,10 +44,12 @@ class Linker(Execution):
         self.pending: dict[Root, None] = {}
         self.finished: set[Root] = set()
         self.failures = failures
+        part = {m.path for m in mentioning(modules, config)} if len(modules) > 1 else self.modules.keys()
         for module in modules:
             program = self._lowered(module)
             if program is None:
                 continue
+            program.takes_part = module.path in part
             key = module.name if module.name not in self.programs else module.path
             program.name = key
             self.programs[key] = program
@@ -113,10 +116,9 @@ class Linker(Execution):
                 self.shared.dirty.clear()
 
     def _reconsider(self) -> None:
-        """Have those run again who went by a decision to which something leads by now."""
-        graph = self.graph
-        for branch in [b for b in self.doubts if graph.data[b] or graph.control[b]]:
-            self.pending.update(self.doubts.pop(branch))
+        """Have those run again who went by a decision to which a source leads by now."""
+        for node in [n for n in self.doubts if n in self.graph.live]:
+            self.pending.update(self.doubts.pop(node))
 
     def _run(self, root: Root, run: Callable[[Root], None]) -> None:
         self.pending.pop(root, None)
@@ -125,6 +127,7 @@ class Linker(Execution):
         self.spent = 0
         self.limit = HASTE if self.hurried else MAX_STATEMENTS
         self.activations.clear()
+        self.leisure = None
         self.delivered = frozenset()
         try:
             run(root)
@@ -197,6 +200,8 @@ class Linker(Execution):
                 self.frames[key] = frame
             frame.root_waits = True
             self.stack.append(frame)
+            if not program.takes_part:
+                self.leisure = LEISURE + len(program.body)
             self.run(frame)
 
         self.add_root(root, run)

@@ -25,6 +25,7 @@ MAX_STATEMENTS = 20_000  # executed in one run of a root; then calls are taken f
 MANY = 4_000  # statements in one run of a root, after which no function runs often
 OFTEN = 8  # runs of one function in one run of a root that is as long as that
 PATIENCE = 80_000  # statements in all; then what did not run yet runs once, and at twice as many nothing more
+LEISURE = 200  # statements of a call into modules that take no part, when no data goes in
 HASTE = 400  # statements in one run of a root after that
 
 
@@ -136,11 +137,12 @@ class Machine:
         self.waiting: dict[Root, None] = {}  # roots that met such a thing
         self.doubts: dict[
             int, dict[Root, None]
-        ] = {}  # decision that nothing led to → roots that went by that
+        ] = {}  # decision or node that no source led to → roots that went by that
         self.guards: list[tuple[int, str]] = []  # decisions inside the expression that is being evaluated
         self.spent = 0  # statements executed in this run of a root, and looks into objects for so many
         self.total = 0  # the same in all runs before
         self.limit = MAX_STATEMENTS
+        self.leisure: int | None = None  # what may be spent until a call ends that can matter little
         self.activations: dict[ir.Function, int] = {}  # how often each function ran in this run of a root
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.passed: dict[Hashable, list[Value]] = {}  # what each root is called with
@@ -224,14 +226,17 @@ class Machine:
     def kept(self, node: int) -> Nodes:
         """Return a node as what a value is made from: unless thorough, only if a source or its decisions led here."""
         graph = self.graph
-        if self.thorough or graph.data[node] or graph.control[node]:
+        live = graph.live
+        if self.thorough or node in live:
             return frozenset([node])
         branches = graph.branches[node]
         for branch, _ in branches:
-            if graph.data[branch] or graph.control[branch]:
+            if branch in live:
                 return frozenset([node])
         for branch, _ in branches:
             self.doubts.setdefault(branch, {})[self.store.root] = None
+        if graph.data[node] or graph.control[node]:
+            self.doubts.setdefault(node, {})[self.store.root] = None
         return NONE
 
     def use(self, value: Value) -> Nodes:

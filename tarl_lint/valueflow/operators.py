@@ -68,7 +68,7 @@ class Operators(Presence):
         if expr.operator in PRESENT and self.only_presence(expr, frame):
             there = self.node(frame, ("there", expr.pos), "condition")
             self.graph.choice(values[0].deps, there)
-            return Value(frozenset([there]), consts=self.fold(expr.operator, values))
+            return Value(self.kept(there), consts=self.fold(expr.operator, values))
         deps = NONE
         for number, value in enumerate(values):
             deps |= self.tested(expr.operator, value, frame, (expr.pos, number))

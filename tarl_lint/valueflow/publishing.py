@@ -43,8 +43,8 @@ class Sinks(Library):
         node = self.node(frame, ("publish", call.slot), "publish")
         self.graph.flow(self.all_used(it.arguments), node)
         self.graph.choice(it.base.deps, node)
-        self.graph.control[node] |= it.base.deps  # which publisher it is
-        self.graph.control[node].update(n for n, _ in self.guards)
+        self.graph.depend(node, it.base.deps)  # which publisher it is
+        self.graph.depend(node, [n for n, _ in self.guards])
         if frame.statement is not None:
             self.under(frame, frame.statement, node)
         record.nodes.add(node)
@@ -55,7 +55,7 @@ class Sinks(Library):
         control = self.control(frame)
         for branch in control.direct.get(statement.id, ()):
             decision, _ = self.branch(frame, branch)
-            self.graph.control[node].add(decision)
+            self.graph.depend(node, (decision,))
             self._reached(frame, branch[0], node)
         if statement.id in control.always:
             self._entered(frame, node)
@@ -71,7 +71,7 @@ class Sinks(Library):
             self.under(frame, place.statement, waypoint)
         waypoint = self.graph.numbers[key]
         if waypoint != node:
-            self.graph.control[node].add(waypoint)
+            self.graph.depend(node, (waypoint,))
 
     def _entered(self, frame: Frame, node: int) -> None:
         """Let a node depend on what decides whether its function is called."""
@@ -82,8 +82,8 @@ class Sinks(Library):
         if key not in self.graph.numbers:
             waypoint = self.graph.node(key, Place(caller, call, "call", call.pos), frozenset())
             self.under(caller, call, waypoint)
-            self.graph.control[waypoint].update(n for n, _ in frame.guards)
-        self.graph.control[node].add(self.graph.numbers[key])
+            self.graph.depend(waypoint, [n for n, _ in frame.guards])
+        self.graph.depend(node, (self.graph.numbers[key],))
 
     def qualname(self, frame: Frame) -> str:
         """Return the qualified name of the function (or class body) that a frame runs."""

@@ -30,5 +30,5 @@ class Raising(Taking):
             decision = self.condition(caller, statement)
             self.under(escape.frame, escape.statement, decision)
             if escape.decision is not None:
-                self.graph.control[decision].add(escape.decision)
+                self.graph.depend(decision, (escape.decision,))
             self.leave(Escape(caller, statement, escape.name, escape.value, decision), caller)

@@ -109,6 +109,7 @@ class Serving(Sources):
             obj = record.messages[key] = Obj("message", (record.path, record.pos, key))
             obj.info = self.node(it.frame, ("receive", it.call.slot), "receive")
             record.nodes.add(obj.info)
+            self.graph.begin(obj.info)
         return pointer(obj)
 
     # --- transforms ---------------------------------------------------------------------------------------

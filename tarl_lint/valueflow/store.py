@@ -20,6 +20,9 @@ class Root:
     once: bool = False
 
 
+NOBODY: set[Root] = set()
+
+
 @dataclass(slots=True)
 class Shared:
     """What each root leaves behind at its end, and what others can see of it while it waits."""
@@ -66,18 +69,24 @@ class Shared:
             if current.laden:
                 continue
             current.laden = True
-            self.dirty |= self.doubters.pop(current, set()) - ({root} if root.once else set())
+            self.dirty |= self._others(self.doubters.pop(current, None), root)
             pending += current.inside
             pending += current.subs.values()
             pending += [current.parent] if current.parent is not None else []
             current.inside.clear()
 
-    def _appeared(self, obj: Obj) -> None:
+    def _appeared(self, obj: Obj, root: Root) -> None:
         """Let those run again who have seen an object, or what it is inside, without this field."""
         inside: Obj | None = obj
         while inside is not None:
-            self.dirty |= self.watchers.get(inside, set())
+            self.dirty |= self._others(self.watchers.get(inside), root)
             inside = inside.parent
+
+    def _others(self, roots: set[Root] | None, root: Root) -> set[Root]:
+        """Return those for whom it is news what a root did: itself only if it may run beside itself."""
+        if not roots:
+            return NOBODY
+        return roots - {root} if root.once else roots
 
     def leave(self, table: dict[Key, dict[Root, Value]], root: Root, key: Key, value: Value) -> None:
         """Record a value; roots that read it have to run again when it is news."""
@@ -85,11 +94,11 @@ class Shared:
         before = owners.get(root)
         after = value if before is None else join(before, value)
         if not owners:
-            self._appeared(key[0])
+            self._appeared(key[0], root)
         if before is None or after != before:
             owners[root] = after
             self.versions[key] = self.versions.get(key, 0) + 1
-            self.dirty |= self.readers.get(key, set()) - ({root} if root.once else set())
+            self.dirty |= self._others(self.readers.get(key), root)
 
 
 def private(key: Key) -> bool:

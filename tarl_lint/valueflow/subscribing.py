@@ -75,6 +75,7 @@ class Sources(Sinks):
             obj = record.messages[frame.id, slot] = Obj("message", (record.path, record.pos, frame.id, slot))
             obj.info = self.node(frame, ("receive", slot), "receive")
             record.nodes.add(obj.info)
+            self.graph.begin(obj.info)
         return obj
 
     def _configured_source(self, it: Invocation) -> Value:
@@ -109,6 +110,7 @@ class Sources(Sinks):
             node = self.graph.node(("receive", obj.key), place, frozenset())
             obj.info = node
             record.nodes.add(node)
+            self.graph.begin(node)
             record.callbacks.add(frame.function.qualname if frame is not None else target.name)
         return obj
 
