@@ -6,6 +6,7 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
+from importlib.metadata import version
 from pathlib import Path
 
 from pytest_tarl.errors import RefusedError, TarlError
@@ -34,9 +35,13 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="tarl", description="Look at what TARL recorded, apply what it found."
     )
+    parser.add_argument("--version", action="version", version=f"%(prog)s {version('tarl')}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     show = commands.add_parser("show", help="tell in a screenful what a fixture holds")
     show.add_argument("fixture", type=Path, help="a file below .tarl/utility or .tarl/online")
+    show.add_argument(
+        "--sites", action="store_true", help="list the statements of every taint list, however many"
+    )
     show.set_defaults(run=_show)
     diff = commands.add_parser("diff", help="compare two fixtures")
     diff.add_argument("first", type=Path)
@@ -175,7 +180,8 @@ def _show(arguments: argparse.Namespace) -> int:
 
     path: Path = arguments.fixture
     fixture = load(path)
-    print("\n".join(show.lines(fixture, path.stat().st_size, sizes(path, len(fixture.lists)))))
+    own = sizes(path, len(fixture.lists))
+    print("\n".join(show.lines(fixture, path.stat().st_size, own, every=arguments.sites)))
     return 0
 
 

@@ -43,6 +43,7 @@ class FixtureDiff:
 
 
 SIGNIFICANT = 0.05
+MOST = 12  # statements of a kind that are listed
 
 
 def compared(first: Fixture, second: Fixture) -> FixtureDiff:
@@ -77,12 +78,31 @@ def lines(first: Fixture, second: Fixture, found: FixtureDiff) -> Iterator[str]:
         yield f"  cells      {found.cells[1]} in both, {found.cells[0]} gone, {found.cells[2]} new"
     else:
         yield "  cells      not comparable: the sensors differ"
-    for place in found.gone:
-        yield f"  gone       `{_code(place)}` of {place.path}:{place.line}: its slice is lost, verdict and region stay"
-    for place in found.new:
-        yield f"  new        `{_code(place)}` at {place.path}:{place.line}: it has no slice in the first"
-    for moved in found.moved:
-        yield f"  moved      `{_code(moved.before)}` from {_before(moved)} to {_place(moved)}: its slice stays"
+    yield from _first(
+        [
+            f"  gone       `{_code(place)}` of {place.path}:{place.line}: its slice is lost, verdict and region stay"
+            for place in found.gone
+        ]
+    )
+    yield from _first(
+        [
+            f"  new        `{_code(place)}` at {place.path}:{place.line}: it has no slice in the first"
+            for place in found.new
+        ]
+    )
+    yield from _first(
+        [
+            f"  moved      `{_code(moved.before)}` from {_before(moved)} to {_place(moved)}: its slice stays"
+            for moved in found.moved
+        ]
+    )
+
+
+def _first(rows: list[str]) -> Iterator[str]:
+    """Yield as many rows as fit a screen beside the others, and how many more there are."""
+    yield from rows[:MOST]
+    if len(rows) > MOST:
+        yield f"             … and {len(rows) - MOST} more"
 
 
 def _place(moved: Moved) -> str:

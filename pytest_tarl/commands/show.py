@@ -7,15 +7,19 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.learning.tables import START, ListSample
+from pytest_tarl.learning.tables import START, Floats, ListSample
 from pytest_tarl.model import TaintList
 from pytest_tarl.sensors import Sensor
 
 CODE = 60  # characters of a line of code
+FEW = 24  # statements that are listed without being asked for
 
 
-def lines(fixture: Fixture, size: int, sizes: Sequence[int]) -> Iterator[str]:
-    """Yield the account of a fixture of `size` bytes; `sizes` are those of its taint lists."""
+def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = False) -> Iterator[str]:
+    """Yield the account of a fixture of `size` bytes; `sizes` are those of its taint lists.
+
+    Statements are listed where they are few, or `every` one is asked for.
+    """
     sample = fixture.sample
     yield f"{fixture.test}, seed {fixture.seed}"
     yield f"  episodes   {sample.episodes}, {int(sample.steps.sum())} steps, success {sample.passed.mean():.1%}"
@@ -28,8 +32,12 @@ def lines(fixture: Fixture, size: int, sizes: Sequence[int]) -> Iterator[str]:
     yield f"  cells      {len(sample.cells)}"
     for i, sensor in enumerate(fixture.sensors):
         yield f"             {described(sensor, [cell[i] for cell in sample.cells])}"
+    statements = sum(len(one.sites) for one in fixture.lists)
+    listed = every or statements <= FEW
     for taint_list, recorded, own in zip(fixture.lists, sample.lists, sizes, strict=True):
-        yield from _list(taint_list, recorded, own)
+        yield from _list(taint_list, recorded, own) if listed else [_summary(taint_list, recorded, own)]
+    if not listed:
+        yield f"  tarl show --sites lists the {statements} statements of the {len(sizes)} taint lists."
 
 
 def described(sensor: Sensor, bins: Sequence[int]) -> str:
@@ -43,13 +51,28 @@ def described(sensor: Sensor, bins: Sequence[int]) -> str:
     return f"{sensor.name}: {origin}, {kind}"
 
 
-def _list(taint_list: TaintList, recorded: ListSample, size: int) -> Iterator[str]:
+def _counts(recorded: ListSample) -> Floats:
+    """Return how often each site was passed, shape (sites,)."""
     visits = recorded.visits
     events = visits.state != START
     site = (visits.state[events] - 1) % max(recorded.width, 1)
-    counts = np.bincount(site, weights=visits.count[events], minlength=recorded.width)
+    return np.bincount(site, weights=visits.count[events], minlength=recorded.width).astype(float)
+
+
+def _heading(taint_list: TaintList, recorded: ListSample, size: int) -> str:
+    events = int(_counts(recorded).sum())
+    return f"  {taint_list.name}: {events} events, mean |f| {recorded.mean_flow:.4g}, {_kilobytes(size)}"
+
+
+def _summary(taint_list: TaintList, recorded: ListSample, size: int) -> str:
+    files = ", ".join(sorted({place.path for place in taint_list.sites}))
+    return f"{_heading(taint_list, recorded, size)}, {len(taint_list.sites)} statements in {files}"
+
+
+def _list(taint_list: TaintList, recorded: ListSample, size: int) -> Iterator[str]:
+    counts = _counts(recorded)
     flows = recorded.flow.sum(axis=0)
-    yield f"  {taint_list.name}: {int(counts.sum())} events, mean |f| {recorded.mean_flow:.4g}, {_kilobytes(size)}"
+    yield _heading(taint_list, recorded, size)
     for place, count, flow in zip(taint_list.sites, counts.tolist(), flows.tolist(), strict=True):
         mean = flow / count if count else 0.0
         mark = "●" if place.dependence == "data" else "◆"

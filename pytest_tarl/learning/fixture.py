@@ -110,15 +110,22 @@ def load(path: Path) -> Fixture:
             "record it again with `pytest --tarl-record`."
         ) from problem
     if found != FORMAT_VERSION:
+        newer = isinstance(found, int) and found > FORMAT_VERSION
+        what = "Take the version of tarl that it was recorded with, or record" if newer else "Record"
         raise FixtureError(
-            f"The utility fixture {path} has format {found}, this version of tarl reads "
-            f"{FORMAT_VERSION}. {advice}"
+            f"The utility fixture {path} has format {str(found)[:20]}, this version of tarl reads "
+            f"{FORMAT_VERSION}. {what} it again with `pytest --tarl-record`."
         )
     if header.pop("digest", None) != _digest(header, columns):
         raise FixtureError(
             f"The utility fixture {path} is damaged: its digest does not fit its content. {advice}"
         )
-    return _fixture(header, columns)
+    try:
+        return _fixture(header, columns)
+    except (LookupError, TypeError, ValueError, AttributeError) as problem:
+        raise FixtureError(
+            f"The utility fixture {path} does not hold what one of format {FORMAT_VERSION} does. {advice}"
+        ) from problem
 
 
 def sizes(path: Path, lists: int) -> tuple[int, ...]:

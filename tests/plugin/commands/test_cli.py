@@ -85,3 +85,42 @@ def test_what_cannot_be_read_is_a_sentence(tmp_path: Path, capsys: pytest.Captur
     told = capsys.readouterr().err
     assert "a.npz is damaged" in told
     assert "no utility fixture" in told
+
+
+def test_many_statements_are_listed_only_when_asked_for(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fixture = example()
+    path = saved(fixture, tmp_path / "a.npz")
+    monkeypatch.setattr("pytest_tarl.commands.show.FEW", 0)
+    assert main(["show", path]) == 0
+    short = capsys.readouterr().out
+    assert main(["show", path, "--sites"]) == 0
+    whole = capsys.readouterr().out
+    statements = sum(len(one.sites) for one in fixture.lists)
+    assert f"tarl show --sites lists the {statements} statements" in short
+    assert "/in0 → /out:" in short
+    assert len(whole.splitlines()) == len(short.splitlines()) + statements - 1
+
+
+def test_long_differences_are_cut_with_their_number(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = example()
+    sites = {site.id for one in before.lists for site in one.sites}
+    lists = tuple(
+        replace(one, sites=tuple(replace(site, id=f"other {site.id}") for site in one.sites))
+        for one in before.lists
+    )
+    after = replace(before, lists=lists)
+    monkeypatch.setattr("pytest_tarl.commands.diff.MOST", 1)
+    assert main(["diff", saved(before, tmp_path / "a.npz"), saved(after, tmp_path / "b.npz")]) == 0
+    told = capsys.readouterr().out
+    assert told.count(f"… and {len(sites) - 1} more") == 2
+
+
+def test_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["--version"])
+    assert left.value.code == 0
+    assert re.fullmatch(r"tarl \d+\.\d+\S*", capsys.readouterr().out.strip())

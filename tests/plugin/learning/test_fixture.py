@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -108,6 +109,26 @@ def test_a_fixture_of_an_older_version_is_named_with_the_command_that_makes_a_ne
     with pytest.raises(
         FixtureError, match=r"a\.npz has format 1, this version of tarl reads 2\..*--tarl-record"
     ):
+        load(path)
+
+
+def test_a_fixture_of_a_newer_version_asks_for_that_version(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.npz"
+    monkeypatch.setattr(fixtures, "FORMAT_VERSION", 3)
+    save(example(), path)
+    monkeypatch.undo()
+    with pytest.raises(FixtureError, match=r"has format 3.*Take the version of tarl"):
+        load(path)
+
+
+def test_a_header_that_fits_its_digest_but_lacks_parts_is_refused_too(tmp_path: Path) -> None:
+    header: dict[str, object] = {"format": fixtures.FORMAT_VERSION, "test": "t"}
+    header["digest"] = fixtures._digest(header, {})
+    path = tmp_path / "a.npz"
+    np.savez(path, header=np.frombuffer(json.dumps(header).encode(), dtype=np.uint8))
+    with pytest.raises(FixtureError, match=r"a\.npz does not hold what one of format"):
         load(path)
 
 
