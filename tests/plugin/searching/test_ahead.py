@@ -1,0 +1,87 @@
+"""Searches on workers: the history is the one that they have without, and the workers are kept busy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pytest_tarl.patching.mutate import mutations
+from pytest_tarl.rollout import Ahead
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.halving import Halving
+from pytest_tarl.searching.ranking import Ranking
+from pytest_tarl.searching.search import Candidate, Trials
+from pytest_tarl.searching.sweep import Sweep
+from pytest_tarl.seeds import generator
+from tests.plugin.searching.test_search import GOAL, OPERANDS, operand, run
+
+MANY = (*OPERANDS, *(operand(line, f"{line}.0", float(line)) for line in range(10, 55)))
+
+
+def sweep(trials: Trials) -> None:
+    next(Sweep(MANY[:20], mutations, (ALWAYS,), trials, GOAL).candidates())
+
+
+def screening(trials: Trials) -> None:
+    next(Sweep(MANY, mutations, (ALWAYS,), trials, GOAL, generator(0, "sweep")).candidates())
+
+
+def halving(trials: Trials) -> None:
+    next(Halving(MANY[:20], mutations, (ALWAYS,), trials, GOAL).candidates())
+
+
+def ranking(trials: Trials) -> None:
+    Ranking(MANY[:20], mutations, ALWAYS, trials, GOAL).run()
+
+
+@dataclass
+class Crew:
+    """Workers that run an episode at once and hand it out when it is asked for."""
+
+    workers: int
+    waiting: int = 0
+    most: int = 0
+    begun: list[Any] = field(default_factory=list)
+
+    def begin(self, plan: Any) -> Any:
+        self.begun.append(plan)
+        self.waiting += 1
+        self.most = max(self.most, self.waiting)
+        outcome = run(plan.candidate, plan.seed)
+
+        def result() -> Any:
+            self.waiting -= 1
+            return outcome
+
+        return SimpleNamespace(result=result, cancel=result)
+
+
+def history(search: Callable[[Trials], None], workers: int) -> tuple[list[float], list[str], Crew]:
+    crew = Crew(workers)
+    ahead: Any = Ahead(crew)  # type: ignore[arg-type]
+
+    def plan(candidate: Candidate, seed: int) -> Any:
+        return (candidate, seed), SimpleNamespace(candidate=candidate, seed=seed)
+
+    trials = Trials(
+        lambda candidate, seed: ahead(*plan(candidate, seed)),
+        300,
+        foresee=lambda wanted: ahead.foresee(plan(*one) for one in wanted),
+    )
+    search(trials)
+    return trials.totals, trials.labels, crew
+
+
+@pytest.mark.parametrize("search", [sweep, screening, halving, ranking])
+def test_the_history_is_the_same_whatever_the_number_of_workers(search: Callable[[Trials], None]) -> None:
+    totals, labels, alone = history(search, 1)
+    assert len(alone.begun) == len(totals)
+    assert alone.most == 1
+    for workers in (2, 7):
+        again, named, crew = history(search, workers)
+        assert (again, named) == (totals, labels)
+        assert crew.most > workers  # one is looked at, as many as there are workers can run
