@@ -54,7 +54,7 @@ class Activations(Evaluation):
         ):
             return None
         statement = caller.statement.id if caller.statement is not None else -1
-        key = (caller.id, statement, call.slot, closure.key, receiver)
+        key = (caller.id, statement, call.slot, closure.key, receiver, *caller.turn)
         frame = self.frames.get(key)
         if frame is None:
             if len(self.frames) > MAX_FRAMES:
@@ -214,7 +214,7 @@ class Activations(Evaluation):
     def blank_instance(self, cls: Obj, frame: Frame, call: ir.Call) -> Obj:
         """Return an instance as `object.__new__` makes it."""
         statement = frame.statement.id if frame.statement is not None else -1
-        obj = self.intern("instance", (frame.id, statement, call.slot, cls.key), cls.name)
+        obj = self.intern("instance", (frame.id, statement, call.slot, cls.key, *frame.turn), cls.name)
         obj.info = cls
         self.store.put((obj, BORN), BOTTOM)
         return obj

@@ -31,7 +31,7 @@ class Allocation(Machine):
     def allocate(self, kind: str, frame: Frame, slot: Hashable) -> Obj:
         """Return the newest object of an allocation site; what it stood for until now becomes the older ones."""
         statement = frame.statement
-        key = (frame.id, statement.id if statement is not None else -1, slot)
+        key = (frame.id, statement.id if statement is not None else -1, slot, *frame.turn)
         obj = self.objects.get((kind, key))
         if obj is None:
             obj = self.objects[kind, key] = Obj(kind, key)

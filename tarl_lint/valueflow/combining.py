@@ -136,7 +136,7 @@ class Combining(Special):
         for obj in value.pts:
             if obj.kind in ("sequence", "mapping"):
                 stored = self.store.get((obj, LENGTH))
-                deps |= stored.deps if stored is not None else NONE
+                deps |= self.graph.through(stored.deps, value.deps) if stored is not None else NONE
             else:
                 deps |= self.use(Value(value.deps, frozenset([obj])))
         return deps

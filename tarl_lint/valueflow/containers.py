@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -32,6 +32,7 @@ QUEUES = frozenset(
 )
 SENT = "<sent>"  # the field of a port, file or socket that holds what was written to it
 FLAG = "<flag>"  # the field of an event that says whether it is set
+MAX_ROWS = 8  # elements of zip, enumerate and map that are told apart
 FLAGGING = frozenset(["set", "clear"])
 IN_ORDER = frozenset(["list", "tuple", "deque", "iter", "reversed"])  # keep their argument's elements apart
 CONTAINERS = frozenset(["list", "tuple", "set", "frozenset", "sorted", "reversed", "iter", "deque"])
@@ -182,14 +183,43 @@ class Containers(Calls):
         return pointer(obj)
 
     def _zipped(self, it: Invocation) -> Value:
+        known = [self.unpacked(v) for v in it.arguments[0]]
+        if it.name == "enumerate" and known and known[0] is not None:
+            known.insert(0, [const(n) for n in range(len(known[0]))] if len(known) == 1 else None)
+        rows = list(zip(*(k for k in known if k is not None), strict=False)) if None not in known else []
+        if rows and len(rows) <= MAX_ROWS:
+            return self._rows(rows, it)
         parts = [self.elements(v) for v in it.arguments[0]]
         length = NONE
         for value in it.arguments[0]:
             length |= self.length(value)
         return self.pairs([UNKNOWN, *parts] if it.name == "enumerate" else parts, it.frame, it.call, length)
 
+    def _rows(self, rows: Sequence[Sequence[Value]], it: Invocation) -> Value:
+        """Return a sequence of tuples whose elements are told apart."""
+        obj = self.allocate("sequence", it.frame, ("pairs", it.call.slot))
+        for number, row in enumerate(rows):
+            pair = self.allocate("sequence", it.frame, ("pair", it.call.slot, number))
+            for place, part in enumerate(row):
+                self.store.put((pair, item_field(place)), part)
+            self.store.put((obj, item_field(number)), pointer(pair))
+        return pointer(obj)
+
+    def _each(self, function: Value, rows: Sequence[Sequence[Value]], it: Invocation) -> Value:
+        """Return what a function gives for known elements, one by one."""
+        obj = self.allocate("sequence", it.frame, ("values", it.call.slot))
+        for number, row in enumerate(rows):
+            call = replace(it.call, slot=-1000 * (abs(it.call.slot) + 1) - number)
+            said = self.call_value(function, (list(row), {}), it.frame, call)
+            self.store.put((obj, item_field(number)), said)
+        return pointer(obj)
+
     def _mapped(self, it: Invocation) -> Value:
         function, *rest = it.arguments[0] or [UNKNOWN]
+        known = [self.unpacked(v) for v in rest]
+        rows = list(zip(*(k for k in known if k is not None), strict=False)) if None not in known else []
+        if it.name == "map" and rows and len(rows) <= MAX_ROWS:
+            return self._each(function, rows, it)
         parts = [self.elements(v) for v in rest]
         length = NONE
         for value in rest:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from tarl_lint.definitions import FIELDS
 from tarl_lint.valueflow.allocation import MAX_NESTING
-from tarl_lint.valueflow.heap import HOLLOW, Heap
+from tarl_lint.valueflow.heap import ANY, HOLLOW, Heap
 from tarl_lint.valueflow.values import NONE, ClassInfo, Frame, Nodes, Obj, Value
 
 LOOKS = 20  # looks into objects that take as long as a statement
@@ -54,9 +55,10 @@ class Contents(Heap):
         if obj.kind == "instance" and self._node_like(obj):
             return NONE
         self.store.look(obj)
-        found = set(self.content(obj).deps)
+        replaced = self.replaced(obj, self.defined(obj))
+        found = set() if replaced else set(self.content(obj).deps)
         for name in list(obj.fields):
-            value = self.store.get((obj, name))
+            value = self.store.get((obj, name)) if name != ANY or not replaced else None
             if value is not None:
                 found |= self.settled(value) if name.isidentifier() else value.deps
                 if value.pts:
@@ -66,6 +68,22 @@ class Contents(Heap):
                 found |= self._deep(sub, known, depth + 1)
         known[obj] = inside = frozenset(found)
         return inside
+
+    def defined(self, obj: Obj) -> str:
+        """Return the name of a message's definition where that is known, of a message inside one too."""
+        if obj.parent is None:
+            return obj.defined
+        outer = FIELDS.get(self.defined(obj.parent), {})
+        return outer.get(obj.name, "")
+
+    def replaced(self, obj: Obj, kind: str) -> bool:
+        """Tell whether every field of a message, or of a copy of one, was overwritten in this run."""
+        fields = FIELDS.get(kind)
+        return fields is not None and all(
+            self.written_here(obj, name)
+            or (inner != "" and name in obj.subs and self.replaced(obj.subs[name], inner))
+            for name, inner in fields.items()
+        )
 
     def _behind(self, value: Value, known: dict[Obj, Nodes], depth: int) -> Nodes:
         """Return what is inside the objects that a field holds, as it arrives through the field."""

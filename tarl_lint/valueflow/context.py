@@ -14,6 +14,7 @@ class Surroundings:
 
     def __init__(self, texts: Texts) -> None:
         self.texts = texts
+        self._above: dict[int, Written | None] = {}  # a statement → the nearest loop or guard around it
 
     def registration(self, origin: SourceRecord) -> Written | None:
         """Return the statement that subscribes."""
@@ -56,13 +57,25 @@ class Surroundings:
         edges: dict[tuple[int, int], None],
     ) -> Written:
         """Add the loops and guards around a statement; return the outermost."""
-        around = written.around
-        while around is not None and not around.defines:
-            if around.shown:
-                found[id(around)] = around
-                edges[id(around), id(step)] = None
-                if inner is not step:
-                    edges[id(around), id(inner)] = None
-                inner = around
-            around = around.around
+        around = self._shown(written)
+        while around is not None:
+            found[id(around)] = around
+            edges[id(around), id(step)] = None
+            if inner is not step:
+                edges[id(around), id(inner)] = None
+            inner = around
+            around = self._shown(around)
         return inner
+
+    def _shown(self, written: Written) -> Written | None:
+        """Return the nearest loop or guard around a statement in its function."""
+        passed = [written]
+        while id(passed[-1]) not in self._above:
+            around = passed[-1].around
+            if around is None or around.defines or around.shown:
+                self._above[id(passed[-1])] = None if around is None or around.defines else around
+            else:
+                passed.append(around)
+        answer = self._above[id(passed[-1])]
+        self._above.update((id(w), answer) for w in passed)
+        return answer

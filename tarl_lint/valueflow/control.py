@@ -6,7 +6,8 @@ from `raise`. Sets of statements are bit masks.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -17,16 +18,21 @@ Branch = tuple[int, str]  # number of the deciding statement, the way it went
 Raising = Mapping[int, Iterable[str]]
 
 EXIT = 0
+NEAR: Final = 100  # branches that a statement is told of; those tell of the ones before them
 NOTHING_RAISES: Raising = {}
 ALL: Final = frozenset(["Exception", "BaseException"])
 
 
 @dataclass(slots=True)
 class Control:
-    """For each statement: the branches it directly depends on, and all that those depend on in turn."""
+    """For each statement: the branches it directly depends on, and all that those depend on in turn.
+
+    Of very many branches only the nearest are there; `far` are the statements of which that is so.
+    """
 
     direct: Mapping[int, frozenset[Branch]]
     closure: Mapping[int, frozenset[Branch]]
+    far: frozenset[int]
     always: frozenset[int]  # statements that run whenever the function is entered
 
 
@@ -67,7 +73,9 @@ def control_dependence(body: Sequence[ir.Stmt], raising: Raising = NOTHING_RAISE
     after = _postdominators(graph, order)
     direct = _direct(graph, order, after)
     always = frozenset(n for n in order if after.get(entry, 0) >> n & 1)
-    return Control(direct, _closure(direct), always)
+    closed = _closure(direct)
+    far = frozenset(n for n, branches in closed.items() if len(branches) >= NEAR)
+    return Control(direct, closed, far, always)
 
 
 def _block(graph: _Graph, body: Sequence[ir.Stmt], follow: int, exits: _Exits) -> int:
@@ -208,20 +216,30 @@ def _direct(graph: _Graph, order: Sequence[int], after: Mapping[int, int]) -> di
             continue
         strict = after[node] & ~(1 << node)
         for way, target in ways.items():
-            mask = after[target] & ~strict
-            for dependent in order:
-                if mask >> dependent & 1:
+            for dependent in _members(after[target] & ~strict):
+                if dependent in found:
                     found[dependent].add((node, way))
     return {n: frozenset(branches) for n, branches in found.items()}
 
 
+def _members(mask: int) -> Iterator[int]:
+    """Yield the numbers in a set."""
+    while mask:
+        lowest = mask & -mask
+        yield lowest.bit_length() - 1
+        mask ^= lowest
+
+
 def _closure(direct: Mapping[int, frozenset[Branch]]) -> dict[int, frozenset[Branch]]:
-    closed = dict(direct)
-    changed = True
-    while changed:
-        changed = False
-        for node, branches in closed.items():
-            wider = branches.union(*(closed[b[0]] for b in branches)) if branches else branches
-            if wider != branches:
-                closed[node], changed = wider, True
+    """Return for each statement the branches that it depends on in any way, the nearest of very many."""
+    closed: dict[int, frozenset[Branch]] = {}
+    for node, branches in direct.items():
+        found = dict.fromkeys(sorted(branches))
+        pending = deque(found)
+        while pending and len(found) < NEAR:
+            for branch in sorted(direct.get(pending.popleft()[0], ())):
+                if branch not in found:
+                    found[branch] = None
+                    pending.append(branch)
+        closed[node] = frozenset(found)
     return closed

@@ -12,6 +12,8 @@ from tarl_lint.valueflow.values import (
     pointer,
 )
 
+MAX_EACH = 8  # elements that a comprehension takes one by one
+
 
 class Displays(Operators):
     """Evaluates what makes containers."""
@@ -54,10 +56,15 @@ class Displays(Operators):
 
     def _comprehension(self, expr: ir.Comprehension, frame: Frame) -> Value:
         kind = "mapping" if expr.key is not None else "sequence"
+        first = self.evaluate(expr.loops[0][1], frame)
+        known = self.unpacked(first)
+        plain = expr.key is None and len(expr.loops) == 1 and not expr.loops[0][2]
+        if plain and known and len(known) <= MAX_EACH:
+            return self._one_by_one_of(expr, known, frame)
         obj = self.allocate(kind, frame, ("display", expr.slot))
         deps, lengths = NONE, NONE
-        for target, source, conditions in expr.loops:
-            several = self.evaluate(source, frame)
+        for number, (target, source, conditions) in enumerate(expr.loops):
+            several = self.evaluate(source, frame) if number else first
             lengths |= self.length(several)
             self.assign(target, self.elements(several), frame)
             for condition in conditions:
@@ -70,6 +77,17 @@ class Displays(Operators):
             self.write_item(pointer(obj), self.evaluate(expr.key, frame), element)
         else:
             self.add_element(pointer(obj), element)
+        return pointer(obj)
+
+    def _one_by_one_of(self, expr: ir.Comprehension, known: list[Value], frame: Frame) -> Value:
+        """Return a sequence of what a comprehension makes of elements that are told apart."""
+        obj = self.allocate("sequence", frame, ("display", expr.slot))
+        turn = frame.turn
+        for number, value in enumerate(known):
+            frame.turn = (*turn, expr.slot, number)
+            self.assign(expr.loops[0][0], value, frame)
+            self.store.put((obj, item_field(number)), self.evaluate(expr.element, frame))
+        frame.turn = turn
         return pointer(obj)
 
     def mark(self, node: int, expr: ir.Expr, value: Value, frame: Frame) -> None:

@@ -188,6 +188,8 @@ class Machine:
         if place.statement is None:
             self.graph.places[node] = Place(frame, statement, "condition", statement.pos)
             self.graph.branches[node] = self.branches(frame, statement)
+            if statement.id in self.control(frame).far:
+                self.graph.control[node].update(b for b, _ in self.graph.branches[node])
         return node
 
     def control(self, frame: Frame) -> Control:
@@ -205,7 +207,7 @@ class Machine:
     def node(self, frame: Frame, slot: Hashable, role: str, pos: ir.Pos | None = None) -> int:
         """Return the node of a value that the frame's current statement makes."""
         statement = frame.statement
-        key = (frame.id, statement.id if statement is not None else -1, slot)
+        key = (frame.id, statement.id if statement is not None else -1, slot, *frame.turn)
         known = self.graph.numbers.get(key)
         if known is not None:
             return known

@@ -14,6 +14,7 @@ from tarl_lint.valueflow.values import (
     BOTTOM,
     BY_CLASS,
     MAX_CONSTS,
+    MAX_TEXTS,
     NONE,
     Frame,
     Nodes,
@@ -161,11 +162,13 @@ class Operators(Presence):
         if function is None or any(v.pts for v in values):
             return None if any(v.pts or v.consts is None for v in values) or function is None else frozenset()
         known = [sorted(v.consts, key=str) for v in values if v.consts]
-        if len(known) < len(values) or math.prod(map(len, known)) > MAX_CONSTS:
+        if len(known) < len(values) or math.prod(map(len, known)) > MAX_TEXTS:
             return None
         try:
             results = frozenset(function(*constants) for constants in itertools.product(*known))
         except Exception:  # whatever the program itself would fail with
+            return None
+        if len(results) > MAX_CONSTS and not all(isinstance(r, str) for r in results):
             return None
         return None if any(isinstance(r, (str, bytes)) and len(r) > MAX_TEXT for r in results) else results
 
@@ -175,7 +178,7 @@ class Operators(Presence):
             if not value.consts or value.pts:
                 return None
             texts = [t + str(c) for t in texts for c in sorted(value.consts, key=str)]
-            if len(texts) > 4 or len(texts[0]) > MAX_TEXT:
+            if len(texts) > MAX_TEXTS or len(texts[0]) > MAX_TEXT:
                 return None
         return frozenset(texts)
 

@@ -156,6 +156,8 @@ class Records(Containers):
         obj = self.allocate(kinds.pop() if kinds else "lib", frame, slot)
         if all(o.info is BY_CLASS for o in value.pts):
             obj.info = BY_CLASS
+        definitions = {self.defined(o) for o in value.pts}
+        obj.defined = definitions.pop() if len(definitions) == 1 else ""
         return obj
 
     def deep_copy(self, value: Value, frame: Frame, slot: Hashable, depth: int = 0) -> Value:

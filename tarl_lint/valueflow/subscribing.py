@@ -105,6 +105,7 @@ class Sources(Sinks):
         obj = record.messages.get(target.key)
         if obj is None:
             obj = record.messages[target.key] = Obj("message", (record.path, record.pos, target.key))
+            obj.defined = next(iter(record.types)) if len(record.types) == 1 else ""
             frame = self.described(target)
             place = Place(frame or record.frame, None, "receive", (frame or record.frame).function.pos)
             node = self.graph.node(("receive", obj.key), place, frozenset())

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+import math
+from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 from tarl_lint.valueflow.futures import Futures
 from tarl_lint.valueflow.machine import Arguments, Invocation
-from tarl_lint.valueflow.values import UNKNOWN, Consts, Value
+from tarl_lint.valueflow.values import MAX_TEXTS, UNKNOWN, Consts, Value
 
 TEXT_METHODS: Final = frozenset(
     [
@@ -30,40 +33,42 @@ class Texts(Futures):
     """Folds methods of texts."""
 
     def text_of(self, base: Value, name: str, arguments: Arguments) -> Consts:
-        """Return the text that a method of a known text gives, None when something of it is not known."""
-        known, text = base.constant()
-        plain = [self._known(v) for v in arguments[0]]
-        named = {key: self._known(v) for key, v in arguments[1].items()}
-        if not known or not isinstance(text, str) or None in plain or None in named.values():
+        """Return the texts that a method of known texts gives, None when something of it is not known."""
+        plain, named = arguments
+        return self._made(
+            lambda text, *given: getattr(text, name)(
+                *given[: len(plain)], **dict(zip(named, given[len(plain) :], strict=True))
+            ),
+            [base, *plain, *named.values()],
+        )
+
+    def _made(self, function: Callable[..., object], values: Sequence[Value]) -> Consts:
+        """Return the texts that a function makes of all that the values may be, the first being a text."""
+        ways = [self._known(v) for v in values]
+        if not all(ways) or math.prod(len(w) for w in ways) > MAX_TEXTS:
             return None
         try:
-            made = getattr(text, name)(
-                *(p[0] for p in plain if p), **{k: v[0] for k, v in named.items() if v}
-            )
+            made = [function(*given) for given in itertools.product(*ways) if isinstance(given[0], str)]
         except Exception:  # whatever the program itself would fail with
             return None
-        return frozenset([made]) if isinstance(made, str) and len(made) <= MAX_TEXT else None
+        return (
+            frozenset(made) if made and all(isinstance(m, str) and len(m) <= MAX_TEXT for m in made) else None
+        )
 
-    def _known(self, value: Value) -> tuple[Any] | None:
-        """Return a known constant, or a list of such, in a tuple."""
-        known, constant = value.constant()
-        if known:
-            return (constant,)
-        elements = self.unpacked(value)
-        inside = [e.constant() for e in elements or ()]
-        return ([c for _, c in inside],) if elements is not None and all(k for k, _ in inside) else None
+    def _known(self, value: Value) -> list[Any]:
+        """Return the constants that a value may be, or lists of such; nothing when not all is known."""
+        if value.consts and not value.pts:
+            return sorted(value.consts, key=str)
+        parts = [self._known(e) for e in self.unpacked(value) or ()]
+        if not value.pts or self.unpacked(value) is None or math.prod(map(len, parts)) > MAX_TEXTS:
+            return []
+        return [list(way) for way in itertools.product(*parts)]
 
     def remainder(self, values: list[Value]) -> Consts:
         """Return `text % values` where all is known."""
-        first, second = (self._known(v) for v in values)
-        if first is None or second is None or not isinstance(first[0], str):
-            return None
-        given = tuple(second[0]) if isinstance(second[0], list) else second[0]
-        try:
-            made = first[0] % given
-        except Exception:  # whatever the program itself would fail with
-            return None
-        return frozenset([made]) if len(made) <= MAX_TEXT else None
+        return self._made(
+            lambda text, given: text % (tuple(given) if isinstance(given, list) else given), values
+        )
 
     def as_text(self, it: Invocation) -> Value:
         """Return `str(x)`."""
@@ -77,7 +82,5 @@ class Texts(Futures):
 
     def joined_path(self, it: Invocation) -> Value:
         """Return the names joined by slashes."""
-        parts = [self._known(v) for v in it.arguments[0]]
-        texts = [str(p[0]) for p in parts if p is not None]
-        whole = frozenset(["/".join(t.rstrip("/") for t in texts)]) if len(texts) == len(parts) else None
+        whole = self._made(lambda *parts: "/".join(str(p).rstrip("/") for p in parts), it.arguments[0])
         return Value(self.all_used(it.arguments), consts=whole)

@@ -18,6 +18,7 @@ BY_CLASS: Final = "by its class"  # `info` of a library's object that a class ma
 PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enum.Enum", "enum.IntEnum"])
 NUMBERS = count()  # of objects in the order in which they are made
 MAX_CONSTS = 4
+MAX_TEXTS = 24  # names of topics, mostly: a table of them may be long
 MAX_DEPTH = 6  # of objects embedded in objects
 MESSAGES = frozenset(["message", "goal"])  # objects that bring data with them
 
@@ -26,6 +27,7 @@ class Obj:
     """An object, known by what makes it: allocation site, definition, or the object it is embedded in."""
 
     __slots__ = (
+        "defined",
         "depth",
         "fields",
         "holders",
@@ -53,6 +55,7 @@ class Obj:
         self.subs: dict[str, Obj] = {}
         self.holders: dict[tuple[Obj, str], None] = {}  # where pointers to it were stored
         self.info: object = None
+        self.defined = ""  # of a message: the name of its definition
         self.laden: bool = (
             parent.laden if parent is not None else kind in MESSAGES
         )  # data may be in it, at any depth
@@ -136,6 +139,7 @@ class Frame(Obj):
         "slot",
         "statement",
         "tries",
+        "turn",
         "yielded",
     )  # fmt: skip
 
@@ -151,6 +155,7 @@ class Frame(Obj):
         self.call: ir.Stmt | None = None
         self.call_pos: ir.Pos | None = None
         self.slot: object = 0
+        self.turn: tuple[int, ...] = ()  # which element a comprehension is at, where these are told apart
         self.answer: object = None  # who gets what the function returns, when ROS asked for it
         self.guards: Branches = frozenset()  # decisions inside the calling expression
         self.outer: Frame | None = None
@@ -242,7 +247,9 @@ def join_consts(a: Consts, b: Consts) -> Consts:
     if b <= a:
         return a
     both = a | b
-    return both if len(both) <= MAX_CONSTS else None
+    if len(both) <= MAX_CONSTS or (len(both) <= MAX_TEXTS and all(isinstance(c, str) for c in both)):
+        return both
+    return None
 
 
 def join_all(values: Iterable[Value]) -> Value:

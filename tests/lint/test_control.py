@@ -4,8 +4,9 @@ from textwrap import dedent
 import pytest
 
 from tarl_lint.source import Module
-from tarl_lint.valueflow.control import control_dependence
+from tarl_lint.valueflow.control import NEAR, control_dependence
 from tarl_lint.valueflow.lower import lower_module
+from tests.lint.analysing import analysed, steps
 
 
 def dependence(text: str) -> dict[int, set[tuple[int, str]]]:
@@ -99,3 +100,21 @@ def test_an_endless_loop_without_a_way_out_has_an_analysis():
             a()
     """)
     assert 2 in found
+
+
+def test_a_long_chain_of_conditions_is_told_of_the_nearest_and_reaches_the_first(tmp_path):
+    arms = "".join(f"    {'el' if n else ''}if k == {n}:\n        v = {n}\n" for n in range(300))
+    head = "import rospy\ndef on(msg):\n    k = msg.data\n    v = 0\n"
+    tail = "    out.publish(v)\nout = rospy.Publisher('a', F)\nrospy.Subscriber('b', F, on)\n"
+    (flow,) = analysed(tmp_path, node=head + arms + tail).flows
+    control = steps(flow, "control")
+    assert all(f"{'el' if n else ''}if k == {n}:" in control for n in range(300))
+    assert all(f"v = {n}" in control for n in range(300))
+
+
+def test_what_many_conditions_decide_takes_no_more_for_each():
+    source = "".join(f"{'el' if n else ''}if k == {n}:\n    v = {n}\n" for n in range(400))
+    body = lower_module(Module("m.py", "m", source, ast.parse(source))).body
+    control = control_dependence(body)
+    assert max(map(len, control.closure.values())) <= 2 * NEAR
+    assert control.far
