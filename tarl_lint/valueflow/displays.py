@@ -12,7 +12,7 @@ from tarl_lint.valueflow.values import (
     pointer,
 )
 
-MAX_EACH = 8  # elements that a comprehension takes one by one
+MAX_EACH = 4  # elements that a comprehension takes one by one
 
 
 class Displays(Operators):

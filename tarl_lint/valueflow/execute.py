@@ -112,7 +112,9 @@ class Execution(Branches):
         if isinstance(target.index, ir.Slice):
             self.remove(base, target.index, frame)
             value = self.elements(value)
-        value = Value(value.deps | self.use(index), value.pts, value.consts)
+        if where := self.use(index):
+            chosen = Value(value.deps | where, value.pts)
+            value = self.carry(chosen, self.node(frame, ("at", target.pos), "assign"))
         if base.pts:
             self.write_item(base, index, value)
         else:

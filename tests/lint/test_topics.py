@@ -79,5 +79,7 @@ def test_every_name_that_a_loop_gives_is_known():
 
 def test_names_out_of_tables_inside_tables_are_known():
     rows = ", ".join(f"(('s{n}', 1), ('p', 2))" for n in range(6))
-    code = f'for (s, _), (p, _) in [{rows}]:\n    rospy.Subscriber("/{{}}/%s".format(s) % p, Float64, on_value)'
+    code = (
+        f'for (s, _), (p, _) in [{rows}]:\n    rospy.Subscriber("/{{}}/%s".format(s) % p, Float64, on_value)'
+    )
     assert topics(code) == [tuple(f"/s{n}/p" for n in range(6))]
