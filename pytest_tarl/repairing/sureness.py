@@ -50,7 +50,9 @@ def _raced(ranking: Ranking, places: Sequence[str], effects: Mapping[str, Sequen
     low, high = found.by
     span = f"{words.signed(low)} to {words.signed(high)} an episode, {CONFIDENCE:.0%}, {found.seeds} common seeds"
     if found.ahead:
-        return f"{told}; {found.ahead} gain more than it in the drifted world ({span})"
+        more = "one line gains" if found.ahead == 1 else f"{found.ahead} lines gain"
+        return f"{told}; {more} more than it in the drifted world ({span})"
     if found.level:
-        return f"{told}; {found.level} cannot be told from it (the next: {span})"
+        others = "one other" if found.level == 1 else f"{found.level} others"
+        return f"{told}; {others} cannot be told from it (the next: {span})"
     return f"{told}; it is ahead of the next ({span})"

@@ -1,0 +1,75 @@
+"""What is said of how certain the ranking is."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+from pytest_tarl.model import OperandEffect
+from pytest_tarl.patching.mutate import Mutation, mutations
+from pytest_tarl.repairing.accepting import Accepted
+from pytest_tarl.repairing.sureness import sureness
+from pytest_tarl.searching.accept import Acceptance, Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.ranking import Ranking
+from pytest_tarl.searching.search import Candidate, Trials
+from tests.plugin.searching.test_search import BIAS, GAIN, GOAL, LIMIT, OPERANDS, run
+
+ORDER: Any = SimpleNamespace(
+    analysis=SimpleNamespace(sites=[SimpleNamespace(site=one.site) for one in OPERANDS])
+)
+EFFECTS = {
+    str(one.site): [OperandEffect(one.code, 1.0, 2.0, gain)] for one, gain in ((GAIN, 6.0), (LIMIT, 0.0))
+}
+
+
+def accepted(*operands: Any) -> Accepted:
+    held = tuple(Outcome(10.0, True) for _ in range(12))
+    candidate = Candidate(tuple(Mutation(one, 2.0) for one in operands), ALWAYS)
+    return Accepted(candidate, Acceptance(True, "", held, ()))
+
+
+def ranked(budget: int) -> Ranking:
+    found = Ranking(OPERANDS, mutations, ALWAYS, Trials(run, budget), GOAL)
+    found.run()
+    return found
+
+
+def test_without_a_ranking_it_is_said_what_was_not_looked_at() -> None:
+    told = sureness(ORDER, EFFECTS, accepted(GAIN), None)
+    assert told.startswith("the repair of the first held on 12 fresh seeds; 2 of 3 lines were simulated")
+    assert "--tarl-localize=full" in told
+
+
+def test_a_ranking_tells_by_how_much_the_first_is_ahead() -> None:
+    told = sureness(ORDER, ranked(300).effects(), accepted(GAIN), ranked(300))
+    assert "1 of 3 lines with constants gain anything alone" in told
+    assert "the budget ended" not in told
+
+
+def test_a_line_that_others_beat_is_not_called_the_best() -> None:
+    assert "one line gains more than it in the drifted world (-" in sureness(
+        ORDER, EFFECTS, accepted(BIAS), raced()
+    )
+
+
+def raced() -> Ranking:
+    """Return a ranking in which a line that does nothing ran on as many seeds as the best."""
+    found = ranked(300)
+    found.race.run([arm for arm in found.race.gains if arm.unit.operands[0] == BIAS], 8)
+    return found
+
+
+def test_several_that_were_repaired_together_are_told_as_such() -> None:
+    told = sureness(ORDER, EFFECTS, accepted(GAIN, LIMIT), ranked(300))
+    assert told.startswith("the first 2 were repaired together, which held on 12 fresh seeds; alone, ")
+
+
+def test_without_a_repair_nothing_confirms_the_first_and_a_cut_ranking_says_so() -> None:
+    told = sureness(ORDER, EFFECTS, None, ranked(4))
+    assert told.startswith("no repair confirms the first; ")
+    assert told.endswith("the budget ended before all were ranked")
+
+
+def test_where_nothing_was_simulated_there_is_nothing_to_say() -> None:
+    assert sureness(ORDER, {}, None, None) == ""
