@@ -53,7 +53,7 @@ class NodeImports:
         publishes: Collection[int] = (),
         bind: Bind | None = None,
     ) -> None:
-        self._root = root.resolve()
+        self._root = _resolved(root)
         self._code = NodeCode(plan, overlay, publishes, inline=bind is not None, cache=code_cache(self._root))
         self._overlay = overlay
         self._bind = bind or (lambda namespace: namespace.update({HOOK: hook}))
@@ -170,8 +170,11 @@ class NodeImports:
 
     def _early(self) -> dict[Path, str]:
         """Return the files of plan and overlay that are imported already, with their module names."""
-        early = {}
+        early: dict[Path, str] = {}
         endings = tuple(self._tails)
+        names = "\n".join(sys.modules) + "\n"
+        if not any(f"{ending}\n" in names for ending in endings):
+            return early  # the usual answer, ten times as quick as asking every name
         for name in [name for name in sys.modules if name.endswith(endings)]:
             file = (
                 sys.modules[name].__dict__.get("__file__") if name.rpartition(".")[2] in self._tails else None
@@ -231,6 +234,11 @@ class NodeLoader(SourceFileLoader):
         """Execute the module with the names of the recorder in it."""
         self._imports.prepare(module, Path(self.path))
         super().exec_module(module)
+
+
+@lru_cache(maxsize=8)
+def _resolved(root: Path) -> Path:
+    return root.resolve()
 
 
 @lru_cache(maxsize=8)

@@ -156,7 +156,8 @@ class Recorder:
         buffer.pack()
         site, flow, starts = joined(buffer.packed)
         before = np.searchsorted(starts, np.array(buffer.lengths, np.int64), side="left")
-        between = np.diff(before, prepend=0, append=len(starts))  # events before each mark and after the last
+        bounds = np.concatenate(([0], before, [len(starts)]))
+        between = bounds[1:] - bounds[:-1]  # events before each mark and after the last
         cells = np.array([-1, *self._latched], np.int32)
         closing = np.zeros(len(cells), np.int32)
         closing[np.array(self._rewards, np.int64) + 1] = 1
