@@ -133,6 +133,7 @@ SOURCE_WORDS: Final = (
     "Service(",
     "create_service",
     "ActionServer",
+    "SimpleActionServer",
 )  # a file without them has no source
 SINK_WORDS: Final = ("publish", "Publisher")
 

@@ -11,6 +11,7 @@ from tarl_lint.config import Config
 from tarl_lint.evidence import Evidence
 from tarl_lint.memory import without_collection
 from tarl_lint.model import Finding, Flow
+from tarl_lint.onesided import one_sided
 from tarl_lint.relevance import groups, relevant
 from tarl_lint.rules import tarl101, tarl102, tarl201, tarl202, tarl203, tarl204
 from tarl_lint.source import Module
@@ -33,6 +34,8 @@ def examine(
 
     Unless isolated, failures are raised. The rest is found all the same, as if what failed did nothing.
     """
+    if one_sided(modules, config):
+        return (), {}, False
     failures: dict[str, Exception] | None = {} if isolate else None
     with without_collection(), deep_recursion():
         machine = Linker(modules, config, failures, thorough=False)

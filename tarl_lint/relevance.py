@@ -66,7 +66,7 @@ def mentioning(modules: Iterable[M], config: Config) -> Iterator[M]:
     named = (*(w.name for w in config.wrappers), *config.sources, *config.sinks)
     words = {*catalog.SOURCE_WORDS, *catalog.SINK_WORDS, *(name.rpartition(".")[2] for name in named)}
     words |= set(catalog.LOOKUPS) if config.tf2 else set()
-    search = re.compile("|".join(_whole(word) for word in sorted(words))).search
+    search = re.compile("|".join(whole(word) for word in sorted(words))).search
     return (m for m in modules if search(m.text) and search(code(m.text)))
 
 
@@ -75,7 +75,7 @@ def code(text: str) -> str:
     return PROSE.sub(lambda found: found["kept"] or "", text)
 
 
-def _whole(word: str) -> str:
+def whole(word: str) -> str:
     """Return a pattern for a word that is no part of a longer name (`publish` of `robot_state_publisher`)."""
     return rf"\b{re.escape(word)}" + (r"\b" if word[-1].isalnum() else "")
 

@@ -129,6 +129,13 @@ def _meant(function: Function) -> bool:
     return ignored or bool(function.decorators) or isinstance(function.node, ast.Lambda)
 
 
+def acting(node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    """Tell whether a function is no idle callback, whatever it keeps: it says so, does or returns something."""
+    if node.decorator_list or any(a.arg.startswith("_") for a in node.args.args):
+        return True
+    return any(_acts(p) or _returns(p) for statement in node.body for p in ast.walk(statement))
+
+
 def _kept(function: Function, path: str, evidence: Evidence) -> set[str] | None:
     """Return the attributes (`self.x`) and globals that a callback stores to and nothing else; None for more."""
     node = function.node
@@ -138,7 +145,7 @@ def _kept(function: Function, path: str, evidence: Evidence) -> set[str] | None:
     shared = {n for s in ast.walk(node) if isinstance(s, (ast.Global, ast.Nonlocal)) for n in s.names}
     stored: set[str] = set()
     for part in (n for statement in node.body for n in ast.walk(statement)):
-        if _acts(part) or (isinstance(part, ast.Return) and not _nothing(part.value)):
+        if _acts(part) or _returns(part):
             return None
         if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store) and part.id in shared:
             stored.add(part.id)
@@ -158,8 +165,9 @@ def _acts(node: ast.AST) -> bool:
     return isinstance(node, ACTIONS)
 
 
-def _nothing(value: ast.expr | None) -> bool:
-    return value is None or isinstance(value, ast.Constant)
+def _returns(node: ast.AST) -> bool:
+    """Tell whether a statement returns something that may be more than a constant."""
+    return isinstance(node, ast.Return) and not (node.value is None or isinstance(node.value, ast.Constant))
 
 
 def _attribute(target: ast.expr, receiver: str) -> str | None:

@@ -9,14 +9,18 @@ from tarl_lint import engine
 from tarl_lint.cli import main
 from tarl_lint.config import Config
 from tarl_lint.source import Module
+from tarl_lint.taint import Tracer
 from tarl_lint.valueflow.link import Linker
-from tarl_lint.valueflow.machine import PATIENCE
+from tarl_lint.valueflow.machine import LEISURE, PATIENCE
 
 MOST = 2.5 * PATIENCE  # statements that any program may take
 
 
-def work(text: str, *, thorough: bool = False) -> Linker:
-    machine = Linker([Module("node.py", "node", text, ast.parse(text))], Config(), thorough=thorough)
+def work(text: str, *others: str, thorough: bool = False) -> Linker:
+    modules = [Module(f"tool{n}.py", f"tool{n}", t, ast.parse(t)) for n, t in enumerate(others)]
+    machine = Linker(
+        [*modules, Module("node.py", "node", text, ast.parse(text))], Config(), thorough=thorough
+    )
     with engine.deep_recursion():
         machine.link()
     return machine
@@ -105,3 +109,60 @@ def test_programs_that_are_not_followed_to_the_end_are_counted(in_directory, cap
     in_directory({"node.py": node(chain(24, 6), subscriptions=30)})
     main(["--no-cache"])
     assert "Not analysed: all details of 1 file of large programs" in capsys.readouterr().out
+
+
+TOOL = """
+def step_60(x):
+    return x
+""" + "".join(
+    f"""
+def step_{n}(x):
+    a = step_{n + 1}(x)
+    return step_{n + 1}(a)
+"""
+    for n in range(59, -1, -1)
+)
+USER = """
+import rospy
+from tool0 import step_{start}
+def on(msg):
+    pub.publish(step_{start}({given}))
+pub = rospy.Publisher("b", Float64)
+rospy.Subscriber("a", Float64, on)
+"""
+
+
+def test_what_takes_no_part_and_gets_no_data_is_followed_only_so_far():
+    given, idle = (work(USER.format(start=50, given=g), TOOL).total for g in ("msg.data", "1"))
+    assert idle < LEISURE + 100 < given
+
+
+def test_what_gets_data_is_followed_wherever_it_goes():
+    machine = work(USER.format(start=56, given="msg.data"), TOOL)
+    assert [f.kind for f in Tracer(machine).flows()] == ["explicit"]
+
+
+def test_conditions_that_no_source_decides_lead_to_nothing():
+    text = """
+import rospy, os
+state = {}
+def on(msg):
+    pub.publish(msg.data)
+def other():
+    if os.environ.get("HOME") is None or len(state) > 3:
+        state["a"] = 1
+        x = [1, 2]
+    for y in state:
+        state["b"] = y
+other()
+pub = rospy.Publisher("b", Float64)
+rospy.Subscriber("a", Float64, on)
+"""
+    machine = work(text)
+    lines = {machine.graph.places[n].pos[0] for n in machine.graph.live}
+    assert lines == {4, 5}
+
+
+def test_a_program_does_not_run_again_for_what_it_did_itself():
+    text = "import rospy\nx = []\nfor i in range(3):\n    x.append([i])\nprint(x, rospy.Publisher('a', F))\n"
+    assert work(text).total < 20

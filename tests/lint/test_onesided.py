@@ -1,0 +1,101 @@
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from tarl_lint.config import Config
+from tarl_lint.engine import HAZARDS, deep_recursion, findings, hazards
+from tarl_lint.onesided import one_sided
+from tarl_lint.rules import tarl101, tarl102
+from tarl_lint.source import Module, parse
+from tarl_lint.taint import Tracer
+from tarl_lint.valueflow.link import Linker
+
+CASES = Path(__file__).parents[1] / "cases"
+EXAMPLES = {
+    f"{rule.CODE}-{kind}-{number}": text
+    for rule in (tarl101, tarl102, *HAZARDS)
+    for kind, texts in (("invalid", rule.INVALID), ("valid", rule.VALID))
+    for number, text in enumerate(texts)
+}
+TALKER = """
+    import rospy
+    class Talker:
+        def __init__(self):
+            self.pub = rospy.Publisher("chatter", String, queue_size=1)
+        def say(self, event):
+            self.pub.publish("hello")
+    talker = Talker()
+    rospy.Timer(rospy.Duration(1), talker.say)
+    """
+LISTENER = """
+    import rospy
+    def on(msg):  # nothing is published here
+        rospy.loginfo(msg.data)
+    rospy.Subscriber("chatter", String, on)
+    """
+
+
+def module(text, name="node"):
+    parsed = parse(f"{name}.py", dedent(text).encode(), name)
+    assert isinstance(parsed, Module)
+    return parsed
+
+
+def skipped(*texts, **settings):
+    return one_sided([module(text, f"node{n}") for n, text in enumerate(texts)], Config(**settings))
+
+
+def found(modules):
+    with deep_recursion():
+        machine = Linker(modules, Config(), thorough=False)
+        machine.link()
+        flows = Tracer(machine).flows()
+    return (*findings(flows), *hazards(machine, flows, Config()))
+
+
+def test_modules_that_only_say_or_only_hear_are_not_run():
+    assert skipped(TALKER)
+    assert skipped(LISTENER)
+    assert not skipped(TALKER, LISTENER)
+
+
+@pytest.mark.parametrize("text", EXAMPLES.values(), ids=EXAMPLES)
+def test_nothing_is_found_in_what_is_not_run(text):
+    assert not (skipped(text) and found([module(text)]))
+
+
+def test_nothing_is_found_in_the_cases_that_are_not_run():
+    for path in sorted(CASES.rglob("*.py")):
+        if skipped(text := path.read_text()):
+            assert not found([module(text)]), path
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        ("self.pub.publish", "self.out.publish"),  # nothing is published on it
+        ("self.pub = rospy.Publisher", "self.pub, self.x = 1, rospy.Publisher"),
+        ("import rospy", "import rospy\n    from rospy import Publisher as P\n    other = P('x', String)"),
+        ("self.pub.publish", "self.pub = rospy.Publisher('other', String); self.pub.publish"),
+        ("import rospy", "import rospy, threading\n    lock = threading.Lock()"),
+        ('self.pub.publish("hello")', 'self.pub.publish(rospy.wait_for_message("a", String))'),
+        ("import rospy", "import rospy\n    rospy.Service('s', Empty, lambda request: 1)"),
+    ],
+)
+def test_a_talker_that_may_be_a_hazard_or_hear_something_is_run(changed):
+    assert not skipped(TALKER.replace(*changed))
+
+
+def test_a_listener_whose_callback_may_do_nothing_is_run():
+    assert not skipped(LISTENER.replace("rospy.loginfo(msg.data)", "last = msg.data"))
+    assert skipped(LISTENER.replace("rospy.loginfo(msg.data)", "pass").replace("on(msg)", "on(_)"))
+
+
+def test_hazards_that_nobody_wants_need_nothing_to_be_run():
+    idle = LISTENER.replace("rospy.loginfo(msg.data)", "last = msg.data")
+    assert skipped(idle, ignore=("TARL203",))
+
+
+def test_functions_of_the_settings_may_hear_or_say_anything():
+    assert not skipped(TALKER, sources=("bus.listen",))
