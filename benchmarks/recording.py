@@ -256,10 +256,10 @@ def starting() -> tuple[float, float]:
     """Return milliseconds of a pytest run of one empty test: plugin off, plugin on and without any flag."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "test_it.py").write_text("def test_it(): pass\n")
-        environment = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "PYTHONDONTWRITEBYTECODE": ""}
+        environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
         best = [float("inf")] * 2
         for _ in range(RUNS):
-            for i, flags in enumerate(((), ("-p", "pytest_tarl.plugin"))):
+            for i, flags in enumerate((("-p", "no:tarl"), ())):
                 before = resource.getrusage(resource.RUSAGE_CHILDREN)
                 command = [
                     sys.executable,
