@@ -74,9 +74,16 @@ class AsyncParameterClient:
         """Have parameters forgotten that the node did not fix the type of."""
         return self.set_parameters([Parameter(name, Parameter.Type.NOT_SET) for name in names], callback)
 
+    def on_parameter_event(self, callback: Any, qos_profile: Any = 10, **options: Any) -> Any:
+        """Have `callback(event)` called whenever parameters of any node change."""
+        event = find_class("ros2", "rcl_interfaces", "ParameterEvent")
+        return self.node.create_subscription(event, "/parameter_events", callback, qos_profile, **options)
+
     def load_parameter_file(self, *_: Any, **__: Any) -> Future:
         """Refuse: there are no parameter files here."""
         raise unsupported("AsyncParameterClient.load_parameter_file")
+
+    load_parameter_file_atomically = load_parameter_file
 
     def _ask(self, kind: str, callback: Done | None, **fields: Any) -> Future:
         client = self._clients[kind]

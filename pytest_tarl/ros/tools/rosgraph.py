@@ -4,11 +4,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from pytest_tarl.ros import names
 from pytest_tarl.ros.missing import refuse
-from pytest_tarl.ros.rospy.exceptions import ROSException
+from pytest_tarl.ros.rospy import node
 from pytest_tarl.ros.tools import graph
 
 __all__ = ["Master", "MasterError", "MasterException", "is_master_online"]
@@ -94,6 +95,12 @@ class Master:
         if not graph.parameters().delete(self._full(key)):
             raise MasterError(f"parameter [{self._full(key)}] is not set")
 
+    def searchParam(self, key: str) -> str | None:
+        """Return the full name of the nearest parameter of that name, from the caller's namespace upwards."""
+        path = [part for part in self.caller_id.split("/") if part]
+        tried = (names.absolute("/".join([*path[:length], key])) for length in range(len(path), -1, -1))
+        return next((name for name in tried if self.hasParam(name)), None)
+
     def getParamNames(self) -> list[str]:
         """List all parameters."""
         return graph.parameters().names()
@@ -132,8 +139,9 @@ def get_master_uri() -> str:
     return URI
 
 
-class ROSGraphException(ROSException):
-    """Something about names or the environment is wrong."""
+def myargv(argv: Sequence[str] | None = None) -> list[str]:
+    """Return the command line without what ROS takes from it."""
+    return node.myargv(argv)
 
 
 def __getattr__(name: str) -> Any:

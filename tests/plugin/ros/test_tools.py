@@ -34,6 +34,7 @@ def test_master_knows_who_publishes_listens_and_serves(start: Start) -> None:
         refused = rospy.get_master().lookupNode("/nobody")
         master.setParam("gain", 2.5)
         gain = rospy.get_param("/gain"), master.getParam("/gain"), master.hasParam("nothing")
+        found = master.searchParam("gain"), master.searchParam("nothing")
         try:
             master.lookupService("/nothing")
         except rosgraph.MasterException as error:
@@ -50,6 +51,7 @@ def test_master_knows_who_publishes_listens_and_serves(start: Start) -> None:
     assert told["types"] == {"/speed": "std_msgs/Float64", "/goal": "std_msgs/Float64"}
     assert (told["code"], told["refused"][0]) == (1, -1)
     assert told["gain"] == (2.5, 2.5, False)
+    assert told["found"] == ("/gain", None)
     assert told["said"] == "no provider"
 
 
@@ -196,6 +198,10 @@ def test_parameters_of_another_node_are_read_and_set(start: Start) -> None:
         atomically = ask(client.set_parameters_atomically([Parameter("kp", value=5.0)])).result.successful
         after = ask(client.get_parameters(["kp"])).values[0].double_value
         kinds = list(ask(client.get_parameter_types(["kp"])).types)
+        events = []
+        client.on_parameter_event(events.append)
+        ask(client.set_parameters([Parameter("kp", value=6.0)]))
+        rclpy.spin_once(node, timeout_sec=0.1)
         described = ask(client.describe_parameters(["kp"])).descriptors[0].name
         nobody = AsyncParameterClient(node, "nobody").wait_for_services(timeout_sec=0.1)
     """,
@@ -207,6 +213,7 @@ def test_parameters_of_another_node_are_read_and_set(start: Start) -> None:
     assert (told["listed"], told["before"], told["changed"], told["atomically"]) == (True, 2.5, True, True)
     assert (told["after"], told["kinds"], told["described"], told["nobody"]) == (5.0, [3], "kp", False)
     assert len(told["called"]) == 1
+    assert [event.changed_parameters[0].value.double_value for event in told["events"]] == [6.0]
 
 
 @pytest.mark.parametrize("library", ["rospy", "rclpy"])
