@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -203,6 +204,7 @@ ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
     **dict.fromkeys(("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"), 0),
     **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), 0),
 }  # fmt: skip
+LEARNING: Final = re.compile(r"(?:set|add)(?:_|[A-Z])|(?:correct|fit|partial_fit|feed|observe|learn|train)$")
 METHODS_WRITING: Final = {"pack_into": 0, "readinto": 0, "recv_into": 0}  # position of what they fill
 DEVICE_WRITERS: Final = frozenset(["write", "writelines", "send", "sendall", "sendto"])
 DEVICE_READERS: Final = frozenset(

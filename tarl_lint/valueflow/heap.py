@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tarl_lint.catalog import MEASURES
+from tarl_lint.catalog import MEASURES, METHODS
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.allocation import Allocation
 from tarl_lint.valueflow.values import (
@@ -110,6 +110,8 @@ class Heap(Allocation):
             if value is not None:
                 return self.bind(value, obj, owner)
         if isinstance(cls.info, ClassInfo) and cls.info.opaque and not name.startswith("["):
+            if name in METHODS:
+                return self.held_method(obj, name)
             holder = self.intern("lib", ("inherited", obj.key, name), name)
             return pointer(holder)
         result = self.content(obj)  # elements, and attributes whose names are made at run time

@@ -7,13 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 from tarl_lint import catalog
 from tarl_lint.catalog import Fact
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.attributes import Attributes
 from tarl_lint.valueflow.containers import CONTAINERS, QUEUES, is_device
 from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.futures import READERS
 from tarl_lint.valueflow.heap import ANY
 from tarl_lint.valueflow.machine import Arguments, Invocation, Publisher
 from tarl_lint.valueflow.special import FUNCTIONS
-from tarl_lint.valueflow.texts import TEXT_METHODS, Texts
+from tarl_lint.valueflow.texts import TEXT_METHODS
 from tarl_lint.valueflow.values import (
     BOTTOM,
     BY_CLASS,
@@ -22,7 +23,6 @@ from tarl_lint.valueflow.values import (
     Frame,
     Obj,
     Value,
-    join_all,
     lineage,
     pointer,
 )
@@ -31,7 +31,7 @@ from tarl_lint.wrapping import facts
 LATER = frozenset(["closure", "bound", "partial"])  # what a library can call of what it is given
 
 
-class Library(Texts):
+class Library(Attributes):
     """Performs calls of functions, classes and methods that are not analysed."""
 
     def call_library(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
@@ -188,6 +188,8 @@ class Library(Texts):
         self, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
     ) -> Value:
         self.call_back(arguments, frame, call)
+        if catalog.LEARNING.match(name) and base.pts and all(o.kind == "lib" for o in base.pts):
+            self._insert(base, [Value(self.all_used(arguments))], frame, call)
         written = catalog.METHODS_WRITING.get(name)
         if written is not None and written < len(arguments[0]):
             news = self.through_statement(Value(self.use(base) | self.all_used(arguments)), frame, call)
@@ -206,13 +208,6 @@ class Library(Texts):
 
     # --- builtins -----------------------------------------------------------------------------------------
 
-    def _get_attribute(self, it: Invocation) -> Value:
-        plain = it.arguments[0]
-        names = plain[1].texts() if len(plain) > 1 else ()
-        if not names:
-            return self.generic(it.name, it.arguments, it.frame, it.call)
-        return join_all([self.read(plain[0], n) for n in names] + plain[2:])
-
     def _blank_object(self, it: Invocation) -> Value:
         """Return what `object.__new__(cls)` gives."""
         classes = [o for v in it.arguments[0][:1] for o in v.pts if o.kind == "class"]
@@ -227,16 +222,6 @@ class Library(Texts):
     def _same(self, it: Invocation) -> Value:
         """Return the first argument itself."""
         return it.arguments[0][0] if it.arguments[0] else UNKNOWN
-
-    def _set_attribute(self, it: Invocation) -> Value:
-        plain = it.arguments[0]
-        if len(plain) == 3:
-            value = self.through_statement(plain[2], it.frame, it.call)
-            for field in plain[1].texts():
-                self.write_field(plain[0], field, value)
-            if not plain[1].texts():
-                self.add_element(plain[0], value)
-        return UNKNOWN
 
     def type_of(self, it: Invocation) -> Value:
         """Return the class of objects of ours; what a type is, is not data."""
@@ -313,7 +298,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "next": Library._chosen,
     "asyncio.gather": Library._gathered,
     **dict.fromkeys(catalog.AWAITING, Library._awaited),
-    "getattr": Library._get_attribute,
-    "setattr": Library._set_attribute,
+    "getattr": Library.get_attribute,
+    "setattr": Library.set_attribute,
     "super": Library.parent,
 }
