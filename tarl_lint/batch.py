@@ -71,10 +71,11 @@ def _reports(
 
 
 def _workers(tasks: Sequence[Task], jobs: int | None) -> int:
-    """Return how many processes to use: never more than there are groups to analyse."""
+    """Return how many processes to use: never more than there are groups to analyse, nor than the largest allows."""
     wanted = sum(task.analyse for task in tasks)
     if jobs is None:
-        jobs = _processors() if sum(task.lines for task in tasks) >= MANY_LINES else 1
+        lines = [task.lines for task in tasks]
+        jobs = min(_processors(), sum(lines) // max(lines)) if sum(lines) >= MANY_LINES else 1
     return max(1, min(jobs, wanted))
 
 

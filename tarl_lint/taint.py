@@ -44,6 +44,8 @@ class Tracer:
         self.surroundings = Surroundings(self.texts)
         self.forward_data = _reversed(self.graph.data)
         self.forward_control = _reversed(self.graph.control)
+        self._statements: dict[int, Written | None] = {}
+        self._formers: dict[int, list[int]] = {}
 
     def flows(self) -> tuple[Flow, ...]:
         """Return every flow, sorted by sink and source."""
@@ -113,7 +115,7 @@ class Tracer:
         written: dict[int, Written] = {}
         statement_of: dict[int, int] = {}
         for node in sorted(on_any):
-            found = self.statement(self.graph.places[node])
+            found = self.statement(node)
             if found is None:
                 continue
             key = id(found)
@@ -136,14 +138,19 @@ class Tracer:
         spans = {key: w.text.span(w) for key, w in written.items()}
         first = {*arrivals, *(key for key, kind in dependence.items() if kind == "context")}
         order = in_order(spans, edges, first)
-        sinks = {id(w) for n in record.nodes if (w := self.statement(self.graph.places[n])) is not None}
-        return tuple(
-            self.step(written[k], spans[k], dependence[k], k in sinks, registration is written[k], origin)
-            for k in order
-        )
+        sinks = {id(w) for n in record.nodes if (w := self.statement(n)) is not None}
+        roles: dict[int, Role] = {**({id(registration): "register"} if registration is not None else {})}
+        roles |= dict.fromkeys(arrivals, "receive")
+        roles |= dict.fromkeys(sinks, "publish")
+        return tuple(self.step(written[k], spans[k], dependence[k], roles.get(k)) for k in order)
 
-    def statement(self, place: Place) -> Written | None:
+    def statement(self, node: int) -> Written | None:
         """Return the statement that a node belongs to; of a message arriving, the callback's header."""
+        if node not in self._statements:
+            self._statements[node] = self._statement(self.graph.places[node])
+        return self._statements[node]
+
+    def _statement(self, place: Place) -> Written | None:
         text = self.texts[place.frame.program.path]
         if place.statement is not None:
             return text.statement(place.statement.pos)
@@ -151,7 +158,7 @@ class Tracer:
 
     def arrivals(self, origin: SourceRecord) -> list[int]:
         """Return the steps at which messages of a source arrive."""
-        found = (self.statement(self.graph.places[n]) for n in sorted(origin.nodes))
+        found = (self.statement(n) for n in sorted(origin.nodes))
         return [id(w) for w in found if w is not None]
 
     def edges(
@@ -166,7 +173,7 @@ class Tracer:
             if after is None:
                 continue
             function[after] = self.graph.places[node].frame.function
-            for former in sorted(self.graph.data[node] | self.graph.control[node]):
+            for former in self.formers(node):
                 before = statement_of.get(former)
                 if before is None or before == after:
                     continue
@@ -177,24 +184,19 @@ class Tracer:
                     found[before, after] = None
         return [*found, *_before_loops(found, turns, function)]
 
-    def step(
-        self,
-        written: Written,
-        span: Span,
-        dependence: Dependence,
-        sink: bool,
-        registers: bool,
-        origin: SourceRecord,
-    ) -> Step:
-        """Return a statement as a step."""
+    def formers(self, node: int) -> list[int]:
+        """Return what a node is made from or depends on, in order."""
+        known = self._formers.get(node)
+        if known is None:
+            known = self._formers[node] = sorted(self.graph.data[node] | self.graph.control[node])
+        return known
+
+    def step(self, written: Written, span: Span, dependence: Dependence, known: Role | None) -> Step:
+        """Return a statement as a step; what is not known of its role its syntax tells."""
         text = written.text
         role = ROLES.get(type(written.node).__name__, "assign")
-        if sink:
-            role = "publish"
-        elif id(written) in self.arrivals(origin):
-            role = "receive"
-        elif registers:
-            role = "register"
+        if known is not None:
+            role = known
         elif written.qualname.endswith("<lambda>") and role == "assign":
             role = "return"
         elif type(written.node).__name__ in ("For", "AsyncFor") and dependence != "data":

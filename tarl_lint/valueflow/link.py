@@ -44,6 +44,7 @@ class Linker(Execution):
         self.pending: dict[Root, None] = {}
         self.finished: set[Root] = set()
         self.failures = failures
+        self.by_path: dict[str, ir.Program] = {}
         part = {m.path for m in mentioning(modules, config)} if len(modules) > 1 else self.modules.keys()
         for module in modules:
             program = self._lowered(module)
@@ -52,7 +53,7 @@ class Linker(Execution):
             program.takes_part = module.path in part
             key = module.name if module.name not in self.programs else module.path
             program.name = key
-            self.programs[key] = program
+            self.programs[key] = self.by_path[program.path] = program
             self.module_objects[key] = Obj("module", key, key)
 
     def _lowered(self, module: Module) -> ir.Program | None:
@@ -305,10 +306,8 @@ class Linker(Execution):
         found = self.index.find(name, importer)
         if found is None:
             return None
-        for program in self.programs.values():
-            if program.path == found.path:
-                return pointer(self.module_objects[program.name])
-        return None
+        program = self.by_path.get(found.path)
+        return pointer(self.module_objects[program.name]) if program is not None else None
 
     def default(self, obj: Obj, name: str) -> Value:
         """Return a field to which nothing was stored; of a package, its modules."""

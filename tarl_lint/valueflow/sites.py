@@ -50,6 +50,7 @@ class Text:
     by_name: dict[str, list[Written]] = field(default_factory=dict)
     texts: dict[int, str] = field(default_factory=dict)
     ordinals: dict[int, int] = field(default_factory=dict)
+    spans: dict[int, Span] = field(default_factory=dict)
     lines: list[str] = field(default_factory=list)
     has_lambdas: bool = True
 
@@ -133,12 +134,10 @@ class Text:
 
     def span(self, written: Written) -> Span:
         """Return where a statement (its header) stands."""
-        node = written.node
-        line, column = written.start
-        end_line, end_column = self._end(node)
-        return Span(
-            self.module.path, line, self._column(line, column), end_line, self._column(end_line, end_column)
-        )
+        known = self.spans.get(id(written))
+        if known is None:
+            known = self.spans[id(written)] = self.stretch((*written.start, *self._end(written.node)))
+        return known
 
     def stretch(self, pos: Pos) -> Span:
         """Return a position as a span."""
