@@ -42,7 +42,7 @@ class Linker(Execution):
         super().__init__(modules, config)
         self.thorough = thorough
         self.pending: dict[Root, None] = {}
-        self.finished: set[Root] = set()
+        self.took: dict[Root, int] = {}  # statements of the last run of what has run
         self.failures = failures
         self.by_path: dict[str, ir.Program] = {}
         part = {m.path for m in mentioning(modules, config)} if len(modules) > 1 else self.modules.keys()
@@ -104,17 +104,22 @@ class Linker(Execution):
     def _settle(self) -> None:
         for _ in range(MAX_ROUNDS):
             self._reconsider()
-            batch = sorted(self.pending, key=lambda r: r.kind != "module")
+            batch = sorted(self.pending, key=self._turn)
             if not batch:
                 return
             self.pending.clear()
             for root in batch:
-                if self.hurried and (root in self.finished or self.total > 2 * PATIENCE):
+                if self.hurried and (root in self.took or self.total > 2 * PATIENCE):
                     continue
                 self._run(root, self.roots[root.key][1])
                 for news in self.shared.dirty:
                     self.pending[news] = None
                 self.shared.dirty.clear()
+
+    def _turn(self, root: Root) -> tuple[int, int]:
+        """Modules run first, but again only last, since what they wait for comes from the rest; small ones first."""
+        took = self.took.get(root)
+        return 1 if root.kind != "module" else 0 if took is None else 2, took or 0
 
     def _reconsider(self) -> None:
         """Have those run again who went by a decision to which a source leads by now."""
@@ -138,7 +143,7 @@ class Linker(Execution):
             return
         finally:
             self.total += self.spent
-            self.finished.add(root)
+            self.took[root] = self.spent
         for key in self.store.own():
             value = self._at_end(key)
             value = self.store.mine(key, value) if value is not None else None
