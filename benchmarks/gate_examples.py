@@ -62,9 +62,8 @@ def recorded(name: str, size: float, episodes: int) -> Pool:
         shutil.copytree(FOLDER / name, copy, ignore=shutil.ignore_patterns(".tarl", "__pycache__"))
         recording = Recording(size, episodes)
         test = str(copy / example.test)
-        pytest.main(
-            ["-q", "-p", "no:cacheprovider", "-p", "no:terminal", "--rootdir", str(copy), test], [recording]
-        )
+        plain = ["-p", "no:cacheprovider", "-p", "no:terminal"]  # without a terminal there is no -q
+        pytest.main([*plain, "--rootdir", str(copy), test], [recording])
     return Pool(recording.found[0], frozenset())
 
 
