@@ -8,7 +8,7 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.allocation import BORN
 from tarl_lint.valueflow.evaluate import Evaluation
 from tarl_lint.valueflow.heap import item_field
-from tarl_lint.valueflow.machine import LEISURE, MANY, MAX_CALLS, MAX_FRAMES, OFTEN, Arguments
+from tarl_lint.valueflow.machine import ALL_LEISURE, LEISURE, MANY, MAX_CALLS, MAX_FRAMES, OFTEN, Arguments
 from tarl_lint.valueflow.store import Delta
 from tarl_lint.valueflow.values import (
     BOTTOM,
@@ -79,8 +79,10 @@ class Activations(Evaluation):
         if matters:
             self.leisure = None
         elif before is None:
-            self.leisure = start + LEISURE
+            self.leisure = start + max(0, min(LEISURE, ALL_LEISURE - self.idled))
         result = self._invoke(closure, arguments, caller, call, owner)
+        if not matters and before is None:
+            self.idled += self.spent - start
         self.leisure = before + self.spent - start if matters and before is not None else before
         return result
 

@@ -133,7 +133,7 @@ class Linker(Execution):
         self.spent = 0
         self.limit = HASTE if self.hurried else MAX_STATEMENTS
         self.activations.clear()
-        self.leisure = None
+        self.leisure, self.idled = None, 0
         self.delivered = frozenset()
         try:
             run(root)

@@ -26,6 +26,7 @@ MANY = 4_000  # statements in one run of a root, after which no function runs of
 OFTEN = 8  # runs of one function in one run of a root that is as long as that
 PATIENCE = 80_000  # statements in all; then what did not run yet runs once, and at twice as many nothing more
 LEISURE = 200  # statements of a call into modules that take no part, when no data goes in
+ALL_LEISURE = 1_000  # statements of all such calls in one run of a root
 HASTE = 400  # statements in one run of a root after that
 
 
@@ -142,6 +143,7 @@ class Machine:
         self.spent = 0  # statements executed in this run of a root, and looks into objects for so many
         self.total = 0  # the same in all runs before
         self.limit = MAX_STATEMENTS
+        self.idled = 0  # of it in calls that can matter little
         self.leisure: int | None = None  # what may be spent until a call ends that can matter little
         self.activations: dict[ir.Function, int] = {}  # how often each function ran in this run of a root
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
