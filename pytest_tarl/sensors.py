@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping
@@ -22,7 +23,8 @@ class Sensor:
 
     With `topic` and `field` (dotted, or a function of the message) it is read from the messages delivered to the node;
     with a dotted field it can appear in a guard. Without them the test gives its value through
-    `tarl.observe(name=value)` and it is diagnostic only.
+    `tarl.observe(name=value)`. Whatever it is read by, `expr` names a variable of the node that holds it, such as
+    `self.heading`, by which a guard can ask for it; without topic, dotted field and `expr` it is diagnostic only.
 
     `low`, `high` (units of the field) and `bins` make it numeric, with one more bin at either end for values outside;
     `edges` do the same with bins of unequal width, and `bins` alone learns them from off-line episodes, so that each
@@ -44,6 +46,7 @@ class Sensor:
     angle: bool = False
     tilings: int = 0
     learned: int = 0  # how many bins were asked for, where the edges were learned
+    expr: str = ""
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name.isidentifier():
@@ -62,6 +65,11 @@ class Sensor:
                     f"Sensor {self.name!r}: {what} must be a text such as topic='/odom', field='pose.pose.position.x', "
                     f"got {given!r}."
                 )
+        if self.expr and not _is_variable(self.expr):
+            raise SettingsError(
+                f"Sensor {self.name!r}: expr must name a variable of the node, such as 'speed', 'self.heading' or "
+                f"'self.state[\"yaw\"]', got {self.expr!r}."
+            )
         if self.edges:
             self._take_edges()
         if self.angle and self.low is None and self.high is None:
@@ -133,12 +141,13 @@ class Sensor:
     @property
     def guardable(self) -> bool:
         """Tell whether a node can read it, so that a guard may test it."""
-        return self.topic is not None and isinstance(self.field, str) and not self.field.endswith(CALLED)
+        return bool(self.expr or self.path)
 
     @property
     def path(self) -> str:
-        """Return the dotted field; empty where there is none that a node could be asked for."""
-        return self.field if isinstance(self.field, str) and self.guardable else ""
+        """Return the dotted field; empty where there is none that a node could subscribe to."""
+        dotted = self.topic is not None and isinstance(self.field, str) and not self.field.endswith(CALLED)
+        return str(self.field) if dotted else ""
 
     @property
     def ends(self) -> tuple[float, ...]:
@@ -221,6 +230,19 @@ class Sensor:
         if self.categories:
             return self.categories[index]
         return str(index)
+
+
+def _is_variable(code: Any) -> bool:
+    """Tell whether a text is a name, an attribute, or an entry at a constant."""
+    try:
+        node = ast.parse(code, mode="eval").body
+    except (SyntaxError, TypeError, ValueError):
+        return False
+    while isinstance(node, ast.Attribute | ast.Subscript):
+        if isinstance(node, ast.Subscript) and not isinstance(node.slice, ast.Constant):
+            return False
+        node = node.value
+    return isinstance(node, ast.Name)
 
 
 def as_number(value: Any) -> float | None:

@@ -43,6 +43,7 @@ def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = Fa
 def described(sensor: Sensor, bins: Sequence[int]) -> str:
     """Describe a sensor and which of its bins were seen."""
     origin = f"{sensor.topic} {sensor.field}" if sensor.topic else "observed"
+    origin += f", in the node {sensor.expr}" if sensor.expr else ""
     if sensor.numeric:
         unit = f" {sensor.unit}" if sensor.unit else ""
         kind = f"{sensor.low:g} to {sensor.high:g}{unit} in {sensor.bins} bins, {len(set(bins))} seen"

@@ -115,13 +115,21 @@ class Conditions:
 
     def _reading(self, conjunct: Conjunct, source: Document, site: SiteId, place: ast.AST) -> Reading:
         sensor = conjunct.sensor
-        if sensor.topic is None or not sensor.path:
+        if not sensor.guardable:
             raise RepairError(
                 f"Sensor {sensor.name!r} is only observed by the test, or read by a function of it, so that the node "
-                "cannot read it: give it topic and dotted field, or leave it out of the guard."
+                "cannot read it: give it topic and dotted field, or the variable of the node that holds it (expr=…), "
+                "or leave it out of the guard."
             )
-        expressions = self._analysis.holders(sensor.topic, sensor.path, site)
-        reading = held(source, place, expressions, conjunct)
+        known = (
+            self._analysis.holders(sensor.topic, sensor.path, site) if sensor.topic and sensor.path else ()
+        )
+        reading = held(source, place, (sensor.expr, *known) if sensor.expr else known, conjunct)
+        if reading is None and not sensor.path:
+            raise RepairError(
+                f"Sensor {sensor.name!r} is held by {sensor.expr}, which cannot be asked for at {site.text!r}, or "
+                "starts with a value that makes the guard true before anything is known."
+            )
         return reading or self.subscriptions.reading(sensor, site, source, place)
 
 

@@ -44,6 +44,13 @@ def test_booleans_integers_and_categories_are_taken_as_they_are() -> None:
     assert Sensor("mode", categories=("dry", "wet")).bin("wet") == 1
 
 
+@pytest.mark.parametrize("expr", ["speed", "self.heading", "self.state['yaw'].value", "a.b[0]"])
+def test_a_variable_that_holds_a_sensor_lets_guards_ask_for_it(expr: str) -> None:
+    assert not Sensor("x").guardable
+    assert Sensor("x", expr=expr).guardable
+    assert Sensor("x", expr=expr).path == ""
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -60,6 +67,10 @@ def test_booleans_integers_and_categories_are_taken_as_they_are() -> None:
         ({"name": "x", "low": 0.0, "high": 1.0, "bins": True}, "bins at least 1 and whole"),
         ({"name": "x", "topic": 5, "field": "data"}, "topic must be a text"),
         ({"name": "x", "topic": "/odom", "field": ""}, "field must be a text"),
+        ({"name": "x", "expr": "min(ranges)"}, "expr must name a variable of the node"),
+        ({"name": "x", "expr": "ranges[i]"}, "expr must name a variable of the node"),
+        ({"name": "x", "expr": "a b"}, "expr must name a variable of the node"),
+        ({"name": "x", "expr": 5}, "expr must name a variable of the node"),
         ({"name": "x", "categories": "auto"}, "categories lists the texts"),
         ({"name": "x", "categories": ["auto", "auto"]}, "'auto' twice"),
     ],

@@ -314,6 +314,18 @@ def test_places_where_only_integers_make_sense_are_known(code: str, integral: bo
     ("text", "changes", "guard", "words"),
     [
         ("y = 5\n", [("5", 5, 5)], Guard((Conjunct(Sensor("seen"), 1, 1),)), "only observed"),
+        (
+            "y = 5\n",
+            [("5", 5, 7)],
+            Guard((Conjunct(Sensor("seen", expr="lost"), 1, 1),)),
+            "held by lost, which cannot",
+        ),
+        (
+            "on = 1\ny = 5\n",
+            [("5", 5, 7)],
+            Guard((Conjunct(Sensor("seen", expr="on"), 1, 1),)),
+            "makes the guard true",
+        ),
         ("y = 6\n", [("6", 5, 5)], Guard(), "analyse the file again"),
         ("y = 5\n", [("5", 5, 7), ("5", 5, 8)], Guard(), "exclude each other"),
         ("match y:\n    case 5:\n        pass\n", [("5", 5, 7)], MUD, "stays Python"),

@@ -258,3 +258,37 @@ def test_localize_takes_its_kinds_and_goes_with_a_repair(tank: pytest.Pytester) 
     done.stderr.fnmatch_lines(["*--tarl-localize goes with --tarl-repair*"])
     done = tank.runpytest(*REPAIR, "--tarl-localize=ful")
     done.stderr.fnmatch_lines(["*did you mean 'full'?*"])
+
+
+@pytest.mark.parametrize(
+    "sensor",
+    [
+        'Sensor("thick", topic="/viscosity", field=lambda m: int(m.data > 2), expr="thick")',
+        'Sensor("thick", expr="thick")',
+    ],
+)
+def test_a_guard_asks_for_the_variable_of_the_node_that_a_sensor_names(
+    tank: pytest.Pytester, sensor: str
+) -> None:
+    heard = "def on_viscosity(msg):\n    global thick\n    thick = int(msg.data > 2)\n\n\ndef main():\n"
+    changed(tank, "keeper", "level = None\n", "level = None\nthick = 0\n")
+    changed(tank, "keeper", "def main():\n", heard)
+    listening = 'rospy.Subscriber("/viscosity", Float64, on_viscosity)'
+    changed(tank, "keeper", "    valve = rospy", f"    {listening}\n    valve = rospy")
+    old = '[Sensor("level", topic="/level", field="data", low=0, high=1, bins=10)]'
+    changed(tank, "test_tank", old, f"[{sensor}]")
+    told = (
+        '        tarl.bus.publish("/viscosity", Float64(data=1.0 if tarl_drift is None else 3.0))\n'
+        f"{'' if 'topic' in sensor else '        tarl.observe(thick=int(tarl_drift is not None))' + chr(10)}"
+        "        tarl.bus.publish("
+    )
+    changed(tank, "test_tank", "        tarl.bus.publish(", told)
+    burst = "        tarl.reward(-5.0 if tarl_drift is None and valve and valve.data > 2.5 else -abs(1.0 - level))\n"
+    changed(tank, "test_tank", "        tarl.reward(-abs(1.0 - level))\n", burst)
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    tank.runpytest(*REPAIR).assert_outcomes(failed=1, deselected=1)
+    found = result(tank)["repair"]
+    assert found["accepted"]
+    patch = (tank.path / found["patch"]).read_text()
+    assert "+            if thick == 1:\n" in patch
+    assert "Subscriber" not in patch
