@@ -18,6 +18,7 @@ import time
 from collections.abc import Callable
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
+from statistics import median
 from types import CodeType, SimpleNamespace
 from typing import Any
 
@@ -38,6 +39,7 @@ ROUNDS = 2_000  # some ten thousand events: an episode
 STEPS = 200
 DISCS = 340  # which makes a step of some 200 µs
 RUNS = 12
+STARTS = 41  # of pytest, with the plugin and without
 
 STRAIGHT = """
 def work(rounds):
@@ -253,13 +255,16 @@ def importing(source: str, sites: int) -> tuple[float, float, float]:
 
 
 def starting() -> tuple[float, float]:
-    """Return milliseconds of a pytest run of one empty test: plugin off, plugin on and without any flag."""
+    """Return CPU milliseconds of a pytest run of one empty test, other plugins left out: without ours, and with it.
+
+    Medians of runs in turn: single ones differ by more than the plugin costs.
+    """
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "test_it.py").write_text("def test_it(): pass\n")
-        environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": ""}
-        best = [float("inf")] * 2
-        for _ in range(RUNS):
-            for i, flags in enumerate((("-p", "no:tarl"), ())):
+        alone = {**os.environ, "PYTHONDONTWRITEBYTECODE": "", "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+        spent: tuple[list[float], list[float]] = ([], [])
+        for _ in range(STARTS):
+            for times, flags in zip(spent, ((), ("-p", "pytest_tarl.plugin")), strict=True):
                 before = resource.getrusage(resource.RUSAGE_CHILDREN)
                 command = [
                     sys.executable,
@@ -271,11 +276,10 @@ def starting() -> tuple[float, float]:
                     *flags,
                     "test_it.py",
                 ]
-                subprocess.run(command, cwd=folder, env=environment, check=True, capture_output=True)
+                subprocess.run(command, cwd=folder, env=alone, check=True, capture_output=True)
                 after = resource.getrusage(resource.RUSAGE_CHILDREN)
-                spent = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
-                best[i] = min(best[i], spent * 1e3)
-    return best[0], best[1]
+                times.append((after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime) * 1e3)
+    return median(spent[0][1:]), median(spent[1][1:])  # the first run of each writes bytecode
 
 
 def main() -> None:
