@@ -27,6 +27,7 @@ import pytest
 
 from pytest_tarl import seeds
 from pytest_tarl.comparing import run_online
+from pytest_tarl.designation import Designation
 from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.learning import localize
 from pytest_tarl.learning.drift import compare
@@ -34,6 +35,7 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.merging import aligned
 from pytest_tarl.learning.utility import batch
 from pytest_tarl.model import Region
+from pytest_tarl.options import Options
 from pytest_tarl.recording import Recorded, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
@@ -43,7 +45,6 @@ from pytest_tarl.rollout import EpisodePlan
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.sensors import Cell
-from pytest_tarl.settings import Designation, Options
 from tarl_lint.api import Analysis, analyse
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"

@@ -8,12 +8,13 @@ from pathlib import Path
 
 from pytest_tarl.bags.reading import Bag, opened
 from pytest_tarl.bags.replay import NO_REWARDS
+from pytest_tarl.designation import Designation
 from pytest_tarl.errors import LogError, SettingsError
 from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.options import Options
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Pending, Rollout
 from pytest_tarl.ros.names import absolute
 from pytest_tarl.seeds import episode_seeds
-from pytest_tarl.settings import Designation, Options
 
 
 @dataclass(frozen=True)

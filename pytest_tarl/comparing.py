@@ -9,6 +9,7 @@ import numpy as np
 
 from pytest_tarl import seeds
 from pytest_tarl.bagged import bagged
+from pytest_tarl.designation import Designation
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.learning import localize, parts
@@ -21,12 +22,12 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled, tiled_batch
 from pytest_tarl.logged import read_log
 from pytest_tarl.model import Comparison, ListComparison, Region, SitePlace, TaintList, Verdict
+from pytest_tarl.options import Options
 from pytest_tarl.recording import Progress, Recorded, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.searching.accept import PASS_RATE_LOSS
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import Cell, Sensor
-from pytest_tarl.settings import Designation, Options
 
 MOST_NAMED = 3  # lost sites that a note names
 

@@ -18,7 +18,7 @@ class Flag(NamedTuple):
 
     @property
     def key(self) -> str:
-        """Name it as `settings.options` does."""
+        """Name it as `options.options` does."""
         return self.name.removeprefix("--tarl-")
 
     def declaration(self) -> dict[str, Any]:

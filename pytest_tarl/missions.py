@@ -11,6 +11,7 @@ from pathlib import Path
 
 from pytest_tarl.comparing import Online, run_online
 from pytest_tarl.correcting import corrected
+from pytest_tarl.designation import Designation
 from pytest_tarl.errors import AnalysisError, FixtureError, TarlError
 from pytest_tarl.files import write_atomically
 from pytest_tarl.instrumentation.sites import Plan, plan
@@ -19,6 +20,7 @@ from pytest_tarl.learning.binning import learned_edges
 from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison, Repair
+from pytest_tarl.options import Options
 from pytest_tarl.patching import patch
 from pytest_tarl.recording import Progress, read_values, record
 from pytest_tarl.repairing.order import Neighbour, Order
@@ -28,7 +30,6 @@ from pytest_tarl.report import ci, json_result, table, terminal, words
 from pytest_tarl.report.table import Row
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.sensors import Sensor, declared, with_edges
-from pytest_tarl.settings import Designation, Options
 from tarl_lint.api import Analysis, analyse
 
 RolloutWith = Callable[[Instruments, tuple[Sensor, ...]], Rollout]

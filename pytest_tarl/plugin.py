@@ -11,7 +11,7 @@ from pytest_tarl.flags import FLAGS
 
 if TYPE_CHECKING:
     from pytest_tarl.episode import Tarl
-    from pytest_tarl.settings import Options
+    from pytest_tarl.options import Options
 
 MARKER = (
     "tarl(nodes, sensors, drifts={}, episodes=200, min_success=1.0, tolerance=None, judge=None, monitor=None): "
@@ -91,7 +91,7 @@ def _asked(config: pytest.Config) -> bool:
 
 def _options(config: pytest.Config) -> Options:
     from pytest_tarl.errors import SettingsError
-    from pytest_tarl.settings import options
+    from pytest_tarl.options import options
 
     try:
         chosen = options({flag.key: config.getoption(flag.name) for flag in FLAGS})

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pytest_tarl.designation import Designation
 from pytest_tarl.errors import FixtureError, RecordingError
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.instrumentation.trace import Trace
@@ -18,10 +19,10 @@ from pytest_tarl.learning.sarsa import LEARNERS, Learner
 from pytest_tarl.learning.sequences import event_sequences
 from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Floats, Sample
+from pytest_tarl.options import Options
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import stored
-from pytest_tarl.settings import Designation, Options
 
 Progress = Callable[[int, int, str], None]
 Members = Sequence[Sequence[int]]

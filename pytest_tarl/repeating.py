@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from _pytest.runner import runtestprotocol
 
+from pytest_tarl.designation import Designation, designation
 from pytest_tarl.errors import NodeError, SettingsError, StuckNodeError, TarlError
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 from pytest_tarl.seeds import episode_seed
-from pytest_tarl.settings import Designation, designation
 
 if TYPE_CHECKING:
     from pytest_tarl.bags.replay import Replay

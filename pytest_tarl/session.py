@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import pytest
 
 from pytest_tarl.errors import FixtureError, SettingsError, TarlError
+from pytest_tarl.options import Options
 from pytest_tarl.repeating import (
     INTERRUPTS,
     NOTHING,
@@ -22,7 +23,6 @@ from pytest_tarl.repeating import (
     finish,
 )
 from pytest_tarl.sensors import Sensor
-from pytest_tarl.settings import Options
 from pytest_tarl.summary import Summary, attach
 
 if TYPE_CHECKING:

@@ -13,6 +13,7 @@ from stage import Stage
 from pytest_tarl.comparing import run_online
 from pytest_tarl.errors import TarlError
 from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.options import Options
 from pytest_tarl.recording import mean_flows, run_episodes, sarsa_tables, sound
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
@@ -20,7 +21,6 @@ from pytest_tarl.repairing.repair import repair
 from pytest_tarl.rollout import EpisodePlan
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.seeds import episode_seeds
-from pytest_tarl.settings import Options
 
 HELD_OUT = 30  # episodes of each world
 RESTORED = 0.95

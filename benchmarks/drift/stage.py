@@ -14,9 +14,9 @@ from typing import Any
 
 import pytest
 
+from pytest_tarl.designation import Designation
 from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.repeating import Instruments, ItemRollout, designated, finish
-from pytest_tarl.settings import Designation
 from tarl_lint.api import Analysis, analyse
 
 HERE = Path(__file__).resolve().parent

@@ -14,10 +14,10 @@ from typing import Any
 import pytest
 
 from pytest_tarl.errors import RecordingError
+from pytest_tarl.options import Options
 from pytest_tarl.repeating import Instruments
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 from pytest_tarl.sensors import Sensor
-from pytest_tarl.settings import Options
 from pytest_tarl.working import wire
 from pytest_tarl.working.pool import TRIES, Pool, Post, WorkerDiedError
 

@@ -1,18 +1,16 @@
-"""What the user asked for: the marker of a test, and the options of a run. Frozen, without pytest."""
+"""What the user asked of a run: its options, checked. Frozen, without pytest."""
 
 from __future__ import annotations
 
 import difflib
 import os
 import re
-import sys
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.sensors import Sensor
 
 Mode = Literal["plain", "record", "online", "repair"]
 SEARCHES = ("sweep", "halving", "epsilon-greedy")
@@ -20,7 +18,6 @@ RANKINGS = ("repair", "full")
 UTILITIES = ("batch", "sarsa", "expected-sarsa", "td-lambda")
 ROS_KINDS = ("embedded", "real", "auto")
 MOST_EPISODES = 10**6  # that a search may spend
-MARKER_ARGUMENTS = ("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance", "judge", "monitor")
 
 
 @dataclass(frozen=True)
@@ -82,24 +79,6 @@ class Options:
         return (*plain, *(text for bag in self.bags for text in ("--tarl-bag", _typed(bag))))
 
 
-@dataclass(frozen=True)
-class Designation:
-    """The arguments of `@pytest.mark.tarl`: what makes a simulation test one that TARL records and compares."""
-
-    nodes: tuple[str, ...]
-    sensors: tuple[Sensor, ...]
-    drifts: Mapping[str, Any] = field(default_factory=dict)
-    episodes: int = 200
-    min_success: float = 1.0
-    tolerance: float | None = None
-    judge: Callable[[Mapping[str, Any], Mapping[str, Any]], float] | None = (
-        None  # of steps that a log has no reward of
-    )
-    monitor: Callable[[Any], float | Mapping[str, float]] | None = (
-        None  # of missions in a bag; or a class of such
-    )
-
-
 def options(given: Mapping[str, Any]) -> Options:
     """Check the flags of a run. Raises SettingsError with a sentence."""
     if not (given["record"] or given["online"] or given["repair"]):
@@ -136,9 +115,9 @@ def options(given: Mapping[str, Any]) -> Options:
     _known("--tarl-utility", given["utility"], UTILITIES)
     _known("--tarl-ros", given["ros"], ROS_KINDS)
     if given["episodes"] is not None:
-        _number("--tarl-episodes", "it", given["episodes"], int, 2, 10**6)
+        number_within("--tarl-episodes", "it", given["episodes"], int, 2, 10**6)
     if given["looks"] is not None:
-        _number("--tarl-looks", "it", given["looks"], int, 1, 5)
+        number_within("--tarl-looks", "it", given["looks"], int, 1, 5)
     budget = _budget(str(given["budget"]))
     mode: Mode = "record" if given["record"] else "repair" if given["repair"] else "online"
     return Options(
@@ -146,7 +125,7 @@ def options(given: Mapping[str, Any]) -> Options:
         seed=given["seed"],
         drift=given["drift"],
         episodes=given["episodes"],
-        alpha=_number("--tarl-alpha", "it", given["alpha"], float, 1e-6, 0.5),
+        alpha=number_within("--tarl-alpha", "it", given["alpha"], float, 1e-6, 0.5),
         searches=searches,
         localize=localize,
         budget=budget[0],
@@ -172,14 +151,16 @@ def _budget(text: str) -> tuple[int, float | None]:
             f"--tarl-budget: it must be a number of episodes such as 300, or a time such as 90s or 5min, got {text!r}."
         )
     if unit is None:
-        return int(_number("--tarl-budget", "it", int(found[1]), int, 1, MOST_EPISODES)), None
+        return int(number_within("--tarl-budget", "it", int(found[1]), int, 1, MOST_EPISODES)), None
     return MOST_EPISODES, float(found[1]) * {"s": 1, "min": 60, "h": 3600}[unit]
 
 
 def _workers(text: str) -> int:
     """Return how many episodes are run at a time; `auto` shares the cores with the workers of pytest-xdist."""
     if text != "auto":
-        return int(_number("--tarl-workers", "it", int(text) if text.isdecimal() else text, int, 1, 1024))
+        return int(
+            number_within("--tarl-workers", "it", int(text) if text.isdecimal() else text, int, 1, 1024)
+        )
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     beside = os.environ.get("PYTEST_XDIST_WORKER_COUNT", "")
     return max(1, cores // (int(beside) if beside.isdecimal() and int(beside) else 1))
@@ -190,29 +171,6 @@ def _known(flag: str, name: str, among: Sequence[str]) -> None:
         close = difflib.get_close_matches(name, among, 1)
         hint = f"did you mean {close[0]!r}?" if close else f"it takes {' or '.join(among)}."
         raise SettingsError(f"{flag} does not know {name!r}; {hint}")
-
-
-def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, Any]) -> Designation:
-    """Check a marker's arguments. Raises SettingsError with a sentence that says which one and how to mend it."""
-    if positional:
-        raise SettingsError(
-            f"{where}: @pytest.mark.tarl takes named arguments only, such as nodes=[…], sensors=[…]."
-        )
-    for name in arguments:
-        if name not in MARKER_ARGUMENTS:
-            close = difflib.get_close_matches(name, MARKER_ARGUMENTS, 1)
-            hint = f"did you mean {close[0]!r}?" if close else f"it has {', '.join(MARKER_ARGUMENTS)}."
-            raise SettingsError(f"{where}: @pytest.mark.tarl has no argument {name!r}; {hint}")
-    return Designation(
-        nodes=_nodes(where, arguments.get("nodes", ())),
-        sensors=_sensors(where, arguments.get("sensors", ())),
-        drifts=_drifts(where, arguments.get("drifts", {})),
-        episodes=_number(where, "episodes", arguments.get("episodes", 200), int, 2, 10**6),
-        min_success=_number(where, "min_success", arguments.get("min_success", 1.0), float, 0, 1),
-        tolerance=_tolerance(where, arguments.get("tolerance")),
-        judge=_judge(where, arguments.get("judge")),
-        monitor=_monitor(where, arguments.get("monitor")),
-    )
 
 
 def _log(given: Mapping[str, Any]) -> Path | None:
@@ -251,65 +209,12 @@ def _bags(given: Mapping[str, Any]) -> tuple[Path, ...]:
     return tuple(dict.fromkeys(Path(path).absolute() for path in paths))
 
 
-def _monitor(where: str, value: Any) -> Any:
-    if value is not None and not callable(value):
-        raise SettingsError(
-            f"{where}: monitor must be a function of the recorded messages, or a class of such, got {value!r}."
-        )
-    return value
-
-
-def _judge(where: str, value: Any) -> Any:
-    if value is not None and not callable(value):
-        raise SettingsError(
-            f"{where}: judge must be a function of two mappings of sensor values, got {value!r}."
-        )
-    return value
-
-
-def _nodes(where: str, nodes: Any) -> tuple[str, ...]:
-    if (
-        isinstance(nodes, str)
-        or not isinstance(nodes, Sequence)
-        or not nodes
-        or not all(isinstance(node, str) for node in nodes)
-    ):
-        raise SettingsError(
-            f'{where}: name the files of the node under test, for instance nodes=["my_node.py"] '
-            "(relative to the test's folder)."
-        )
-    return tuple(nodes)
-
-
-def _sensors(where: str, sensors: Any) -> tuple[Sensor, ...]:
-    if not isinstance(sensors, Sequence) or not sensors or not all(isinstance(s, Sensor) for s in sensors):
-        raise SettingsError(
-            f'{where}: declare what the node is told, for instance sensors=[Sensor("x", topic="/odom", '
-            'field="pose.pose.position.x", low=0, high=10, bins=24)] with `from pytest_tarl import Sensor`.'
-        )
-    names = [sensor.name for sensor in sensors]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise SettingsError(f"{where}: the sensor name {twice[0]!r} is used twice; give each its own.")
-    return tuple(sensors)
-
-
-def _drifts(where: str, drifts: Any) -> Mapping[str, Any]:
-    if not isinstance(drifts, Mapping) or not all(isinstance(name, str) and name for name in drifts):
-        raise SettingsError(
-            f"{where}: drifts maps names to values of the fixture tarl_drift, for instance "
-            'drifts={"mud": 0.15}.'
-        )
-    return dict(drifts)
-
-
-def _number(where: str, name: str, value: Any, kind: type[int] | type[float], low: float, high: float) -> Any:
+def number_within(
+    where: str, name: str, value: Any, kind: type[int] | type[float], low: float, high: float
+) -> Any:
+    """Return a number of that kind if it lies within the bounds. Raises SettingsError."""
     takes = int if kind is int else (int, float)
     if isinstance(value, bool) or not isinstance(value, takes) or not low <= value <= high:
         what = "a whole number" if kind is int else "a number"
         raise SettingsError(f"{where}: {name} must be {what} from {low:g} to {high:g}, got {value!r}.")
     return kind(value)
-
-
-def _tolerance(where: str, value: Any) -> float | None:
-    return None if value is None else float(_number(where, "tolerance", value, float, 0, sys.float_info.max))

@@ -7,8 +7,9 @@ from typing import Any
 import pytest
 
 from pytest_tarl import Sensor
+from pytest_tarl.designation import designation
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.settings import designation, options
+from pytest_tarl.options import options
 
 GOOD: dict[str, Any] = {"nodes": ["a.py"], "sensors": [Sensor("x")]}
 FLAGS: dict[str, Any] = {

@@ -1,0 +1,116 @@
+"""What the user says of a test: the arguments of its marker, checked. Frozen, without pytest."""
+
+from __future__ import annotations
+
+import difflib
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.options import number_within
+from pytest_tarl.sensors import Sensor
+
+MARKER_ARGUMENTS = ("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance", "judge", "monitor")
+
+
+@dataclass(frozen=True)
+class Designation:
+    """The arguments of `@pytest.mark.tarl`: what makes a simulation test one that TARL records and compares."""
+
+    nodes: tuple[str, ...]
+    sensors: tuple[Sensor, ...]
+    drifts: Mapping[str, Any] = field(default_factory=dict)
+    episodes: int = 200
+    min_success: float = 1.0
+    tolerance: float | None = None
+    judge: Callable[[Mapping[str, Any], Mapping[str, Any]], float] | None = (
+        None  # of steps that a log has no reward of
+    )
+    monitor: Callable[[Any], float | Mapping[str, float]] | None = (
+        None  # of missions in a bag; or a class of such
+    )
+
+
+def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, Any]) -> Designation:
+    """Check a marker's arguments. Raises SettingsError with a sentence that says which one and how to mend it."""
+    if positional:
+        raise SettingsError(
+            f"{where}: @pytest.mark.tarl takes named arguments only, such as nodes=[…], sensors=[…]."
+        )
+    for name in arguments:
+        if name not in MARKER_ARGUMENTS:
+            close = difflib.get_close_matches(name, MARKER_ARGUMENTS, 1)
+            hint = f"did you mean {close[0]!r}?" if close else f"it has {', '.join(MARKER_ARGUMENTS)}."
+            raise SettingsError(f"{where}: @pytest.mark.tarl has no argument {name!r}; {hint}")
+    return Designation(
+        nodes=_nodes(where, arguments.get("nodes", ())),
+        sensors=_sensors(where, arguments.get("sensors", ())),
+        drifts=_drifts(where, arguments.get("drifts", {})),
+        episodes=number_within(where, "episodes", arguments.get("episodes", 200), int, 2, 10**6),
+        min_success=number_within(where, "min_success", arguments.get("min_success", 1.0), float, 0, 1),
+        tolerance=_tolerance(where, arguments.get("tolerance")),
+        judge=_judge(where, arguments.get("judge")),
+        monitor=_monitor(where, arguments.get("monitor")),
+    )
+
+
+def _monitor(where: str, value: Any) -> Any:
+    if value is not None and not callable(value):
+        raise SettingsError(
+            f"{where}: monitor must be a function of the recorded messages, or a class of such, got {value!r}."
+        )
+    return value
+
+
+def _judge(where: str, value: Any) -> Any:
+    if value is not None and not callable(value):
+        raise SettingsError(
+            f"{where}: judge must be a function of two mappings of sensor values, got {value!r}."
+        )
+    return value
+
+
+def _nodes(where: str, nodes: Any) -> tuple[str, ...]:
+    if (
+        isinstance(nodes, str)
+        or not isinstance(nodes, Sequence)
+        or not nodes
+        or not all(isinstance(node, str) for node in nodes)
+    ):
+        raise SettingsError(
+            f'{where}: name the files of the node under test, for instance nodes=["my_node.py"] '
+            "(relative to the test's folder)."
+        )
+    return tuple(nodes)
+
+
+def _sensors(where: str, sensors: Any) -> tuple[Sensor, ...]:
+    if not isinstance(sensors, Sequence) or not sensors or not all(isinstance(s, Sensor) for s in sensors):
+        raise SettingsError(
+            f'{where}: declare what the node is told, for instance sensors=[Sensor("x", topic="/odom", '
+            'field="pose.pose.position.x", low=0, high=10, bins=24)] with `from pytest_tarl import Sensor`.'
+        )
+    names = [sensor.name for sensor in sensors]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise SettingsError(f"{where}: the sensor name {twice[0]!r} is used twice; give each its own.")
+    return tuple(sensors)
+
+
+def _drifts(where: str, drifts: Any) -> Mapping[str, Any]:
+    if not isinstance(drifts, Mapping) or not all(isinstance(name, str) and name for name in drifts):
+        raise SettingsError(
+            f"{where}: drifts maps names to values of the fixture tarl_drift, for instance "
+            'drifts={"mud": 0.15}.'
+        )
+    return dict(drifts)
+
+
+def _tolerance(where: str, value: Any) -> float | None:
+    return (
+        None
+        if value is None
+        else float(number_within(where, "tolerance", value, float, 0, sys.float_info.max))
+    )
