@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from tarl_lint.model import Dependence, Flow, Role, Sink, Source, Span, Step
 from tarl_lint.order import in_order
 from tarl_lint.valueflow.context import Surroundings
+from tarl_lint.valueflow.ends import SinkRecord, SourceRecord
 from tarl_lint.valueflow.graph import Place
 from tarl_lint.valueflow.link import Linker
-from tarl_lint.valueflow.machine import SinkRecord, SourceRecord
 from tarl_lint.valueflow.sites import Texts, Written
 from tarl_lint.valueflow.values import Branches
 

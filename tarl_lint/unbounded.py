@@ -10,7 +10,7 @@ from tarl_lint.bounds import LIMITING, comparisons, computes, dotted, side
 from tarl_lint.evidence import Evidence
 from tarl_lint.model import Span
 from tarl_lint.taint import closure
-from tarl_lint.valueflow.machine import SinkRecord, SourceRecord
+from tarl_lint.valueflow.ends import SinkRecord, SourceRecord
 
 HOLDS: Final = {"then": True, "body": True, "else": False, "done": False}
 

@@ -20,7 +20,7 @@ from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding, Flow, Sink, Source, Span
 from tarl_lint.rules.wording import end
 from tarl_lint.unbounded import Magnitudes
-from tarl_lint.valueflow.machine import SinkRecord, SourceRecord
+from tarl_lint.valueflow.ends import SinkRecord, SourceRecord
 
 CODE: Final = "TARL202"
 SUMMARY: Final = "a command follows a sensor without limit"

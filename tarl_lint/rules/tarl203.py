@@ -16,8 +16,8 @@ from tarl_lint.evidence import Evidence
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
 from tarl_lint.rules.wording import end
+from tarl_lint.valueflow.ends import SourceRecord
 from tarl_lint.valueflow.ir import Function
-from tarl_lint.valueflow.machine import SourceRecord
 
 CODE: Final = "TARL203"
 SUMMARY: Final = "what is subscribed to reaches nothing"

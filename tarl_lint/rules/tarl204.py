@@ -13,8 +13,8 @@ from typing import Final
 from tarl_lint.evidence import Evidence, Read
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
+from tarl_lint.valueflow.ends import Publisher
 from tarl_lint.valueflow.ir import Pos
-from tarl_lint.valueflow.machine import Publisher
 
 CODE: Final = "TARL204"
 SUMMARY: Final = "a publisher never publishes"

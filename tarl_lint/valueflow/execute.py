@@ -7,9 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.branches import Branches
 from tarl_lint.valueflow.control import control_dependence, raised
+from tarl_lint.valueflow.ends import Publisher
 from tarl_lint.valueflow.heap import item_field
 from tarl_lint.valueflow.lower import lower_body
-from tarl_lint.valueflow.machine import Invocation, Publisher
+from tarl_lint.valueflow.machine import Invocation
 from tarl_lint.valueflow.values import (
     ABSENT,
     BOTTOM,

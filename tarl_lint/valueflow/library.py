@@ -10,9 +10,10 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.attributes import Attributes
 from tarl_lint.valueflow.containers import CONTAINERS, QUEUES, is_device
 from tarl_lint.valueflow.contents import in_order
+from tarl_lint.valueflow.ends import Publisher
 from tarl_lint.valueflow.futures import READERS
 from tarl_lint.valueflow.heap import ANY
-from tarl_lint.valueflow.machine import Arguments, Invocation, Publisher
+from tarl_lint.valueflow.machine import Arguments, Invocation
 from tarl_lint.valueflow.special import FUNCTIONS
 from tarl_lint.valueflow.texts import TEXT_METHODS
 from tarl_lint.valueflow.values import (

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import ast
-import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 
 from tarl_lint import catalog
 from tarl_lint.config import Config
@@ -12,16 +10,12 @@ from tarl_lint.relevance import mentioning
 from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import ROOT_CALL
+from tarl_lint.valueflow.bounds import EXCHANGED, HASTE, LEISURE, MAX_ROUNDS, MAX_STATEMENTS, PATIENCE
 from tarl_lint.valueflow.execute import Execution
 from tarl_lint.valueflow.lower import lower_module
-from tarl_lint.valueflow.machine import HASTE, LEISURE, MAX_STATEMENTS, PATIENCE
+from tarl_lint.valueflow.starting import STARTING, definitions, registers, starts_node
 from tarl_lint.valueflow.store import Root, Store
 from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, ClassInfo, Frame, Obj, Value, lineage, pointer
-
-MAX_ROUNDS = 12
-EXCHANGED = 40  # values that a root shares while it waits, in the time of a statement
-STARTS = frozenset(["init_node", "init", "create_node", "spin", "Subscriber", "create_subscription"])
-STARTING = re.compile(rf"\.\s*({'|'.join(sorted(STARTS))})\s*\(")  # without it a file starts nothing
 
 
 class Linker(Execution):
@@ -219,7 +213,7 @@ class Linker(Execution):
         for program in list(self.programs.values()):
             module = self.module_objects[program.name]
             starts = STARTING.search(self.modules[program.path].text) is not None
-            for statement in _definitions(program.body):
+            for statement in definitions(program.body):
                 if isinstance(statement, ir.Define):
                     if starts or statement.function.name == "main":
                         self._main_function(statement, module)
@@ -228,7 +222,7 @@ class Linker(Execution):
 
     def _main_function(self, statement: ir.Define, module: Obj) -> None:
         function = statement.function
-        if (function.module, function.pos[0]) in self.called or not _starts_node(function):
+        if (function.module, function.pos[0]) in self.called or not starts_node(function):
             return
         for obj in self._values(module, function.name):
             if obj.kind == "closure":
@@ -249,7 +243,7 @@ class Linker(Execution):
     def _node_class(self, statement: ir.Class, program: ir.Program) -> None:
         """Make an instance of a class that registers something and that nothing instantiates."""
         for cls in self._values(self.module_objects[program.name], statement.name):
-            if cls.kind != "class" or cls.key in self.made or not _registers(statement):
+            if cls.kind != "class" or cls.key in self.made or not registers(statement):
                 continue
             if not self._has_made_heir(cls):
                 self._start(cls, "node")
@@ -329,28 +323,3 @@ def _external(info: ClassInfo) -> set[str]:
         if isinstance(base.info, ClassInfo):
             found |= _external(base.info)
     return found
-
-
-def _definitions(body: Sequence[ir.Stmt]) -> Iterator[ir.Define | ir.Class]:
-    for statement in body:
-        if isinstance(statement, (ir.Define, ir.Class)):
-            yield statement
-
-
-def _starts_node(function: ir.Function) -> bool:
-    """Tell whether a function is there to be started: it is called main, or it starts a node."""
-    return function.name == "main" or _starts(function)
-
-
-def _registers(statement: ir.Class) -> bool:
-    return any(isinstance(s, ir.Define) and _starts(s.function) for s in statement.body)
-
-
-def _starts(function: ir.Function) -> bool:
-    """Tell whether a function calls a method that registers something or starts a node."""
-    if function.starts is None:
-        function.starts = any(
-            isinstance(n, ast.Call) and isinstance(n.func, ast.Attribute) and n.func.attr in STARTS
-            for n in ast.walk(function.node)
-        )
-    return function.starts

@@ -3,83 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, field
-from typing import Literal
+from dataclasses import dataclass
 
 from tarl_lint.catalog import NO_FACT, Fact
 from tarl_lint.config import Config
 from tarl_lint.names import Index
 from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.bounds import (
+    MAX_STATEMENTS,
+    PATIENCE,
+)
 from tarl_lint.valueflow.control import Branch, Control, control_dependence
+from tarl_lint.valueflow.ends import SinkRecord, SourceRecord
 from tarl_lint.valueflow.graph import Graph, Place
 from tarl_lint.valueflow.lower import lower_body
 from tarl_lint.valueflow.store import Root, Shared, Store
 from tarl_lint.valueflow.values import BOTTOM, NONE, Branches, Frame, Key, Nodes, Obj, Value
-
-Kind = Literal["topic", "service", "action", "transform"]
-
-MAX_CALLS = 24  # nested calls that are told apart; deeper ones are taken for library calls
-MAX_FRAMES = 20_000  # activations in all
-MAX_STATEMENTS = 20_000  # executed in one run of a root; then calls are taken for library calls
-MANY = 4_000  # statements in one run of a root, after which no function runs often
-OFTEN = 8  # runs of one function in one run of a root that is as long as that
-PATIENCE = 80_000  # statements in all; then what did not run yet runs once, and at twice as many nothing more
-LEISURE = 200  # statements of a call into modules that take no part, when no data goes in
-ALL_LEISURE = 1_000  # statements of all such calls in one run of a root
-HASTE = 400  # statements in one run of a root after that
-
-
-@dataclass(slots=True, eq=False)
-class SourceRecord:
-    """A subscription as found: where, what, and the nodes at which its messages arrive."""
-
-    path: str
-    pos: ir.Pos
-    api: str
-    module: str
-    qualname: str
-    statement: ir.Stmt
-    frame: Frame
-    topics: set[str] = field(default_factory=set)
-    types: set[str] = field(default_factory=set)
-    callbacks: set[str] = field(default_factory=set)
-    nodes: set[int] = field(default_factory=set)
-    registered: set[tuple[str, ir.Pos]] = field(default_factory=set)
-    via: set[tuple[str, ir.Pos]] = field(default_factory=set)
-    messages: dict[Hashable, Obj] = field(default_factory=dict)
-    kind: Kind = "topic"
-
-
-@dataclass(slots=True, eq=False)
-class SinkRecord:
-    """A publish call as found."""
-
-    path: str
-    pos: ir.Pos
-    api: str
-    module: str
-    qualname: str
-    topics: set[str] = field(default_factory=set)
-    types: set[str] = field(default_factory=set)
-    nodes: set[int] = field(default_factory=set)
-    publishers: set[tuple[str, ir.Pos]] = field(default_factory=set)  # where they are made
-    kind: Kind = "topic"
-
-
-@dataclass(slots=True, eq=False)
-class Publisher:
-    """What a publisher object is for, where it is made, and whether anything publishes with it."""
-
-    topics: set[str] = field(default_factory=set)
-    types: set[str] = field(default_factory=set)
-    api: str = ""
-    path: str = ""
-    pos: ir.Pos = (0, 0, 0, 0)
-    used: bool = False
-    kind: Kind = "topic"
-    methods: frozenset[str] = frozenset(["publish"])  # those that send
-
 
 NONE_ONLY = frozenset([None])
 Arguments = tuple[list[Value], dict[str, Value]]

@@ -10,9 +10,10 @@ from tarl_lint import catalog
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE, ROOT_CALL
 from tarl_lint.valueflow.contents import in_order
+from tarl_lint.valueflow.ends import Kind, Publisher, SourceRecord
 from tarl_lint.valueflow.graph import Place
 from tarl_lint.valueflow.library import LATER
-from tarl_lint.valueflow.machine import Invocation, Kind, Publisher, SourceRecord
+from tarl_lint.valueflow.machine import Invocation
 from tarl_lint.valueflow.publishing import Sinks, type_names
 from tarl_lint.valueflow.store import Root
 from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Obj, Value, join, join_all, pointer

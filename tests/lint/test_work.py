@@ -10,8 +10,8 @@ from tarl_lint.cli import main
 from tarl_lint.config import Config
 from tarl_lint.source import Module
 from tarl_lint.taint import Tracer
+from tarl_lint.valueflow.bounds import LEISURE, PATIENCE
 from tarl_lint.valueflow.link import Linker
-from tarl_lint.valueflow.machine import LEISURE, PATIENCE
 
 MOST = 2.5 * PATIENCE  # statements that any program may take
 

@@ -1,0 +1,15 @@
+"""How much work is done at most, counted in statements, activations and rounds, so that no program takes for ever."""
+
+from __future__ import annotations
+
+MAX_CALLS = 24  # nested calls that are told apart; deeper ones are taken for library calls
+MAX_FRAMES = 20_000  # activations in all
+MAX_STATEMENTS = 20_000  # executed in one run of a root; then calls are taken for library calls
+MANY = 4_000  # statements in one run of a root, after which no function runs often
+OFTEN = 8  # runs of one function in one run of a root that is as long as that
+PATIENCE = 80_000  # statements in all; then what did not run yet runs once, and at twice as many nothing more
+LEISURE = 200  # statements of a call into modules that take no part, when no data goes in
+ALL_LEISURE = 1_000  # statements of all such calls in one run of a root
+HASTE = 400  # statements in one run of a root after that
+MAX_ROUNDS = 12
+EXCHANGED = 40  # values that a root shares while it waits, in the time of a statement
