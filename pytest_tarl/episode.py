@@ -109,10 +109,7 @@ class Tarl:
         imports = self._imports
 
         def program() -> None:
-            if entry is None:
-                imports.run_script(path)
-            else:
-                imports.run_entry(path, entry)
+            imports.run(path, entry)
 
         self.ros.start(program, name=name or path.stem, argv=argv)
 

@@ -81,25 +81,7 @@ class Options:
 
 def options(given: Mapping[str, Any]) -> Options:
     """Check the flags of a run. Raises SettingsError with a sentence."""
-    if not (given["record"] or given["online"] or given["repair"]):
-        stray = next(
-            (name for name in ("drift", "search", "localize", "strict", "log", "bag", "holm") if given[name]),
-            "drift",
-        )
-        raise SettingsError(f"--tarl-{stray} goes with --tarl-online, and does nothing without it.")
-    if given["record"] and given["online"]:
-        raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
-    if given["repair"] and not given["online"]:
-        raise SettingsError("--tarl-repair goes with --tarl-online: it repairs what the comparison finds.")
-    if given["holm"] and not given["online"]:
-        raise SettingsError("--tarl-holm goes with --tarl-online: it corrects the verdicts of its tests.")
-    if given["holm"] and given["repair"]:
-        raise SettingsError(
-            "--tarl-holm and --tarl-repair are two runs: a verdict is corrected when all tests have run, a repair is "
-            "searched for while its test runs. Compare with --tarl-holm first, then repair the tests that are degraded."
-        )
-    if given["drift"] and not given["online"]:
-        raise SettingsError("--tarl-drift goes with --tarl-online: it chooses one of the marker's drifts.")
+    _check_modes(given)
     searches = tuple(dict.fromkeys(given["search"] or ("sweep",)))
     for name in searches:
         if not re.fullmatch(
@@ -140,6 +122,29 @@ def options(given: Mapping[str, Any]) -> Options:
         holm=given["holm"],
         bags=_bags(given),
     )
+
+
+def _check_modes(given: Mapping[str, Any]) -> None:
+    """Raise SettingsError where flags do not go together."""
+    if not (given["record"] or given["online"] or given["repair"]):
+        stray = next(
+            (name for name in ("drift", "search", "localize", "strict", "log", "bag", "holm") if given[name]),
+            "drift",
+        )
+        raise SettingsError(f"--tarl-{stray} goes with --tarl-online, and does nothing without it.")
+    if given["record"] and given["online"]:
+        raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
+    if given["repair"] and not given["online"]:
+        raise SettingsError("--tarl-repair goes with --tarl-online: it repairs what the comparison finds.")
+    if given["holm"] and not given["online"]:
+        raise SettingsError("--tarl-holm goes with --tarl-online: it corrects the verdicts of its tests.")
+    if given["holm"] and given["repair"]:
+        raise SettingsError(
+            "--tarl-holm and --tarl-repair are two runs: a verdict is corrected when all tests have run, a repair is "
+            "searched for while its test runs. Compare with --tarl-holm first, then repair the tests that are degraded."
+        )
+    if given["drift"] and not given["online"]:
+        raise SettingsError("--tarl-drift goes with --tarl-online: it chooses one of the marker's drifts.")
 
 
 def _budget(text: str) -> tuple[int, float | None]:

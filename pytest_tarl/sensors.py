@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping
@@ -12,6 +11,7 @@ from numbers import Real
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.variables import prefixes
 
 Cell = tuple[int, ...]  # one bin per sensor
 CALLED = "()"  # ends the name of a function that reads a sensor from a message
@@ -65,7 +65,7 @@ class Sensor:
                     f"Sensor {self.name!r}: {what} must be a text such as topic='/odom', field='pose.pose.position.x', "
                     f"got {given!r}."
                 )
-        if self.expr and not _is_variable(self.expr):
+        if self.expr and not prefixes(self.expr):
             raise SettingsError(
                 f"Sensor {self.name!r}: expr must name a variable of the node, such as 'speed', 'self.heading' or "
                 f"'self.state[\"yaw\"]', got {self.expr!r}."
@@ -230,19 +230,6 @@ class Sensor:
         if self.categories:
             return self.categories[index]
         return str(index)
-
-
-def _is_variable(code: Any) -> bool:
-    """Tell whether a text is a name, an attribute, or an entry at a constant."""
-    try:
-        node = ast.parse(code, mode="eval").body
-    except (SyntaxError, TypeError, ValueError):
-        return False
-    while isinstance(node, ast.Attribute | ast.Subscript):
-        if isinstance(node, ast.Subscript) and not isinstance(node.slice, ast.Constant):
-            return False
-        node = node.value
-    return isinstance(node, ast.Name)
 
 
 def as_number(value: Any) -> float | None:

@@ -60,20 +60,19 @@ def _counts(recorded: ListSample) -> Floats:
     return np.bincount(site, weights=visits.count[events], minlength=recorded.width).astype(float)
 
 
-def _heading(taint_list: TaintList, recorded: ListSample, size: int) -> str:
-    events = int(_counts(recorded).sum())
-    return f"  {taint_list.name}: {events} events, mean |f| {recorded.mean_flow:.4g}, {_kilobytes(size)}"
+def _heading(taint_list: TaintList, recorded: ListSample, counts: Floats, size: int) -> str:
+    return f"  {taint_list.name}: {int(counts.sum())} events, mean |f| {recorded.mean_flow:.4g}, {_kilobytes(size)}"
 
 
 def _summary(taint_list: TaintList, recorded: ListSample, size: int) -> str:
     files = ", ".join(sorted({place.path for place in taint_list.sites}))
-    return f"{_heading(taint_list, recorded, size)}, {len(taint_list.sites)} statements in {files}"
+    return f"{_heading(taint_list, recorded, _counts(recorded), size)}, {len(taint_list.sites)} statements in {files}"
 
 
 def _list(taint_list: TaintList, recorded: ListSample, size: int) -> Iterator[str]:
     counts = _counts(recorded)
     flows = recorded.flow.sum(axis=0)
-    yield _heading(taint_list, recorded, size)
+    yield _heading(taint_list, recorded, counts, size)
     for place, count, flow in zip(taint_list.sites, counts.tolist(), flows.tolist(), strict=True):
         mean = flow / count if count else 0.0
         mark = "●" if place.dependence == "data" else "◆"

@@ -88,6 +88,14 @@ class NodeImports:
         """Compile a file with its sites recorded. Raises SyntaxError and OSError as an import does."""
         return self._code.compile(path)
 
+    def run(self, path: Path, entry: str | None = None) -> None:
+        """Run a node's file: as a script, or by the function that its entry point names."""
+        __tracebackhide__ = True
+        if entry is None:
+            self.run_script(path)
+        else:
+            self.run_entry(path, entry)
+
     def run_script(self, path: Path, name: str = "__main__") -> ModuleType:
         """Execute a file as `python path` does, in a fresh module that `sys.modules` holds under `name`.
 

@@ -72,10 +72,7 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
         observer.begin()
     with imports, command_line([str(order.node), *order.argv]):
         try:
-            if order.entry is None:
-                imports.run_script(order.node.resolve())
-            else:
-                imports.run_entry(order.node.resolve(), order.entry)
+            imports.run(order.node.resolve(), order.entry)
         except SystemExit as ended:
             observer.end(passed=ended.code in (None, 0), failure=f"exit status {ended.code}")
             raise

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
-from pytest_tarl.patching.document import Document, Function, parse_expression
+from pytest_tarl.patching.document import Document, Function
+from pytest_tarl.variables import prefixes
 
 Constant = float | int | bool | str | None
 Scope = Function | ast.Lambda
@@ -27,17 +28,6 @@ class Binding:
 def bindings(source: Document) -> tuple[Binding, ...]:
     """Return every binding of a name or an attribute in the module."""
     return tuple(found for node in ast.walk(source.tree) for found in _bindings(node))
-
-
-def prefixes(code: str) -> tuple[str, ...]:
-    """Return the prefixes of `a.b.c` or `a.b[0].c`, shortest first; nothing for any other expression."""
-    node, found = parse_expression(code), list[str]()
-    while isinstance(node, ast.Attribute | ast.Subscript):
-        if isinstance(node, ast.Subscript) and not isinstance(node.slice, ast.Constant):
-            return ()
-        found.append(ast.unparse(node))
-        node = node.value
-    return (node.id, *reversed(found)) if isinstance(node, ast.Name) else ()
 
 
 def scope(source: Document, place: ast.AST, name: str) -> Scope | None:

@@ -12,7 +12,7 @@ from pytest_tarl.ros.missing import refuse
 __all__ = ["create_cloud", "create_cloud_xyz32", "dtype_from_fields", "read_points", "read_points_list",
            "read_points_numpy"]  # fmt: skip
 
-_TYPES = {
+TYPES = {
     1: "i1",
     2: "u1",
     3: "i2",
@@ -34,7 +34,7 @@ def dtype_from_fields(
     names, formats, offsets = [], [], []
     for field in fields:
         names.append(field.name)
-        base = order + _TYPES[field.datatype]
+        base = order + TYPES[field.datatype]
         formats.append(base if field.count in (0, 1) else (base, (field.count,)))
         offsets.append(field.offset)
     layout: dict[str, Any] = {"names": names, "formats": formats, "offsets": offsets}

@@ -9,7 +9,7 @@ from typing import Any
 from pytest_tarl.ros.cv_bridge import CvBridge
 from pytest_tarl.ros.messages.snapshot import type_name
 from pytest_tarl.ros.missing import refuse
-from pytest_tarl.ros.point_cloud2 import dtype_from_fields
+from pytest_tarl.ros.point_cloud2 import TYPES, dtype_from_fields
 from pytest_tarl.ros.transformations import quaternion_from_matrix, quaternion_matrix
 
 __all__ = [
@@ -18,16 +18,7 @@ __all__ = [
     "split_rgb_field",
 ]  # fmt: skip
 
-_KINDS = {
-    "i1": 1,
-    "u1": 2,
-    "i2": 3,
-    "u2": 4,
-    "i4": 5,
-    "u4": 6,
-    "f4": 7,
-    "f8": 8,
-}  # numpy → PointField.datatype
+_KINDS = {kind: number for number, kind in TYPES.items()}  # numpy → PointField.datatype
 
 
 def numpify(msg: Any, *args: Any, **kwargs: Any) -> Any:
