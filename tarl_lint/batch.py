@@ -10,13 +10,12 @@ from typing import Final
 
 from tarl_lint.cache import Cache, Report, digest
 from tarl_lint.config import Config
-from tarl_lint.memory import tidy, without_collection
+from tarl_lint.memory import without_collection
 from tarl_lint.progress import Tell, silent
 from tarl_lint.relevance import groups
 from tarl_lint.source import TOO_DEEP, Module, Script, SourceError, parsed
 
 MANY_LINES: Final = 30_000  # to analyse; with fewer, starting processes takes longer than they save
-UNTIDY: Final = 20_000  # lines after which what holds itself is freed
 
 
 @dataclass(frozen=True)
@@ -88,15 +87,10 @@ def _made(tasks: Sequence[Task], config: Config, workers: int, tell: Tell) -> It
     if workers > 1:
         yield from _in_processes(tasks, config, workers, tell)
         return
-    lines = 0
     with without_collection():
         for number, task in enumerate(tasks, 1):
             tell(f"Analysing {task.scripts[0].path} ({number} of {len(tasks)})")
             yield perform(task, config)
-            lines += task.lines
-            if lines > UNTIDY:
-                tidy()
-                lines = 0
 
 
 def _in_processes(tasks: Sequence[Task], config: Config, workers: int, tell: Tell) -> Iterator[Report]:

@@ -40,8 +40,11 @@ def examine(
     with without_collection(), deep_recursion():
         machine = Linker(modules, config, failures, thorough=False)
         machine.link()
-        flows = Tracer(machine).flows()
-        found = (*findings(flows), *hazards(machine, flows, config))
+        tracer = Tracer(machine)
+        flows = tracer.flows()
+        found = (*findings(flows), *hazards(tracer, flows, config))
+        tracer.texts.release()
+        machine.release()
     return found, failures or {}, machine.hurried
 
 
@@ -68,12 +71,12 @@ def findings(flows: Sequence[Flow]) -> tuple[Finding, ...]:
     )
 
 
-def hazards(machine: Linker, flows: Sequence[Flow], config: Config) -> tuple[Finding, ...]:
+def hazards(tracer: Tracer, flows: Sequence[Flow], config: Config) -> tuple[Finding, ...]:
     """Return what is wrong or risky rather than merely there, of the rules that are wanted."""
     wanted = [rule for rule in HAZARDS if config.enabled(rule.CODE)]
-    if not wanted or not machine.modules:
+    if not wanted or not tracer.machine.modules:
         return ()
-    evidence = Evidence(machine, flows)
+    evidence = Evidence(tracer, flows)
     found = {finding for rule in wanted for finding in rule.findings(evidence)}
     return tuple(sorted(found, key=lambda f: (f.span, f.code, f.message)))
 

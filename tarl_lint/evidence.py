@@ -6,14 +6,12 @@ import ast
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Final
 
 from tarl_lint.bounds import limits
 from tarl_lint.model import Finding, Flow, Source, Span
 from tarl_lint.taint import Tracer
 from tarl_lint.valueflow.ir import Pos
-from tarl_lint.valueflow.link import Linker
 
 PROGRAM: Final = re.compile(r"__main__|\bdef main\(|\binit_node\(|\brclpy\.init\(")
 Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
@@ -88,17 +86,13 @@ class Outline:
 class Evidence:
     """Everything that a rule about hazards may ask."""
 
-    def __init__(self, machine: Linker, flows: Sequence[Flow]) -> None:
-        self.machine = machine
+    def __init__(self, tracer: Tracer, flows: Sequence[Flow]) -> None:
+        self.tracer = tracer  # who follows the graph
+        self.machine = machine = tracer.machine
         self.flows = flows
         self.ours = frozenset(f.function.name for f in machine.frames.values())
         self._outlines: dict[str, Outline] = {}
         self._limited: dict[int, bool] = {}
-
-    @cached_property
-    def tracer(self) -> Tracer:
-        """Return who follows the graph."""
-        return Tracer(self.machine)
 
     def limited(self, statement: ast.AST) -> bool:
         """Tell whether what a statement computes stays within limits, as far as its text says."""

@@ -17,8 +17,3 @@ def without_collection() -> Iterator[None]:
     finally:
         if active:
             gc.enable()
-
-
-def tidy() -> None:
-    """Free what holds itself."""
-    gc.collect()

@@ -209,6 +209,16 @@ class Machine:
         self.waiting[self.store.root] = None
         return True
 
+    def release(self) -> None:
+        """Let go of everything, so that nothing is left that holds itself. Nothing can be asked afterwards."""
+        for obj in (*self.objects.values(), *self.module_objects.values(), *self.frames.values()):
+            obj.release()
+        for record in self.sources.values():
+            for message in record.messages.values():
+                message.release()
+        for table in (self.objects, self.module_objects, self.frames, self.roots, self.sources):
+            table.clear()
+
     # --- what the parts provide --------------------------------------------------------------------------
 
     def deep(self, objects: frozenset[Obj]) -> Nodes:

@@ -183,6 +183,12 @@ class Texts:
         self.modules = modules
         self.known: dict[str, Text] = {}
 
+    def release(self) -> None:
+        """Let go of the statements, each of which knows its text."""
+        for text in self.known.values():
+            for table in (text.by_start, text.functions, text.by_name):
+                table.clear()
+
     def __getitem__(self, path: str) -> Text:
         """Return the text of a file."""
         if path not in self.known:

@@ -81,6 +81,16 @@ class Obj:
         """Return the outermost object."""
         return self if self.parent is None else self.parent.root()
 
+    def release(self) -> None:
+        """Let go of what may lead back here."""
+        for sub in self.subs.values():
+            if sub is not self:
+                sub.release()
+        self.subs.clear()
+        self.holders.clear()
+        self.inside.clear()
+        self.info = None
+
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name or self.key}>"
 
@@ -175,6 +185,11 @@ class Frame(Obj):
         self.result = BOTTOM
         self.yielded = BOTTOM
         self.arguments: list[Value] = []
+
+    def release(self) -> None:
+        """Let go of what may lead back here."""
+        super().release()
+        self.returns, self.jumps, self.tries, self.escapes, self.arguments = [], [], [], [], []
 
     def owner_class(self) -> Obj | None:
         """Return the class whose body this is, None in functions."""

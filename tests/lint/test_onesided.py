@@ -50,8 +50,9 @@ def found(modules):
     with deep_recursion():
         machine = Linker(modules, Config(), thorough=False)
         machine.link()
-        flows = Tracer(machine).flows()
-    return (*findings(flows), *hazards(machine, flows, Config()))
+        tracer = Tracer(machine)
+        flows = tracer.flows()
+    return (*findings(flows), *hazards(tracer, flows, Config()))
 
 
 def test_modules_that_only_say_or_only_hear_are_not_run():

@@ -1,7 +1,9 @@
 """How much work programs take: counted in statements of the analysis, not in seconds."""
 
 import ast
+import gc
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
@@ -140,6 +142,21 @@ def test_what_takes_no_part_and_gets_no_data_is_followed_only_so_far():
 def test_what_gets_data_is_followed_wherever_it_goes():
     machine = work(USER.format(start=56, given="msg.data"), TOOL)
     assert [f.kind for f in Tracer(machine).flows()] == ["explicit"]
+
+
+def test_analysing_leaves_nothing_behind_that_holds_itself():
+    text = (Path(__file__).parents[1] / "cases" / "containers.py").read_text()
+    module = Module("node.py", "node", text, ast.parse(text))
+    gc.collect()
+    gc.set_debug(gc.DEBUG_SAVEALL)
+    try:
+        assert engine.examine([module], Config())[0]
+        gc.collect()
+        ours = {type(o).__name__ for o in gc.garbage if type(o).__module__.startswith("tarl_lint")}
+    finally:
+        gc.set_debug(0)
+        gc.garbage.clear()
+    assert ours == set()
 
 
 def test_conditions_that_no_source_decides_lead_to_nothing():
