@@ -17,6 +17,7 @@ PROGRAM: Final = re.compile(r"__main__|\bdef main\(|\binit_node\(|\brclpy\.init\
 Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 DEFINITIONS: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 BY_TEXT: Final = frozenset(["getattr", "hasattr", "vars", "globals", "locals", "eval", "exec"])
+LOOK_UPS: Final = frozenset(["getattr", "hasattr", "attrgetter", "methodcaller"])  # of a name given as a text
 LOCKS: Final = frozenset(["Lock", "RLock", "Condition", "Semaphore", "BoundedSemaphore"])
 
 
@@ -128,14 +129,23 @@ class Evidence:
         return any(last in m.text and PROGRAM.search(m.text) for m in self.machine.modules.values())
 
     def reads(self, name: str, *, attribute: bool, path: str = "") -> Iterator[Read]:
-        """Yield every place that may read a name, in one module or in all; texts that spell it count."""
+        """Yield every place that may read a name, in one module or in all; texts that it is looked up by count."""
         for module in self.machine.modules.values():
             if name not in module.text or (path and module.path != path):
                 continue
             outline = self.outline(module.path)
             for node in ast.walk(module.tree):
-                if isinstance(node, ast.expr) and _reads(node, name, attribute):
+                if not isinstance(node, ast.expr) or not _reads(node, name, attribute):
+                    continue
+                if not isinstance(node, ast.Constant) or self._looked_up(node, outline):
                     yield Read(module.path, node, list(outline.around(node)))
+
+    def _looked_up(self, node: ast.Constant, outline: Outline) -> bool:
+        """Tell whether a text may name something that is looked up, rather than a topic of the same name."""
+        outer = outline.parents.get(node)
+        if isinstance(outer, ast.Call) and _last(outer.func) in LOOK_UPS:
+            return True
+        return any(self.outline(path).by_text for path in self.machine.modules)
 
     def imported(self, name: str) -> bool:
         """Tell whether any module imports a name from another one."""

@@ -262,6 +262,16 @@ def test_a_callback_that_does_nothing_that_matters_is_a_hazard(body, more, found
     assert len(lines("TARL203", WATCH.format(body=body, more=more))) == found
 
 
+def test_the_name_of_a_topic_is_no_use_of_an_attribute_of_that_name():
+    text = WATCH.format(body="self.scan = msg", more="").replace("/scan", "scan")
+    assert len(lines("TARL203", text)) == 1
+    assert lines("TARL204", SENDER.format(more="").replace('"/a"', '"pub"')) == [6]
+    looked_up = (
+        "            from operator import attrgetter\n            attrgetter('pub')(self).publish(1.0)"
+    )
+    assert lines("TARL204", SENDER.format(more=looked_up).replace('"/a"', '"pub"')) == []
+
+
 def test_a_callback_that_an_heir_replaces_is_none():
     base = WATCH.format(body="pass", more="").replace("Watch()", "Near()").replace(
         'rospy.init_node("watch")',
