@@ -43,6 +43,9 @@ HARMLESS_FIELDS: Final = frozenset(
     ]
 )  # fmt: skip
 
+# Arrays of messages: an element of them is what was measured, whichever is chosen.
+MEASURED: Final = frozenset(["ranges", "intensities", "position", "velocity", "effort", "data"])
+
 Side = Literal["above", "below", "both"]
 
 
@@ -89,7 +92,9 @@ def call_name(call: ast.Call) -> str:
 
 def _looked_up(node: ast.Subscript) -> bool:
     """Tell whether an element is chosen by something computed, as out of a table of speeds."""
-    return isinstance(node.slice, (ast.Attribute, ast.Call, ast.BinOp))
+    table = node.value
+    name = table.attr if isinstance(table, ast.Attribute) else getattr(table, "id", "")
+    return isinstance(node.slice, (ast.Attribute, ast.Call, ast.BinOp)) and name not in MEASURED
 
 
 def side(test: ast.expr, *, holds: bool) -> Side:

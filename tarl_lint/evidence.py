@@ -39,6 +39,7 @@ class Outline:
     calls: dict[tuple[int, int], list[ast.Call]] = field(default_factory=dict)
     definitions: list[Definition] = field(default_factory=list)  # in the order of their lines
     locks: dict[str, str] = field(default_factory=dict)  # name of a lock → the lock, which a condition shares
+    assigned: dict[str, list[ast.expr]] = field(default_factory=dict)  # last part of a name → what is stored
     by_text: bool = False  # names may be looked up by texts made at run time
 
     def __post_init__(self) -> None:
@@ -52,8 +53,16 @@ class Outline:
                 self.by_text |= _by_text(node)
             elif isinstance(node, ast.Attribute):
                 self.by_text |= node.attr == "__dict__"
-            elif isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
-                self._lock(node.targets, node.value)
+            elif isinstance(node, ast.Assign):
+                self._assigned(node.targets, node.value)
+            elif isinstance(node, ast.AnnAssign) and node.value is not None:
+                self._assigned([node.target], node.value)
+
+    def _assigned(self, targets: Sequence[ast.expr], value: ast.expr) -> None:
+        for target in targets:
+            self.assigned.setdefault(_last(target), []).append(value)
+        if isinstance(value, ast.Call):
+            self._lock(targets, value)
 
     def _lock(self, targets: Sequence[ast.expr], call: ast.Call) -> None:
         if _last(call.func) not in LOCKS:

@@ -1,10 +1,12 @@
 """TARL201: state is shared between threads without the lock that guards it elsewhere.
 
 In rospy every subscriber, timer and service calls back in a thread of its own, beside the main loop. In rclpy this is
-so only with a MultiThreadedExecutor and callback groups that allow it, or with threads of one's own. An attribute that
-is accessed under a lock in one thread, and changed or read without it in another, may be seen half changed, or a
-change may be lost. Only attributes for which a lock is used somewhere are reported; flags that are set to constants,
-questions whether something is there yet, and what runs before the threads start are not.
+so only with a MultiThreadedExecutor and callback groups that allow it, or with threads of one's own. An attribute or
+global that is accessed under a lock in one thread, and changed or read without it in another, may be seen half
+changed, or a change may be lost. Only what a lock is used for somewhere is reported. Not reported are flags that are
+set to constants, questions whether something is there yet or whether to leave before the lock is taken, methods of
+objects that may guard themselves, and what runs before the threads start. Where a function is called with the lock in
+one place and without it in another, the call without it is named.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tarl_lint.evidence import Evidence
-from tarl_lint.locking import Locking, Use
+from tarl_lint.locking import Locking, Use, unguarded
 from tarl_lint.model import Finding
 
 CODE: Final = "TARL201"
@@ -105,31 +107,31 @@ VALID: Final = (
 
 
 def findings(evidence: Evidence) -> Iterator[Finding]:
-    """Yield a hazard for each function that uses an attribute without its lock, beside another thread."""
+    """Yield a hazard for each function that uses shared state without its lock, beside another thread."""
     for uses in Locking(evidence).uses().values():
         written = [u for u in uses if u.writes]
         if not written or all(u.constant for u in written):
             continue
         told: set[tuple[str, str]] = set()
-        for use in sorted((u for u in uses if not u.locks), key=lambda u: (u.path, u.pos)):
+        for use, spot in sorted(unguarded(uses), key=lambda found: (found[1].path, found[1].pos)):
             other = _conflict(use, uses)
-            if other is None or (use.path, use.function) in told:
+            if other is None or (spot.path, spot.function) in told:
                 continue
-            told.add((use.path, use.function))
-            about = f"self.{use.name} {_done(use)}"
-            yield evidence.finding(CODE, evidence.span(use.path, use.pos), _message(use, other), about)
+            told.add((spot.path, spot.function))
+            about = f"{use.name} {_done(use)}"
+            yield evidence.finding(CODE, evidence.span(spot.path, spot.pos), _message(use, other), about)
 
 
 def _conflict(use: Use, uses: Sequence[Use]) -> Use | None:
     """Return an access in another thread that holds a lock, when one of the two writes."""
     others = (u for u in uses if u.locks and u.thread != use.thread and (u.writes or use.writes))
-    return min(others, key=lambda u: (not u.writes, u.path, u.pos), default=None)
+    return min(others, key=lambda u: (not u.writes, u.spots[0].path, u.spots[0].pos), default=None)
 
 
 def _message(use: Use, other: Use) -> str:
     lock, does = min(other.locks), "writes" if other.writes else "reads"
-    there = f"{other.function} holds in another thread when it {does} it"
-    return f"self.{use.name} is {_done(use)} without {lock}, which {there}"
+    there = f"{other.spots[0].function} holds in another thread when it {does} it"
+    return f"{use.name} is {_done(use)} without {lock}, which {there}"
 
 
 def _done(use: Use) -> str:

@@ -5,7 +5,8 @@ on the way bounds it: no `min`, `max`, `clip` or function of such a name, no ang
 the value when it is too large. Sensors send infinity, jumps and nonsense sometimes, and the command then follows.
 Clamp it where it is computed; that is the line that is named. Conditions that only ask whether the value is large
 enough (`while distance > tolerance`) do not bound it. What passes through code that is not here is not reported, nor
-are speeds that may be measurements: a Float64 on `/speed` made from ticks, from `twist`, or from a way and a time.
+what somebody decided (a subscribed `Twist`, joystick, goal or target), nor speeds that may be measurements: a Float64
+on `/speed` made from ticks, from `twist`, or from a way and a time.
 """
 
 from __future__ import annotations

@@ -5,10 +5,8 @@ from textwrap import dedent
 
 import pytest
 
-from tarl_lint import engine
 from tarl_lint.cli import main
-from tarl_lint.config import Config
-from tarl_lint.source import Module, parse
+from tests.lint.hazardous import inside, lines
 
 RANGE = """
     import rospy
@@ -28,71 +26,6 @@ RANGE = """
     rospy.Subscriber("/range", Range, on_range)
 """
 
-ROSPY = """
-    import threading
-    import rospy
-    from std_msgs.msg import Float64
-    class Node:
-        def __init__(self):
-            self.lock = threading.Lock()
-            self.changed = threading.Condition(self.lock)
-            self.value = 0.0
-            self.pub = rospy.Publisher("/out", Float64, queue_size=1)
-            rospy.Subscriber("/in", Float64, self.on_value)
-            rospy.Timer(rospy.Duration(0.1), self.on_timer)
-        def on_value(self, msg):
-            with self.lock:
-                self.value = msg.data
-        def on_timer(self, event):
-{body}
-        def send(self):
-            self.pub.publish(self.value)
-    Node()
-    rospy.spin()
-"""
-
-RCLPY = """
-    import threading
-    import rclpy
-    from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-    from rclpy.executors import {executor}
-    from rclpy.node import Node
-    from std_msgs.msg import Float64
-    class Relay(Node):
-        def __init__(self):
-            super().__init__("relay")
-            self.lock = threading.Lock()
-            self.group = {group}()
-            self.value = 0.0
-            self.pub = self.create_publisher(Float64, "out", 1)
-            self.create_subscription(Float64, "in", self.on_value, 1)
-            self.create_timer(0.1, self.on_timer, callback_group={given})
-        def on_value(self, msg):
-            with self.lock:
-                self.value = msg.data
-        def on_timer(self):
-            self.pub.publish(Float64(data=self.value))
-    rclpy.init()
-    executor = {executor}()
-    executor.add_node(Relay())
-    executor.spin()
-"""
-
-
-def lines(code: str, *texts: str) -> list[int]:
-    """Return the lines of the hazards of one rule in files a.py, b.py, ..."""
-    modules = []
-    for name, text in zip("abc", texts, strict=False):
-        module = parse(f"{name}.py", dedent(text).strip("\n").encode(), name)
-        assert isinstance(module, Module)
-        modules.append(module)
-    return [f.span.line for f in engine.lint(modules, Config(select=(code,))) if f.code == code]
-
-
-def inside(text: str, body: str, depth: int) -> str:
-    """Put a body into a text, indented."""
-    return text.format(body="\n".join(" " * depth + line for line in dedent(body).strip().split("\n")))
-
 
 @pytest.mark.parametrize(
     "body",
@@ -105,6 +38,7 @@ def inside(text: str, body: str, depth: int) -> str:
         "if 0.2 < msg.range:\n    cmd.linear.x = 0.3 * msg.range",
         "if msg.field_of_view < 0.1:\n    cmd.linear.x = 0.1\nelse:\n    cmd.linear.x = 0.3 * msg.range",
         "cmd.angular.z = min(0.5, msg.range)\ncmd.linear.x = 0.3 * msg.range",
+        "n = len(msg.ranges)\nahead = msg.ranges[n // 2]\ncmd.linear.x = 0.3 * ahead",
     ],
 )
 def test_a_command_computed_from_a_sensor_without_limit_is_a_hazard(body):
@@ -126,6 +60,7 @@ def test_a_command_computed_from_a_sensor_without_limit_is_a_hazard(body):
         "cmd.linear.x = controller.step(0.3 * msg.range)",
         "cmd.linear.x = 0.3 if msg.range > 1.0 else 0.1",
         "cmd.linear.x = 1.0 * (msg.range > 1.0)",
+        "cmd.linear.x = 2.0 * [0.1, 0.2, 0.3][int(msg.range)]",
     ],
 )
 def test_a_command_that_something_limits_is_none(body):
@@ -171,58 +106,6 @@ SPEED = """
 def test_speeds_that_may_be_measurements_are_no_commands(topic, value, found, package, message, field):
     text = SPEED.format(topic=topic, value=value, package=package, message=message, field=field)
     assert len(lines("TARL202", text)) == found
-
-
-@pytest.mark.parametrize(
-    ("body", "found"),
-    [
-        ("self.pub.publish(self.value)", 1),
-        ("self.value += 1.0", 1),
-        ("self.send()", 1),
-        ("with self.lock:\n    self.send()", 0),
-        ("with self.changed:\n    self.pub.publish(self.value)", 0),
-        ("self.lock.acquire()\ntry:\n    self.send()\nfinally:\n    self.lock.release()", 0),
-        ("self.lock.acquire()\nself.lock.release()\nself.send()", 1),
-        ("if self.value is None:\n    return", 0),
-        ("pass", 0),
-    ],
-)
-def test_state_of_a_callback_used_in_a_timer_needs_its_lock(body, found):
-    assert len(lines("TARL201", inside(ROSPY, body, 12))) == found
-
-
-@pytest.mark.parametrize(
-    ("executor", "group", "given", "found"),
-    [
-        ("MultiThreadedExecutor", "ReentrantCallbackGroup", "self.group", 1),
-        ("MultiThreadedExecutor", "MutuallyExclusiveCallbackGroup", "self.group", 1),
-        ("MultiThreadedExecutor", "ReentrantCallbackGroup", "None", 0),
-        ("SingleThreadedExecutor", "ReentrantCallbackGroup", "self.group", 0),
-    ],
-)
-def test_callbacks_of_rclpy_overlap_only_where_they_are_told_to(executor, group, given, found):
-    text = RCLPY.format(executor=executor, group=group, given=given)
-    if given == "None":
-        text = text.replace(", callback_group=None", "")
-    assert len(lines("TARL201", text)) == found
-
-
-def test_what_a_thread_of_ones_own_reads_needs_the_lock_in_rclpy_too():
-    text = RCLPY.format(executor="SingleThreadedExecutor", group="ReentrantCallbackGroup", given="self.group")
-    text = text.replace(
-        "self.create_timer(0.1, self.on_timer, callback_group=self.group)",
-        "threading.Thread(target=self.on_timer).start()",
-    )
-    assert len(lines("TARL201", text)) == 1
-
-
-def test_flags_and_state_without_any_lock_are_not_reported():
-    flag = inside(ROSPY, "self.pub.publish(self.value)", 12).replace(
-        "self.value = msg.data", "self.value = True"
-    )
-    assert lines("TARL201", flag) == []
-    bare = inside(ROSPY, "self.pub.publish(self.value)", 12).replace("with self.lock:", "if msg.data:")
-    assert lines("TARL201", bare) == []
 
 
 WATCH = """

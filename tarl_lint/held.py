@@ -1,0 +1,109 @@
+"""Which locks are held at a place in a function, as far as the text of that function tells."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.evidence import Outline
+
+LOCKISH: Final = re.compile(r"lock|mutex|sem(aphore)?$|cond(ition)?$", re.I)
+FUNCTIONS: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
+EXITS: Final = (ast.Return, ast.Continue, ast.Break, ast.Raise)
+
+
+def locks_around(node: ast.AST, outline: Outline) -> frozenset[str]:
+    """Return the names of the locks that are held at a node."""
+    found: set[str] = set()
+    function: ast.AST | None = None
+    for outer in outline.around(node):
+        if isinstance(outer, (ast.With, ast.AsyncWith)):
+            found |= set(_taken(outer, outline))
+        if isinstance(outer, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            function = outer
+            break
+    if function is not None:
+        found |= _acquired(node, function, outline)
+    return frozenset(found)
+
+
+def _taken(statement: ast.With | ast.AsyncWith, outline: Outline) -> Iterator[str]:
+    for item in statement.items:
+        if name := lock_name(item.context_expr, outline):
+            yield name
+
+
+def _acquired(node: ast.AST, function: ast.AST, outline: Outline) -> set[str]:
+    """Return the locks acquired above a node and released below it."""
+    line = getattr(node, "lineno", 0)
+    above: set[str] = set()
+    below: set[str] = set()
+    for name, action, where in _calls(function, outline):
+        if action == "acquire" and where <= line:
+            above.add(name)
+        elif action == "release" and where >= line:
+            below.add(name)
+    return above & below
+
+
+def _calls(function: ast.AST, outline: Outline) -> Iterator[tuple[str, str, int]]:
+    """Yield lock, method and line of the calls of methods of locks in a function."""
+    for call in ast.walk(function):
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute):
+            name = lock_name(call.func.value, outline)
+            if name:
+                yield name, call.func.attr, call.lineno
+
+
+def lock_name(expr: ast.expr, outline: Outline) -> str:
+    """Return the last part of a lock's name, of a condition that of its lock; empty for what is no lock."""
+    if isinstance(expr, ast.Call):
+        expr = expr.func.value if isinstance(expr.func, ast.Attribute) else expr.func
+    name = expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""
+    made = outline.locks.get(name)
+    return made if made is not None else name if LOCKISH.search(name) else ""
+
+
+def asked_before(node: ast.AST, outline: Outline) -> frozenset[str]:
+    """Return the locks that are taken later in the function that a node only asks whether to leave.
+
+    `if self.stamp == self.seen: return` before `with self.lock:` saves the trouble; what counts is read below.
+    """
+    current = node
+    for outer in outline.around(node):
+        if isinstance(outer, ast.If):
+            leaves = current is outer.test and isinstance(outer.body[-1], EXITS)
+            return _later(outer, outline) if leaves else frozenset()
+        if not isinstance(outer, ast.expr):
+            return frozenset()
+        current = outer
+    return frozenset()
+
+
+def _later(statement: ast.If, outline: Outline) -> frozenset[str]:
+    """Return the locks that the function takes below a statement."""
+    function = outline.scope(statement, FUNCTIONS)
+    if function is None:
+        return frozenset()
+    line = statement.body[-1].lineno
+    taken = {
+        name
+        for other in ast.walk(function)
+        if isinstance(other, (ast.With, ast.AsyncWith)) and other.lineno > line
+        for name in _taken(other, outline)
+    }
+    return frozenset(
+        taken | {n for n, action, at in _calls(function, outline) if action == "acquire" and at > line}
+    )
+
+
+def in_loop(node: ast.AST, outline: Outline) -> bool:
+    """Tell whether a `while` repeats a node within its function."""
+    for outer in outline.around(node):
+        if isinstance(outer, ast.While):
+            return True
+        if isinstance(outer, FUNCTIONS):
+            return False
+    return False

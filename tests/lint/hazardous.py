@@ -1,0 +1,22 @@
+"""Find the hazards of one rule in texts."""
+
+from textwrap import dedent
+
+from tarl_lint import engine
+from tarl_lint.config import Config
+from tarl_lint.source import Module, parse
+
+
+def lines(code: str, *texts: str) -> list[int]:
+    """Return the lines of the hazards of one rule in files a.py, b.py, ..."""
+    modules = []
+    for name, text in zip("abc", texts, strict=False):
+        module = parse(f"{name}.py", dedent(text).strip("\n").encode(), name)
+        assert isinstance(module, Module)
+        modules.append(module)
+    return [f.span.line for f in engine.lint(modules, Config(select=(code,))) if f.code == code]
+
+
+def inside(text: str, body: str, depth: int) -> str:
+    """Put a body into a text, indented."""
+    return text.format(body="\n".join(" " * depth + line for line in dedent(body).strip().split("\n")))

@@ -1,0 +1,161 @@
+"""TARL201: state shared between threads, with and without the lock that guards it."""
+
+from textwrap import dedent
+
+import pytest
+
+from tests.lint.hazardous import inside, lines
+
+ROSPY = """
+    import threading
+    import rospy
+    from std_msgs.msg import Float64
+    class Node:
+        def __init__(self):
+            self.lock = threading.Lock()
+            self.changed = threading.Condition(self.lock)
+            self.value = 0.0
+            self.pub = rospy.Publisher("/out", Float64, queue_size=1)
+            rospy.Subscriber("/in", Float64, self.on_value)
+            rospy.Timer(rospy.Duration(0.1), self.on_timer)
+        def on_value(self, msg):
+            with self.lock:
+                self.value = msg.data
+        def on_timer(self, event):
+{body}
+        def send(self):
+            self.pub.publish(self.value)
+    Node()
+    rospy.spin()
+"""
+
+
+RCLPY = """
+    import threading
+    import rclpy
+    from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+    from rclpy.executors import {executor}
+    from rclpy.node import Node
+    from std_msgs.msg import Float64
+    class Relay(Node):
+        def __init__(self):
+            super().__init__("relay")
+            self.lock = threading.Lock()
+            self.group = {group}()
+            self.value = 0.0
+            self.pub = self.create_publisher(Float64, "out", 1)
+            self.create_subscription(Float64, "in", self.on_value, 1)
+            self.create_timer(0.1, self.on_timer, callback_group={given})
+        def on_value(self, msg):
+            with self.lock:
+                self.value = msg.data
+        def on_timer(self):
+            self.pub.publish(Float64(data=self.value))
+    rclpy.init()
+    executor = {executor}()
+    executor.add_node(Relay())
+    executor.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ("self.pub.publish(self.value)", 1),
+        ("self.value += 1.0", 1),
+        ("self.send()", 1),
+        ("with self.lock:\n    self.send()", 0),
+        ("with self.changed:\n    self.pub.publish(self.value)", 0),
+        ("self.lock.acquire()\ntry:\n    self.send()\nfinally:\n    self.lock.release()", 0),
+        ("self.lock.acquire()\nself.lock.release()\nself.send()", 1),
+        ("if self.value is None:\n    return", 0),
+        ("if self.value == 0.5:\n    return\nwith self.lock:\n    self.send()", 0),
+        ("if self.value == 0.5:\n    return\nself.pub.publish(1.0)", 1),
+        ("with self.lock:\n    self.send()\nself.send()", 1),
+        ("pass", 0),
+    ],
+)
+def test_state_of_a_callback_used_in_a_timer_needs_its_lock(body, found):
+    assert len(lines("TARL201", inside(ROSPY, body, 12))) == found
+
+
+@pytest.mark.parametrize(
+    ("executor", "group", "given", "found"),
+    [
+        ("MultiThreadedExecutor", "ReentrantCallbackGroup", "self.group", 1),
+        ("MultiThreadedExecutor", "MutuallyExclusiveCallbackGroup", "self.group", 1),
+        ("MultiThreadedExecutor", "ReentrantCallbackGroup", "None", 0),
+        ("SingleThreadedExecutor", "ReentrantCallbackGroup", "self.group", 0),
+    ],
+)
+def test_callbacks_of_rclpy_overlap_only_where_they_are_told_to(executor, group, given, found):
+    text = RCLPY.format(executor=executor, group=group, given=given)
+    if given == "None":
+        text = text.replace(", callback_group=None", "")
+    assert len(lines("TARL201", text)) == found
+
+
+def test_what_a_thread_of_ones_own_reads_needs_the_lock_in_rclpy_too():
+    text = RCLPY.format(executor="SingleThreadedExecutor", group="ReentrantCallbackGroup", given="self.group")
+    text = text.replace(
+        "self.create_timer(0.1, self.on_timer, callback_group=self.group)",
+        "threading.Thread(target=self.on_timer).start()",
+    )
+    assert len(lines("TARL201", text)) == 1
+
+
+def test_the_call_without_the_lock_is_named_where_others_come_with_it():
+    text = inside(ROSPY, "with self.lock:\n    self.send()\nself.send()", 12)
+    (line,) = lines("TARL201", text)
+    assert dedent(text).strip("\n").split("\n")[line - 1].strip() == "self.send()"
+    assert "on_timer" in dedent(text).strip("\n").split("\n")[line - 4]
+
+
+def test_objects_that_may_guard_themselves_are_not_reported_and_containers_are():
+    text = inside(ROSPY, "self.store.append(2.0)", 12).replace("self.value = msg.data", "self.store.clear()")
+    for made, found in (("[]", 1), ("deque()", 1), ("Store()", 0), ("store", 0)):
+        assert len(lines("TARL201", text.replace("self.value = 0.0", f"self.store = {made}"))) == found
+
+
+GLOBAL = """
+    import threading
+    import rospy
+    from std_msgs.msg import Float64
+    lock = threading.Lock()
+    value = 0.0
+    values = []
+    pub = rospy.Publisher("/out", Float64, queue_size=1)
+    def on_value(msg):
+        global value
+        with lock:
+            value = msg.data
+            values.append(msg.data)
+    def on_timer(event):
+{body}
+    rospy.Subscriber("/in", Float64, on_value)
+    rospy.Timer(rospy.Duration(0.1), on_timer)
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ("pub.publish(value)", 1),
+        ("pub.publish(sum(values))", 1),
+        ("with lock:\n    pub.publish(value)", 0),
+        ("value = 1.0\npub.publish(value)", 0),
+        ("pub.publish(1.0)", 0),
+    ],
+)
+def test_globals_need_their_lock_too(body, found):
+    assert len(lines("TARL201", inside(GLOBAL, body, 8))) == found
+
+
+def test_flags_and_state_without_any_lock_are_not_reported():
+    flag = inside(ROSPY, "self.pub.publish(self.value)", 12).replace(
+        "self.value = msg.data", "self.value = True"
+    )
+    assert lines("TARL201", flag) == []
+    bare = inside(ROSPY, "self.pub.publish(self.value)", 12).replace("with self.lock:", "if msg.data:")
+    assert lines("TARL201", bare) == []
