@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from tarl_lint.errors import BaselineError
-from tarl_lint.files import write_whole
+from tarl_lint.files import shown, write_whole
 from tarl_lint.fingerprints import Fingerprint, OfFlow, OfHazard
 from tarl_lint.model import Finding
 
@@ -77,25 +77,28 @@ def load(path: Path) -> Baseline:
         document = json.loads(
             path.read_bytes().decode("utf-8-sig", "surrogateescape")
         )  # names may be no text
+    except FileNotFoundError:
+        raise BaselineError(
+            f"The baseline {shown(path)} does not exist: write it with --write-baseline, "
+            "or leave it out with --no-baseline."
+        ) from None
     except OSError as error:
-        raise BaselineError(f"The baseline {path.as_posix()} cannot be read: {error.strerror}.") from None
+        raise BaselineError(f"The baseline {shown(path)} cannot be read: {error.strerror}.") from None
     except ValueError as error:
-        raise BaselineError(f"The baseline {path.as_posix()} is damaged ({error}): {_REMEDY}") from None
+        raise BaselineError(f"The baseline {shown(path)} is damaged ({error}): {_REMEDY}") from None
     if not isinstance(document, dict) or document.get("tool") != "tarl-lint":
-        raise BaselineError(f"{path.as_posix()} is no baseline of tarl-lint: name another with --baseline.")
+        raise BaselineError(f"{shown(path)} is no baseline of tarl-lint: name another with --baseline.")
     version = document.get("format")
     if version != FORMAT_VERSION:
         raise BaselineError(
-            f"The baseline {path.as_posix()} has format {version}, this tarl-lint reads {FORMAT_VERSION}: "
+            f"The baseline {shown(path)} has format {version}, this tarl-lint reads {FORMAT_VERSION}: "
             "use the tarl-lint that wrote it, or delete it and run --write-baseline."
         )
     try:
         flows = [_flow(entry) for entry in document["flows"]]
         return merged([*flows, *(_hazard(entry) for entry in document.get("hazards", ()))], ())
     except (KeyError, TypeError, ValueError) as error:
-        raise BaselineError(
-            f"The baseline {path.as_posix()} is damaged ({_reason(error)}): {_REMEDY}"
-        ) from None
+        raise BaselineError(f"The baseline {shown(path)} is damaged ({_reason(error)}): {_REMEDY}") from None
 
 
 _REMEDY: Final = "restore it from version control, or delete it and run --write-baseline."
@@ -171,7 +174,6 @@ def save(path: Path, baseline: Baseline) -> None:
     try:
         write_whole(path, dumps(baseline))
     except OSError as error:
-        place = path.as_posix()
         raise BaselineError(
-            f"The baseline {place} cannot be written: {error.strerror}. Name another with --baseline."
+            f"The baseline {shown(path)} cannot be written: {error.strerror}. Name another with --baseline."
         ) from None

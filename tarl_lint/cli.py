@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Final
 
 from tarl_lint import baseline, report, runner
-from tarl_lint.config import Config, Options, resolve, shown
+from tarl_lint.config import Config, Options, resolve
 from tarl_lint.errors import LintError, OutputError
-from tarl_lint.files import write_whole
+from tarl_lint.files import shown, write_whole
 from tarl_lint.keys import BASELINE_NAME
 from tarl_lint.options import options, parser
 from tarl_lint.report import paint, summary
@@ -31,9 +31,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is not None:
         return _guarded(arguments)
     gc.disable()
+    _open_streams()
     code = _guarded(None)
     gc.freeze()  # or Python walks all that is left when it ends
     return code
+
+
+def _open_streams() -> None:
+    """Give what is written somewhere to go where whoever started us closed a stream, which Python has as None."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115 - to the end
 
 
 def _guarded(arguments: Sequence[str] | None) -> int:
@@ -117,12 +125,23 @@ def _show(typed: Namespace, result: Result) -> None:
 
 
 def _print(lines: Iterable[Line]) -> None:
-    """Write to the standard output. When whoever reads it has gone away, say nothing."""
+    """Write to the standard output. When whoever reads it has gone away, say nothing.
+
+    Raises OutputError when it cannot be written to, as on a full disk.
+    """
     try:
         paint.write(lines, sys.stdout, colour=paint.wants_colour(sys.stdout))
         sys.stdout.flush()
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python complains when it ends
+        _give_up_output()
+    except OSError as error:
+        _give_up_output()
+        raise OutputError(f"The report cannot be written to the standard output: {error.strerror}.") from None
+
+
+def _give_up_output() -> None:
+    """Let what is left go nowhere, or Python complains about it when it ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _write_file(path: Path, lines: Iterable[Line]) -> None:
@@ -141,7 +160,7 @@ def _accept(result: Result, config: Config) -> Iterator[Line]:
     baseline.save(path, written)
     parts = [f"{len(result.new)} new", f"{sum(e.count for e in result.vanished)} forgotten"]
     if kept := sum(e.count for e in result.kept):
-        parts.append(f"{kept} kept of files that were not read")
+        parts.append(f"{kept} kept that this run did not look at")
     yield ((f"{shown(path)}: {summary.numbers(written)} accepted ({', '.join(parts)}).", "strong"),)
     if result.errors:
         yield from summary.not_analysed(result)

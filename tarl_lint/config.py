@@ -11,10 +11,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Final, cast
 
-from tarl_lint.errors import BaselineError, ConfigError
+from tarl_lint.errors import ConfigError
+from tarl_lint.files import shown
 from tarl_lint.keys import BASELINE_NAME, KEYS, FailOn, Wrapper
 
 TABLE: Final = "tarl-lint"
+_MENTIONS: Final = (TABLE.encode(), b"tool.tarl")  # also of a table whose name is mistyped
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,7 @@ class Config:
 def resolve(options: Options) -> Config:
     """Find and read the settings file, put the command line over it and return what this run uses.
 
-    Raises ConfigError for an unusable file, key or value, BaselineError when a named baseline is missing.
+    Raises ConfigError for an unusable file, key or value. A named baseline need not be there.
     """
     start = common_directory(options.paths)
     file = options.config or find_settings(start)
@@ -138,14 +140,7 @@ def _baseline(options: Options, root: Path, named: Path | str | None) -> Path | 
     if options.no_baseline:
         return None
     path = named if isinstance(named, Path) else root / (named or BASELINE_NAME)
-    if options.write_baseline or path.is_file():
-        return path
-    if named is not None:
-        raise BaselineError(
-            f"The baseline {shown(path)} does not exist: write it with --write-baseline, "
-            "or leave it out with --no-baseline."
-        )
-    return None
+    return path if named is not None or options.write_baseline or path.is_file() else None
 
 
 def common_directory(paths: Sequence[Path]) -> Path:
@@ -181,7 +176,7 @@ def _mentions_us(path: Path) -> bool:
         data = path.read_bytes()
     except OSError:
         return False
-    return TABLE.encode() in data and _table(path, data) is not None
+    return any(mention in data for mention in _MENTIONS) and _table(path, data) is not None
 
 
 def read_settings(path: Path, *, required: bool) -> Mapping[str, Any]:
@@ -207,13 +202,18 @@ def _table(path: Path, data: bytes) -> dict[str, Any] | None:
                 f"{shown(path)}: tool.{TABLE} must be a table: write [tool.{TABLE}] on a line of its own."
             )
         return cast("dict[str, Any]", table)
-    return None if path.name == "pyproject.toml" else document
+    if path.name != "pyproject.toml":
+        return document
+    for name in tool if isinstance(tool, dict) else ():
+        if name.replace("_", "-") == TABLE or suggestion(name, [TABLE], 0.85) != ".":
+            raise ConfigError(f"{shown(path)}: there is no [tool.{name}]: did you mean [tool.{TABLE}]?")
+    return None
 
 
 def _parse_toml(path: Path, data: bytes) -> dict[str, Any]:
     toml = importlib.import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
     try:
-        return cast("dict[str, Any]", toml.loads(data.decode("utf-8")))
+        return cast("dict[str, Any]", toml.loads(data.decode("utf-8-sig")))
     except ValueError as error:  # also bytes that are not UTF-8
         raise ConfigError(f"{shown(path)} is not valid TOML: {error}.") from None
 
@@ -226,23 +226,18 @@ def _check(path: Path, key: str, value: Any) -> Any:
             f"{shown(path)}: [tool.{TABLE}] has no key {key!r}{meant} Keys are {', '.join(KEYS)}."
         )
     convert, wanted = KEYS[key]
-    checked = convert(value)
+    try:
+        checked = convert(value)
+    except ValueError as error:
+        raise ConfigError(f"{shown(path)}: {key!r} in [tool.{TABLE}]: {error}") from None
     if checked is None:
         raise ConfigError(f"{shown(path)}: {key!r} in [tool.{TABLE}] must be {wanted}, not {value!r}.")
     return checked
 
 
-def suggestion(word: str, known: Mapping[str, Any] | Sequence[str]) -> str:
+def suggestion(word: str, known: Mapping[str, Any] | Sequence[str], cutoff: float = 0.6) -> str:
     """Return ": did you mean 'x'?" for a word that is nearly a known one, else a full stop."""
     import difflib  # only mistakes need it
 
-    close = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
+    close = difflib.get_close_matches(word, list(known), n=1, cutoff=cutoff)
     return f": did you mean {close[0]!r}?" if close else "."
-
-
-def shown(path: Path) -> str:
-    """Write a path for people: with slashes, relative to the working directory when below it."""
-    try:
-        return path.absolute().relative_to(Path.cwd()).as_posix()
-    except ValueError:
-        return path.absolute().as_posix()

@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tarl_lint import gitignore
-from tarl_lint.config import Config, Stdin, repository_root, shown
+from tarl_lint.config import Config, Stdin, repository_root
 from tarl_lint.errors import UsageError
+from tarl_lint.files import shown
 from tarl_lint.gitignore import Ignore
 from tarl_lint.layout import Layout
 

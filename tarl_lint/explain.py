@@ -36,22 +36,30 @@ def check_codes(codes: Sequence[str], where: str) -> None:
 
 def explanation(code: str) -> Iterator[Line]:
     """Yield what a rule is about, for the terminal. Raises UsageError for an unknown code."""
-    inside = False
+    inside, before = False, ""
     for line in page(code.upper()).splitlines():
         if line.startswith("```"):
             inside = not inside
+            if inside and before == "```":
+                yield (("    " + "-" * 8, "quiet"),)  # or two examples would read as one
+                yield ()
+            before = line
         elif inside:
             yield ((f"    {line}".rstrip(), ""),)
         else:
+            before = line or before
             yield ((line.lstrip("# "), "strong" if line.startswith("#") else ""),)
 
 
 def page(code: str) -> str:
     """Return a rule's page in Markdown. Raises UsageError for an unknown code."""
     known = known_rules()
+    several = [k for k in known if k.startswith(code)] if code else []
+    if code not in known and several:
+        raise UsageError(f"{code} stands for {', '.join(several)}: name one of them.")
     if code not in known:
         raise UsageError(
-            f"There is no rule {code}{suggestion(code, list(known))} Rules are {', '.join(known)}."
+            f"There is no rule {code!r}{suggestion(code, list(known))} Rules are {', '.join(known)}."
         )
     rule = known[code]
     title, _, text = (inspect.getdoc(rule) or "").partition("\n")

@@ -1,4 +1,4 @@
-"""Write files whole or not at all."""
+"""Files: how they are named to people, and how they are written whole or not at all."""
 
 from __future__ import annotations
 
@@ -20,3 +20,11 @@ def write_whole(path: Path, text: str) -> None:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+
+
+def shown(path: Path) -> str:
+    """Write a path for people: with slashes, relative to the working directory when below it."""
+    try:
+        return path.absolute().relative_to(Path.cwd()).as_posix()
+    except ValueError:
+        return path.absolute().as_posix()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal, get_args
@@ -32,6 +33,21 @@ def _texts(value: Any) -> tuple[str, ...] | None:
     return tuple(value) if texts else None
 
 
+def _patterns(value: Any) -> tuple[str, ...] | None:
+    patterns = _texts(value)
+    for pattern in patterns or ():
+        check_pattern(pattern)
+    return patterns
+
+
+def check_pattern(pattern: str) -> str:
+    """Return a pattern; raises ValueError for one with the slashes of Windows, which would match nothing."""
+    if re.search(r"\\(\w|$)", pattern):
+        meant = pattern.replace("\\", "/")
+        raise ValueError(f"{pattern!r} has backslashes: patterns are written as in .gitignore: {meant!r}.")
+    return pattern
+
+
 def _codes(value: Any) -> tuple[str, ...] | None:
     codes = _texts(value)
     return codes and tuple(code.upper() for code in codes) if codes is not None else None
@@ -51,7 +67,7 @@ def _identifiers(name: str) -> bool:
 def _per_file(value: Any) -> tuple[tuple[str, tuple[str, ...]], ...] | None:
     if not isinstance(value, dict):
         return None
-    checked = [(pattern, _codes(codes)) for pattern, codes in value.items()]
+    checked = [(check_pattern(pattern), _codes(codes)) for pattern, codes in value.items()]
     return (
         tuple((pattern, codes) for pattern, codes in checked if codes) if all(c for _, c in checked) else None
     )
@@ -66,7 +82,11 @@ def _wrappers(value: Any) -> tuple[Wrapper, ...] | None:
 
 def _wrapper(name: str, spec: Any) -> Wrapper | None:
     spec = {"like": spec} if isinstance(spec, str) else spec
-    known = isinstance(spec, dict) and set(spec) <= _WRAPPER_KEYS and isinstance(spec.get("like"), str)
+    unknown = [key for key in spec if key not in _WRAPPER_KEYS] if isinstance(spec, dict) else []
+    if unknown:
+        keys = ", ".join(sorted(_WRAPPER_KEYS))
+        raise ValueError(f"the wrapper {name!r} has no key {unknown[0]!r}: its keys are {keys}.")
+    known = isinstance(spec, dict) and isinstance(spec.get("like"), str)
     if not known or _names([name]) is None:
         return None
     places = {key: place for key, place in spec.items() if key != "like"}
@@ -101,7 +121,7 @@ def _fail_on(value: Any) -> str | None:
 KEYS: Final[Mapping[str, tuple[Callable[[Any], Any], str]]] = {
     "select": (_codes, 'a list of rule codes such as ["TARL1"]'),
     "ignore": (_codes, 'a list of rule codes such as ["TARL102"]'),
-    "exclude": (_texts, 'a list of patterns as in .gitignore, such as ["vendor/"]'),
+    "exclude": (_patterns, 'a list of patterns as in .gitignore, such as ["vendor/"]'),
     "baseline": (_text, f'the name of a file, such as "{BASELINE_NAME}"'),
     "per-file-ignores": (_per_file, 'a table of patterns and rule codes, such as {"tests/" = ["TARL1"]}'),
     "sources": (_names, 'a list of qualified names of functions, such as ["robot.bus.listen"]'),

@@ -9,6 +9,7 @@ from typing import Final, Literal
 Dependence = Literal["data", "control", "context"]
 Kind = Literal["explicit", "implicit"]
 CODES: Final[Mapping[Kind, str]] = {"explicit": "TARL101", "implicit": "TARL102"}
+RULES: Final = ("TARL001", *CODES.values(), "TARL201", "TARL202", "TARL203", "TARL204")
 Role = Literal["register", "receive", "assign", "call", "return", "condition", "publish"]
 
 

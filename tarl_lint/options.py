@@ -13,7 +13,7 @@ from typing import Final, NoReturn, TypeVar
 from tarl_lint import __version__
 from tarl_lint.config import Options, Stdin, suggestion
 from tarl_lint.errors import UsageError
-from tarl_lint.keys import BASELINE_NAME, FAIL_ON
+from tarl_lint.keys import BASELINE_NAME, FAIL_ON, check_pattern
 from tarl_lint.report import FORMATS
 from tarl_lint.source import LARGEST
 
@@ -65,7 +65,7 @@ def _sentence(message: str, known: Sequence[str]) -> str:
         return f"{found[1]} cannot be {found[2]!r}{suggestion(found[2], choices)} It can be {', '.join(choices)}."
     if found := re.fullmatch(r"argument (\S+): expected one argument", message):
         return f"{found[1]} needs a value."
-    if found := re.fullmatch(r"argument (\S+): ('.*' has no form .*)", message):
+    if found := re.fullmatch(r"argument (\S+): ('.*' (?:has|is) .*?)\.?", message):
         return f"{found[1]}: {found[2]}."
     return message[:1].upper() + message[1:] + "."
 
@@ -76,7 +76,14 @@ def _codes(text: str) -> tuple[str, ...]:
 
 def _patterns(text: str) -> tuple[str, ...]:
     """Split at commas, except in braces and brackets, which patterns may hold."""
-    return tuple(part.strip() for part in re.split(r",(?![^\[{]*[\]}])", text) if part.strip())
+    return tuple(_pattern(p.strip()) for p in re.split(r",(?![^\[{]*[\]}])", text) if p.strip())
+
+
+def _pattern(text: str) -> str:
+    try:
+        return check_pattern(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def _per_file(text: str) -> tuple[tuple[str, tuple[str, ...]], ...]:
@@ -88,7 +95,7 @@ def _pair(text: str) -> tuple[str, tuple[str, ...]]:
     pattern, _, codes = text.rpartition(":")
     if not pattern or not _codes(codes):
         raise argparse.ArgumentTypeError(f"{text!r} has no form PATTERN:CODES, such as 'tests/:TARL1'")
-    return pattern, _codes(codes)
+    return _pattern(pattern), _codes(codes)
 
 
 def parser() -> argparse.ArgumentParser:
@@ -163,7 +170,7 @@ def _add_policy(group: argparse._ArgumentGroup) -> None:
         help="fail on hazards, on new explicit flows too (default), on new implicit ones too, or never",
     )
     group.add_argument(
-        "--exit-zero", action="store_const", const="never", dest="fail_on", help="--fail-on never"
+        "--exit-zero", action="store_true", help="fail on nothing that is found, whatever --fail-on says"
     )
     group.add_argument(
         "--baseline", type=Path, metavar="FILE", help=f"what is accepted (default: {BASELINE_NAME})"
@@ -214,7 +221,7 @@ def options(typed: argparse.Namespace) -> Options:
         baseline=typed.baseline,
         no_baseline=typed.no_baseline,
         write_baseline=typed.write_baseline,
-        fail_on=typed.fail_on,
+        fail_on="never" if typed.exit_zero else typed.fail_on,
         per_file_ignores=_given(typed.per_file_ignores),
         cache=not typed.no_cache,
         jobs=typed.jobs,
@@ -231,4 +238,6 @@ def _stdin(typed: argparse.Namespace) -> Stdin | None:
         if typed.stdin_filename:
             raise UsageError("--stdin-filename is for text on the standard input: add - to the paths.")
         return None
+    if sys.stdin is None:
+        raise UsageError("The standard input is closed: leave out -, or pipe the text of a file to it.")
     return Stdin(typed.stdin_filename or Path("stdin.py"), sys.stdin.buffer.read(LARGEST + 1))

@@ -17,7 +17,7 @@ from tarl_lint.discover import Notes, SourceFile
 from tarl_lint.errors import AnalysisBug, UsageError
 from tarl_lint.fingerprints import Fingerprint, of_finding
 from tarl_lint.layout import Layout
-from tarl_lint.model import CODES, Finding
+from tarl_lint.model import CODES, RULES, Finding, Kind
 from tarl_lint.perfile import FileIgnores
 from tarl_lint.progress import Tell, silent
 from tarl_lint.source import Script, SourceError
@@ -43,9 +43,9 @@ class Result:
     `findings` are sorted by place and carry fingerprint and status; `silenced` are those that comments speak
     of. `found` are the findings as a baseline holds them, `vanished` and `kept` what the baseline holds beyond
     that. `texts` are the analysed files.
-    Without `names_errors` files that cannot be read are counted but not listed for people; without
-    `reports_flows` only hazards were asked for. New findings of
-    the codes in `failing` make the run fail.
+    `left_out` counts what `per-file-ignores` speaks of. Without `names_errors` files that cannot be read are counted
+    but not listed for people; only flows of the `kinds` were asked for, hazards with `reports_hazards`. New findings
+    of the codes in `failing` make the run fail.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -59,7 +59,9 @@ class Result:
     statistics: Statistics = field(default_factory=Statistics)
     baseline: Path | None = None
     names_errors: bool = True
-    reports_flows: bool = True
+    left_out: int = 0
+    kinds: tuple[Kind, ...] = ("explicit", "implicit")
+    reports_hazards: bool = True
     failing: frozenset[str] = frozenset()
 
     @property
@@ -88,7 +90,8 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
     wanted = tuple(identities.mark(f) for f in report.findings if config.enabled(f.code))
     heard, silenced, unused = suppress.apply(wanted, texts)
     elsewhere = FileIgnores(config.root or Path.cwd(), config.per_file_ignores)
-    findings = baseline.subtract([f for f in heard if not elsewhere.silences(f)], known.counts())
+    reported = [f for f in heard if not elsewhere.silences(f)]
+    findings = baseline.subtract(reported, known.counts())
     judged = _judge(discovery.files, errors, config)
     vanished, kept = baseline.missing(known, Counter(f.fingerprint for f in wanted), judged)
     lines = sum(text.count("\n") for text in texts.values())
@@ -99,12 +102,14 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
         found=identities.entries(findings),
         vanished=vanished,
         kept=kept,
-        unused=tuple(s for s in unused if config.enabled(s.code or "TARL")),
+        unused=tuple(s for s in unused if all(map(config.enabled, s.rules))),
         texts=texts,
         statistics=Statistics(len(texts), lines, discovery.notes, report.hurried),
         baseline=config.baseline if known.entries else None,
         names_errors=config.enabled(UNREADABLE),
-        reports_flows=any(map(config.enabled, CODES.values())),
+        left_out=len(heard) - len(reported),
+        kinds=tuple(kind for kind, code in CODES.items() if config.enabled(code)),
+        reports_hazards=any(config.enabled(rule) for rule in RULES if rule.startswith("TARL2")),
         failing=failing(findings, config),
     )
 

@@ -8,16 +8,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from tarl_lint.model import Finding
+from tarl_lint.model import RULES, Finding
 
 _COMMENT: Final = (  # compiled when first needed, which in most runs is never
-    r"(?i:#\s*(?:tarl:\s*ignore(?:\[(?P<own>[^\]]*)\])?|noqa:\s*(?P<noqa>[A-Z]+[0-9]+(?:[\s,]+[A-Z]+[0-9]+)*)))"
+    r"(?i:#\s*(?:tarl:\s*ignore\b\s*(?:\[(?P<own>[^\]]*)\]?)?"
+    r"|noqa:\s*(?P<noqa>[A-Z]+[0-9]+(?:[\s,]+[A-Z]+[0-9]+)*)))"
 )
 
 
 @dataclass(frozen=True)
 class Suppression:
-    """One rule, or all with an empty `code`, silenced on one line. Lines and columns count from 1."""
+    """What is silenced on one line. Lines and columns count from 1.
+
+    `code` is a rule, the beginning of several (`TARL1`), or "" for all.
+    """
 
     path: str
     line: int
@@ -28,7 +32,17 @@ class Suppression:
         """Tell whether the comment stands on a line of the finding and speaks of its rule."""
         span = finding.span
         on_it = self.path == span.path and span.line <= self.line <= span.end_line
-        return on_it and self.code in ("", finding.code)
+        return on_it and self.code in ("", *_beginnings(finding.code))
+
+    @property
+    def rules(self) -> tuple[str, ...]:
+        """Return the rules that the comment speaks of; none when there is no such rule."""
+        return tuple(rule for rule in RULES if self.code in ("", *_beginnings(rule)))
+
+
+def _beginnings(rule: str) -> tuple[str, ...]:
+    """Return what stands for a rule: `TARL`, `TARL1`, `TARL10` and `TARL101`."""
+    return tuple(rule[:end] for end in range(4, len(rule) + 1))
 
 
 def suppressions(path: str, text: str) -> tuple[Suppression, ...]:

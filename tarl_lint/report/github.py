@@ -57,8 +57,8 @@ def _hazards(result: Result) -> Iterator[_Note]:
 def _unused(result: Result) -> Iterator[_Note]:
     for comment in result.unused:
         span = Span(comment.path, comment.line, comment.column, comment.line, comment.column)
-        what = f"no {comment.code}" if comment.code else "no finding"
-        yield "note", span, "tarl-lint", f"There is {what} here for this comment to silence: take it out."
+        text = summary.in_vain(comment)
+        yield "note", span, "tarl-lint", text[:1].upper() + text[1:]
 
 
 def _command(grade: Level, span: Span, title: str, text: str) -> str:

@@ -9,7 +9,7 @@ from typing import Any, Final
 from urllib.parse import quote
 
 from tarl_lint import __version__, explain
-from tarl_lint.config import shown
+from tarl_lint.files import shown
 from tarl_lint.model import Dependence, Finding, Flow, Sink, Source, Span, Step
 from tarl_lint.report import summary
 from tarl_lint.report.grading import of_error, own_level, told_apart

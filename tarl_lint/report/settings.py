@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from tarl_lint.config import Config, shown
+from tarl_lint.config import Config
+from tarl_lint.files import shown
 from tarl_lint.keys import Wrapper
 from tarl_lint.report.line import Line
 
@@ -18,7 +19,7 @@ def settings(config: Config) -> Iterator[Line]:
     yield ((f"# settings file: {shown(config.file) if config.file else 'none'}", "quiet"),)
     yield ((f"# relative to:   {(config.root or Path.cwd()).as_posix()}", "quiet"),)
     for key, value in _values(config).items():
-        text = f"{key} = {_toml(value)}"
+        text = f"{key} = {_toml(value)}" if value is not None else f"# no {key}"
         yield ((f"{text:<40}", ""), (f"  # {origins.get(key, 'default')}", "quiet"))
 
 
@@ -28,7 +29,7 @@ def _values(config: Config) -> Mapping[str, Any]:
         "ignore": list(config.ignore),
         "exclude": list(config.exclude),
         "per-file-ignores": {pattern: list(codes) for pattern, codes in config.per_file_ignores},
-        "baseline": shown(config.baseline) if config.baseline else "",
+        "baseline": shown(config.baseline) if config.baseline else None,
         "sources": list(config.sources),
         "sinks": list(config.sinks),
         "sanitizers": list(config.sanitizers),

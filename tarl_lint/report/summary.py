@@ -7,20 +7,22 @@ from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
 from tarl_lint.baseline import Accepted, Baseline
-from tarl_lint.config import shown
+from tarl_lint.files import shown
 from tarl_lint.fingerprints import OfFlow, OfHazard, topic_text
 from tarl_lint.model import Finding, Flow
-from tarl_lint.report.line import Line, View
+from tarl_lint.report.line import Line, View, one_line
 from tarl_lint.runner import UNREADABLE, Result
+from tarl_lint.suppress import Suppression
 
 _SHOWN: Final = 20  # vanished flows listed by name
 
 
 def closing(result: Result) -> Iterator[Line]:
     """Yield what was found, then what was not analysed."""
-    counts = [_count_flows(result)] if result.reports_flows else []
-    for text in filter(None, (*counts, _count_hazards(result))):
+    counts = (_count_flows(result), _count_hazards(result), _count_files(result))
+    for text in filter(None, counts):
         yield ((text, "strong"),)
+    yield from _silenced(result)
     yield from not_analysed(result)
 
 
@@ -40,14 +42,33 @@ def not_analysed(result: Result) -> Iterator[Line]:
         yield ((f"Not analysed: {', '.join(missed)}.", "quiet"),)
 
 
+def _silenced(result: Result) -> Iterator[Line]:
+    """Yield one line that says what is not shown since somebody asked for that."""
+    counts = ((len(result.silenced), "comments"), (result.left_out, "per-file-ignores"))
+    parts = [f"{count} by {what}" for count, what in counts if count]
+    if parts:
+        yield ((f"Silenced: {', '.join(parts)}.", "quiet"),)
+
+
+def _count_files(result: Result) -> str:
+    """Say what was done where neither flows nor hazards were asked for."""
+    if result.kinds or result.reports_hazards:
+        return ""
+    return f"{many(result.statistics.files, 'file')} read; no rule about flows or hazards is in use."
+
+
 def _count_flows(result: Result) -> str:
+    if not result.kinds:
+        return ""
     flows = [f for f in result.new if f.flow]
     files = result.statistics.files
     accepted = _accepted(result, sum(f.status == "accepted" and f.flow is not None for f in result.findings))
     new = "new " if result.baseline else ""
     if not flows:
         what = "flow" if result.baseline else "flow from a subscription to a publish call"
-        return f"No {new}{what} in {many(files, 'file')}{accepted}."
+        only = f"{result.kinds[0]} " if len(result.kinds) == 1 else ""
+        further = "further " if result.left_out or result.silenced else ""
+        return f"No {further}{new}{only}{what} in {many(files, 'file')}{accepted}."
     kinds = Counter(f.flow.kind for f in flows if f.flow)
     return f"{many(len(flows), new + 'flow')} in {_share(flows, files)}: {_listed(kinds)}{accepted}."
 
@@ -55,11 +76,11 @@ def _count_flows(result: Result) -> str:
 def _count_hazards(result: Result) -> str:
     hazards = Counter(f.code for f in result.new if not f.flow)
     known = sum(f.status == "accepted" and f.flow is None for f in result.findings)
-    if not hazards and not known and result.reports_flows:
+    if not hazards and not known and (result.kinds or not result.reports_hazards):
         return ""
     new = "new " if result.baseline else ""
     found = f"{many(hazards.total(), new + 'hazard')}: {_listed(hazards)}" if hazards else f"No {new}hazard"
-    files = "" if result.reports_flows else f" in {many(result.statistics.files, 'file')}"
+    files = "" if result.kinds else f" in {many(result.statistics.files, 'file')}"
     return f"{found}{files}{_accepted(result, known)}."
 
 
@@ -141,13 +162,18 @@ def in_words(entry: Accepted, arrow: str) -> str:
 def unused(result: Result) -> Iterator[Line]:
     """Yield the comments that silence nothing."""
     for comment in result.unused:
-        what = f"no {comment.code}" if comment.code else "no finding"
-        yield (
-            (f"{comment.path}:{comment.line}:{comment.column}", "place"),
-            (f" note: there is {what} here for this comment to silence: take it out.", ""),
-        )
+        where = f"{one_line(comment.path)}:{comment.line}:{comment.column}"
+        yield ((where, "place"), (f" note: {in_vain(comment)}", ""))
     if result.unused:
         yield ()
+
+
+def in_vain(comment: Suppression) -> str:
+    """Say why a comment silences nothing."""
+    if not comment.rules:
+        return f"there is no rule {comment.code}: correct this comment, or take it out."
+    what = f"no {comment.code}" if comment.code else "no finding"
+    return f"there is {what} here for this comment to silence: take it out."
 
 
 def statistics(result: Result) -> Iterator[Line]:
@@ -159,6 +185,7 @@ def statistics(result: Result) -> Iterator[Line]:
         *sorted(Counter(f.code for f in result.findings).items()),
         (UNREADABLE, len(result.errors)),
         ("silenced by comments", len(result.silenced)),
+        ("silenced by per-file-ignores", result.left_out),
         ("accepted in the baseline", sum(f.status == "accepted" for f in result.findings)),
         ("subscriptions that reach a publish call", len({flow.source.id for flow in flows})),
         ("publish calls reached", len({flow.sink.id for flow in flows})),

@@ -36,7 +36,7 @@ def concise(result: Result, view: View) -> Iterator[Line]:
     yield from _errors(result)
     for finding in result.new:
         yield _heading(finding)
-    for line in summary.unused(result):
+    for line in (*summary.unused(result), *summary.vanished(result, view)):
         if line:
             yield line
     if view.statistics:

@@ -39,6 +39,7 @@ def test_without_paths_the_working_directory_is_linted(node, capsys):
     ("arguments", "code"),
     [
         (["--exit-zero"], 0),
+        (["--exit-zero", "--fail-on", "implicit"], 0),
         (["--fail-on", "never"], 0),
         (["--fail-on", "hazard"], 0),
         (["--fail-on", "implicit"], 1),
@@ -90,7 +91,7 @@ def test_unreadable_files_are_said_when_the_baseline_is_written(node, capsys):
     node.write_text("def f(:\n")
     out = lint(capsys, "--write-baseline")[1]
     assert out == (
-        "tarl-flows.json: 1 flow accepted (0 new, 0 forgotten, 1 kept of files that were not read).\n"
+        "tarl-flows.json: 1 flow accepted (0 new, 0 forgotten, 1 kept that this run did not look at).\n"
         "Not analysed: 1 file that is not readable as Python 3 (TARL001).\n"
     )
 
@@ -118,7 +119,10 @@ def test_unreadable_files_are_said_when_the_baseline_is_written(node, capsys):
         (["--no-baseline", "--write-baseline"], "--no-baseline and --write-baseline contradict each other"),
         (["--select", "TARL9"], "--select names 'TARL9', which is no rule"),
         (["--ignore", "E501"], "--ignore names 'E501', which is no rule"),
-        (["--explain", "TARL10"], "There is no rule TARL10: did you mean 'TARL10"),
+        (["--explain", "TARL10"], "TARL10 stands for TARL101, TARL102: name one of them."),
+        (["--explain", "TARL1O1"], "There is no rule 'TARL1O1': did you mean 'TARL101'?"),
+        (["--jobs", "0"], "--jobs: '0' is not a number of processes: write 1 or more, or auto."),
+        (["--exclude", "src\\gen"], "--exclude: 'src\\\\gen' has backslashes: patterns are written as in"),
     ],
 )
 def test_what_cannot_be_used_is_one_sentence_and_exit_code_2(node, capsys, arguments, sentence):
@@ -242,13 +246,17 @@ def test_rules_can_be_ignored_in_some_files(node, capsys):
     assert lint(capsys, "--per-file-ignores", "other.py:TARL101")[0] == 1
     (node.parent / "pyproject.toml").write_text('[tool.tarl-lint.per-file-ignores]\n"node.py" = ["TARL1"]\n')
     code, out, _ = lint(capsys)
-    assert (code, out) == (0, "No flow from a subscription to a publish call in 1 file.\n")
+    said = (
+        "No further flow from a subscription to a publish call in 1 file.\nSilenced: 1 by per-file-ignores.\n"
+    )
+    assert (code, out) == (0, said)
 
 
 @pytest.mark.parametrize(
     ("value", "sentence"),
     [
         ("node.py", "--per-file-ignores: 'node.py' has no form PATTERN:CODES, such as 'tests/:TARL1'."),
+        ("src\\node.py:TARL1", "--per-file-ignores: 'src\\\\node.py' has backslashes"),
         ("node.py:TARL9", "--per-file-ignores names 'TARL9', which is no rule"),
     ],
 )

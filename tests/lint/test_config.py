@@ -2,6 +2,7 @@ from pathlib import Path
 
 import pytest
 
+from tarl_lint.baseline import load
 from tarl_lint.config import Config, Options, resolve
 from tarl_lint.errors import BaselineError, ConfigError
 from tarl_lint.keys import Wrapper
@@ -87,6 +88,24 @@ def test_a_value_of_the_wrong_kind_is_refused_with_what_is_wanted(in_directory, 
         resolve(Options())
 
 
+@pytest.mark.parametrize("name", ["tarl_lint", "tarl-lnt", "tarllint"])
+def test_a_table_whose_name_is_mistyped_is_refused_with_the_name_that_was_meant(in_directory, name):
+    in_directory({"pyproject.toml": f"[tool.{name}]\n[tool.other]\n"})
+    with pytest.raises(ConfigError, match=rf"no \[tool\.{name}\]: did you mean \[tool\.tarl-lint\]\?"):
+        resolve(Options())
+    in_directory({"pyproject.toml": '[tool.tarl]\n[project]\ndependencies = ["tarl-lint"]\n'})
+    assert resolve(Options()).file is None
+
+
+def test_escapes_of_gitignore_are_no_backslashes_of_windows(in_directory):
+    assert settings(in_directory, r"exclude = ['a\ b', '\#x', '\*']").exclude == (r"a\ b", r"\#x", r"\*")
+
+
+def test_a_byte_order_mark_before_the_settings_is_ignored(in_directory):
+    in_directory({"pyproject.toml": "\ufeff[tool.tarl-lint]\r\ntf2 = true\r\n"})
+    assert resolve(Options()).tf2
+
+
 def test_a_settings_file_of_another_name_holds_the_keys_at_its_top_level(in_directory):
     in_directory({"lint.toml": 'ignore = ["TARL102"]\n'})
     assert resolve(Options(config=Path("lint.toml"))).ignore == ("TARL102",)
@@ -118,11 +137,10 @@ def test_the_baseline_beside_the_settings_is_used_when_it_is_there(in_directory)
 
 def test_a_baseline_that_is_named_must_exist_unless_it_is_being_written(in_directory):
     root = in_directory({"pyproject.toml": '[tool.tarl-lint]\nbaseline = "ci/flows.json"\n'})
+    for options in (Options(), Options(write_baseline=True)):
+        assert resolve(options).baseline == root / "ci/flows.json"
     with pytest.raises(BaselineError, match=r"ci/flows\.json does not exist: write it with --write-baseline"):
-        resolve(Options())
-    assert resolve(Options(write_baseline=True)).baseline == root / "ci/flows.json"
-    with pytest.raises(BaselineError, match=r"other\.json does not exist"):
-        resolve(Options(baseline=Path("other.json")))
+        load(root / "ci/flows.json")
 
 
 def settings(in_directory, text: str) -> Config:
@@ -176,7 +194,7 @@ def test_per_file_ignores_are_patterns_with_codes(in_directory):
         ('wrappers = {"bus.listen" = {topic = 1}}', r"'wrappers' .* must be a table"),
         (
             'wrappers = {"bus.listen" = {like = "rospy.Subscriber", topik = 1}}',
-            r"'wrappers' .* must be a table",
+            r"'wrappers' .* 'bus\.listen' has no key 'topik': its keys are callback, extra, like, topic, type\.",
         ),
         (
             'wrappers = {"bus.listen" = {like = "rospy.Subscriber", topic = -1}}',
@@ -191,6 +209,11 @@ def test_per_file_ignores_are_patterns_with_codes(in_directory):
             r"'per-file-ignores' .* must be a table of patterns and rule codes",
         ),
         ('per-file-ignores = {"tests/" = "TARL1"}', r"'per-file-ignores' .* must be a table"),
+        ('exclude = ["src\\\\vendor"]', r"'exclude' .* has backslashes: .*: 'src/vendor'"),
+        (
+            'per-file-ignores = {"tests\\\\" = ["TARL1"]}',
+            r"'per-file-ignores' .* has backslashes: .*: 'tests/'",
+        ),
         ("sorces = []", r"no key 'sorces': did you mean 'sources'\?"),
         ("per_file_ignores = {}", r"no key 'per_file_ignores': did you mean 'per-file-ignores'\?"),
     ],

@@ -4,6 +4,7 @@ import pytest
 
 from tarl_lint.cli import main
 from tarl_lint.explain import known_rules, page
+from tarl_lint.model import RULES
 
 DOCS = Path(__file__).parents[2] / "docs"
 
@@ -26,6 +27,19 @@ def test_explain_prints_the_page_without_its_markup(capsys):
     assert "Not reported\n" in out
     assert "```" not in out
     assert "        brake.publish(force)\n" in out
+
+
+def test_examples_that_follow_each_other_are_kept_apart(capsys):
+    main(["--explain", "TARL204"])
+    out = capsys.readouterr().out
+    assert (
+        "send(side, value):\n        pubs[side].publish(value)\n\n    --------\n\n    import rospy\n" in out
+    )
+    assert out.count("--------") == 1
+
+
+def test_the_codes_that_other_files_know_are_those_of_the_rules():
+    assert tuple(known_rules()) == RULES
 
 
 def test_the_guide_shows_what_the_command_prints(capsys, monkeypatch):

@@ -23,6 +23,9 @@ def kept(text: str, *findings: Finding) -> list[str]:
         "# noqa: E501, TARL101",
         "# noqa:E501,TARL101 - the designers know",
         "# type: ignore  # tarl: ignore[TARL101]",
+        "# tarl: ignore[TARL1]",
+        "# tarl: ignore [TARL101]",
+        "# noqa: TARL1",
     ],
 )
 def test_a_comment_on_the_line_silences_the_rule(comment):
@@ -37,6 +40,9 @@ def test_a_comment_on_the_line_silences_the_rule(comment):
         "# noqa",
         "# noqa: E501",
         "# noqa: TARL102",
+        "# tarl: ignored by us",
+        "# tarl: ignore [TARL102]",
+        "# tarl: ignore[T]",
         "# ignore",
         "",
     ],

@@ -1,0 +1,111 @@
+"""The last words of a report: true whatever was selected, silenced or is not there."""
+
+from textwrap import dedent
+
+import pytest
+
+from tarl_lint.cli import main
+
+BOTH = """
+    import rospy
+    from std_msgs.msg import Bool, Float64
+    pub = rospy.Publisher("/out", Float64, queue_size=1)
+    def on_value(msg):
+        if msg.data:
+            pub.publish(1.0)
+        pub.publish(msg.data){comment}
+    rospy.Subscriber("/in", Float64, on_value)
+"""
+
+
+@pytest.fixture
+def said(in_directory, capsys):
+    """Return what a run prints at its end."""
+
+    def run(*arguments: str, comment: str = "") -> list[str]:
+        in_directory({"node.py": dedent(BOTH).format(comment=comment)})
+        main(["--format", "concise", *arguments])
+        lines = capsys.readouterr().out.splitlines()
+        return [line for line in lines if not line.startswith("node.py")]
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], ["2 flows in 1 file: 1 explicit, 1 implicit."]),
+        (["--select", "TARL102"], ["1 flow in 1 file: 1 implicit."]),
+        (["--select", "TARL2"], ["No hazard in 1 file."]),
+        (["--select", "TARL001"], ["1 file read; no rule about flows or hazards is in use."]),
+        (["--ignore", "TARL"], ["1 file read; no rule about flows or hazards is in use."]),
+        (
+            ["--per-file-ignores", "node.py:TARL1"],
+            [
+                "No further flow from a subscription to a publish call in 1 file.",
+                "Silenced: 2 by per-file-ignores.",
+            ],
+        ),
+        (
+            ["--per-file-ignores", "node.py:TARL1", "--select", "TARL102"],
+            [
+                "No further implicit flow from a subscription to a publish call in 1 file.",
+                "Silenced: 1 by per-file-ignores.",
+            ],
+        ),
+    ],
+)
+def test_what_was_not_asked_for_is_not_said_to_be_absent(said, arguments, words):
+    assert said(*arguments) == words
+
+
+def test_what_comments_silence_is_counted(said):
+    assert said(comment="  # tarl: ignore") == ["1 flow in 1 file: 1 implicit.", "Silenced: 1 by comments."]
+
+
+@pytest.mark.parametrize(
+    ("comment", "arguments", "noted"),
+    [
+        ("ignore", ["--ignore", "TARL1"], False),
+        ("ignore", ["--select", "TARL102"], False),
+        ("ignore[TARL1]", ["--select", "TARL102"], False),
+        ("ignore[TARL2]", ["--select", "TARL2"], True),
+        ("ignore[TARL202]", ["--select", "TARL202"], True),
+        ("ignore[TARL101]", [], False),
+        ("ignore[TARL999]", ["--select", "TARL2"], True),
+    ],
+)
+def test_a_comment_is_only_called_useless_where_all_that_it_speaks_of_was_looked_for(
+    in_directory, capsys, comment, arguments, noted
+):
+    in_directory({"node.py": dedent(BOTH).format(comment=f"  # tarl: {comment}")})
+    main(["--format", "concise", *arguments])
+    assert (" note: " in capsys.readouterr().out) is noted
+
+
+def test_a_comment_that_names_no_rule_is_told_apart(in_directory, capsys):
+    in_directory({"node.py": dedent(BOTH).format(comment="  # tarl: ignore[TARL1O1]")})
+    main(["--format", "concise"])
+    note = "node.py:8:28 note: there is no rule TARL1O1: correct this comment, or take it out.\n"
+    assert note in capsys.readouterr().out
+    main(["--format", "github"])
+    assert "::There is no rule TARL1O1: correct this comment" in capsys.readouterr().out
+
+
+def test_concise_names_what_has_vanished(in_directory, capsys):
+    root = in_directory({"node.py": dedent(BOTH).format(comment="")})
+    main(["--write-baseline"])
+    (root / "node.py").write_text("")
+    capsys.readouterr()
+    main(["--format", "concise"])
+    out = capsys.readouterr().out
+    assert "  /in → /out, explicit, heard by on_value, published in on_value (node)\n" in out
+    assert "\n\n" not in out
+
+
+def test_settings_are_shown_though_the_baseline_they_name_is_missing(in_directory, capsys):
+    in_directory({"pyproject.toml": '[tool.tarl-lint]\nbaseline = "flows.json"\n', "node.py": ""})
+    assert main(["--show-settings"]) == 0
+    assert 'baseline = "flows.json" ' in capsys.readouterr().out
+    assert main([]) == 2
+    assert "The baseline flows.json does not exist" in capsys.readouterr().err
