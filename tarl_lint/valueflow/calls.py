@@ -36,7 +36,7 @@ class Calls(Activations):
         for argument in expr.arguments:
             value = self.evaluate(argument, frame)
             if isinstance(argument, ir.Starred):
-                known = self._one_by_one(value)
+                known = self.one_by_one(value)
                 if known is None:
                     named["*"] = join(named.get("*", BOTTOM), self.elements(value))
                 else:
@@ -51,7 +51,7 @@ class Calls(Activations):
                 named[name] = value
         return plain, named
 
-    def _one_by_one(self, value: Value) -> list[Value] | None:
+    def one_by_one(self, value: Value) -> list[Value] | None:
         """Return what `*value` passes, argument by argument; of several sequences those of one length are joined."""
         ways = [self.unpacked(Value(value.deps, frozenset([o]))) for o in sorted(value.pts, key=_order)]
         lengths = {-1 if way is None else len(way) for way in ways}

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 from typing import Any
 
 from tarl_lint import catalog
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.calls import Calls
 from tarl_lint.valueflow.heap import ANY, LENGTH, item_field
+from tarl_lint.valueflow.iterating import Iterating
 from tarl_lint.valueflow.machine import Arguments, Invocation
 from tarl_lint.valueflow.values import (
     BOTTOM,
@@ -32,13 +32,12 @@ QUEUES = frozenset(
 )
 SENT = "<sent>"  # the field of a port, file or socket that holds what was written to it
 FLAG = "<flag>"  # the field of an event that says whether it is set
-MAX_ROWS = 8  # elements of zip, enumerate and map that are told apart
 FLAGGING = frozenset(["set", "clear"])
 IN_ORDER = frozenset(["list", "tuple", "deque", "iter", "reversed"])  # keep their argument's elements apart
 CONTAINERS = frozenset(["list", "tuple", "set", "frozenset", "sorted", "reversed", "iter", "deque"])
 
 
-class Containers(Calls):
+class Containers(Iterating):
     """Calls methods and constructors of containers."""
 
     def change(self, value: Value, news: Value, exprs: Any, frame: Frame) -> None:
@@ -59,6 +58,7 @@ class Containers(Calls):
         if name == "clear":
             for obj in base.pts if len(base.pts) == 1 else ():
                 self.empty(obj)
+            self.shorten(base, frame, call)
         elif name == "setdefault" and len(plain) > 1:
             news = self.through_statement(plain[1], frame, call)
             for obj in base.pts:
@@ -136,6 +136,31 @@ class Containers(Calls):
         result = self.read_item(it.base, plain[0])
         return join(result, plain[1]) if len(plain) > 1 else result
 
+    def _take_out(self, it: Invocation) -> Value:
+        """Return an element that is no longer there afterwards."""
+        result = self._read_get(it)
+        self.shorten(it.base, it.frame, it.call)
+        return result
+
+    def _removed(self, it: Invocation) -> Value:
+        self.shorten(it.base, it.frame, it.call)
+        return UNKNOWN
+
+    def shorten(self, base: Value, frame: Frame, call: ir.Call) -> None:
+        """Let the length of containers depend on what decided to take something out."""
+        ours = [o for o in base.pts if o.kind in ("sequence", "mapping")]
+        kept = self.kept(self.node(frame, ("taken", call.slot), "call")) if ours else NONE
+        for obj in ours if kept else ():
+            before = self.store.get((obj, LENGTH))
+            self.store.put((obj, LENGTH), Value(kept | (before.deps if before is not None else NONE)))
+
+    def _write_entry(self, it: Invocation) -> Value:
+        """Store an element as `x[key] = value` does."""
+        plain = it.arguments[0]
+        if len(plain) == 2:
+            self.write_item(it.base, plain[0], self.through_statement(plain[1], it.frame, it.call))
+        return UNKNOWN
+
     def elements_of_any(self, base: Value) -> Value:
         """Return any element, also of a mapping."""
         return join_all(self.arrive(self.read_any(o), base.deps) for o in base.pts)
@@ -146,26 +171,9 @@ class Containers(Calls):
     def _read_keys(self, it: Invocation) -> Value:
         return self.listed(self.elements(it.base), self.length(it.base), it)
 
-    def listed(self, element: Value, length: Nodes, it: Invocation) -> Value:
-        """Return a new sequence of elements that are not told apart."""
-        obj = self.allocate("sequence", it.frame, ("values", it.call.slot))
-        self.add_element(pointer(obj), element)
-        self.store.put((obj, LENGTH), Value(length))
-        return pointer(obj)
-
     def _read_pairs(self, it: Invocation) -> Value:
         keys = join_all(self.elements(Value(it.base.deps, frozenset([o]))) for o in it.base.pts)
         return self.pairs([keys, self.elements_of_any(it.base)], it.frame, it.call, self.length(it.base))
-
-    def pairs(self, parts: list[Value], frame: Frame, call: ir.Call, length: Nodes) -> Value:
-        """Return a sequence of tuples."""
-        pair = self.allocate("sequence", frame, ("pair", call.slot))
-        for number, part in enumerate(parts):
-            self.store.put((pair, item_field(number)), part)
-        obj = self.allocate("sequence", frame, ("pairs", call.slot))
-        self.add_element(pointer(obj), pointer(pair))
-        self.store.put((obj, LENGTH), Value(length))
-        return pointer(obj)
 
     def _new_container(self, it: Invocation) -> Value:
         given = [v for v in it.arguments[0][:1] if v is not BOTTOM]
@@ -181,71 +189,6 @@ class Containers(Calls):
             self.add_element(pointer(obj), element)
         self.store.put((obj, LENGTH), Value(length))
         return pointer(obj)
-
-    def _zipped(self, it: Invocation) -> Value:
-        known = [self.unpacked(v) for v in it.arguments[0]]
-        if it.name == "enumerate" and known and known[0] is not None:
-            known.insert(0, [const(n) for n in range(len(known[0]))] if len(known) == 1 else None)
-        rows = list(zip(*(k for k in known if k is not None), strict=False)) if None not in known else []
-        if rows and len(rows) <= MAX_ROWS:
-            return self._rows(rows, it)
-        parts = [self.elements(v) for v in it.arguments[0]]
-        length = NONE
-        for value in it.arguments[0]:
-            length |= self.length(value)
-        return self.pairs([UNKNOWN, *parts] if it.name == "enumerate" else parts, it.frame, it.call, length)
-
-    def _rows(self, rows: Sequence[Sequence[Value]], it: Invocation) -> Value:
-        """Return a sequence of tuples whose elements are told apart."""
-        obj = self.allocate("sequence", it.frame, ("pairs", it.call.slot))
-        for number, row in enumerate(rows):
-            pair = self.allocate("sequence", it.frame, ("pair", it.call.slot, number))
-            for place, part in enumerate(row):
-                self.store.put((pair, item_field(place)), part)
-            self.store.put((obj, item_field(number)), pointer(pair))
-        return pointer(obj)
-
-    def _each(self, function: Value, rows: Sequence[Sequence[Value]], it: Invocation) -> Value:
-        """Return what a function gives for known elements, one by one."""
-        obj = self.allocate("sequence", it.frame, ("values", it.call.slot))
-        for number, row in enumerate(rows):
-            call = replace(it.call, slot=-1000 * (abs(it.call.slot) + 1) - number)
-            said = self.call_value(function, (list(row), {}), it.frame, call)
-            self.store.put((obj, item_field(number)), said)
-        return pointer(obj)
-
-    def _mapped(self, it: Invocation) -> Value:
-        function, *rest = it.arguments[0] or [UNKNOWN]
-        known = [self.unpacked(v) for v in rest]
-        rows = list(zip(*(k for k in known if k is not None), strict=False)) if None not in known else []
-        if it.name == "map" and rows and len(rows) <= MAX_ROWS:
-            return self._each(function, rows, it)
-        parts = [self.elements(v) for v in rest]
-        length = NONE
-        for value in rest:
-            length |= self.length(value)
-        if it.name == "map":
-            return self.listed(self.call_value(function, (parts, {}), it.frame, it.call), length, it)
-        kept = join_all(parts)
-        asks = kept if function.consts else self.call_value(function, (parts, {}), it.frame, it.call)
-        gate = self.gate(self.truth(asks, it.frame, ("filter", it.call.slot)), it.frame, it.call.slot)
-        return self.listed(Value(kept.deps | gate, kept.pts, kept.consts), length | gate, it)
-
-    def gate(self, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:
-        """Return the node of a decision which elements a new container gets, none where no data decides."""
-        if not decides:
-            return NONE
-        node = self.node(frame, ("filter", slot), "condition")
-        self.graph.depend(node, decides)
-        return frozenset([node])
-
-    def ordered_by(self, elements: Value, it: Invocation) -> Value:
-        """Return elements as chosen or ordered by `key=`: what the function says of them decides which is where."""
-        key = it.arguments[1].get("key")
-        if key is None or key.consts or not elements.deps | elements.pts | key.pts:
-            return elements
-        said = self.call_value(key, ([elements], {}), it.frame, it.call)
-        return Value(elements.deps | self.use(said), elements.pts, elements.consts)
 
     def _counted(self, it: Invocation) -> Value:
         """Return `len(x)`: data of what the length is made of, choice of what decided to add elements."""
@@ -278,10 +221,10 @@ def is_device(obj: Obj) -> bool:
 
 READERS: Mapping[str, Callable[..., Value]] = {
     "get": Containers._read_get,
-    "pop": Containers._read_get,
-    "popleft": Containers._read_get,
-    "get_nowait": Containers._read_get,
-    "popitem": Containers._read_get,
+    "__getitem__": Containers._read_get,
+    "__setitem__": Containers._write_entry,
+    **dict.fromkeys(("pop", "popleft", "get_nowait", "popitem"), Containers._take_out),
+    **dict.fromkeys(("remove", "discard"), Containers._removed),
     "next": Containers._read_get,
     **dict.fromkeys(("qsize", "empty", "full"), Containers._read_length),
     "values": Containers._read_values,

@@ -27,7 +27,7 @@ METHODS_OF = {
     "sequence": frozenset(
         ["append", "appendleft", "extend", "insert", "add", "put", "put_nowait", "pop", "popleft", "get"]
     ),
-    "mapping": frozenset(["update", "get", "pop", "setdefault", "__getitem__"]),
+    "mapping": frozenset(["update", "get", "pop", "setdefault", "__getitem__", "__setitem__"]),
     "lib": frozenset(["put", "put_nowait", "set_result"]),
     "goal": frozenset(["publish_feedback"]),
     "server": frozenset(["publish_feedback", "set_succeeded", "set_aborted"]),

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.lower_expr import OPERATORS, Expressions, position
 from tarl_lint.valueflow.patterns import captures, conditions
 from tarl_lint.valueflow.scopes import Scope, collect, plain
+
+NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations of what is no field of a dataclass
 
 
 def lower_module(module: Module) -> ir.Program:
@@ -139,9 +141,6 @@ class Lowering(Expressions):
         target = ir.Name(*scope.resolve(node.name), position(node))
         bases, decorators = self.all(node.bases, scope), self.all(node.decorator_list, scope)
         body = self.block(node.body, inner)
-        fields = tuple(
-            n.target.id for n in node.body if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)
-        )
         return [
             ir.Class(
                 scope.next(),
@@ -152,7 +151,7 @@ class Lowering(Expressions):
                 bases,
                 body,
                 decorators,
-                fields,
+                tuple(_annotated(node)),
             )
         ]
 
@@ -244,3 +243,12 @@ STATEMENTS: dict[type[ast.AST], Callable[..., list[ir.Stmt]]] = {
 }
 if hasattr(ast, "TryStar"):
     STATEMENTS[ast.TryStar] = Lowering._try
+
+
+def _annotated(node: ast.ClassDef) -> Iterator[str]:
+    """Yield the names that a class body annotates, without those that stay in the class."""
+    for part in node.body:
+        if isinstance(part, ast.AnnAssign) and isinstance(part.target, ast.Name):
+            kind = ast.unparse(part.annotation)
+            if not kind.strip("'\"").removeprefix("typing.").removeprefix("t.").startswith(NO_FIELDS):
+                yield part.target.id

@@ -70,9 +70,9 @@ class Operators(Presence):
             there = self.node(frame, ("there", expr.pos), "condition")
             self.graph.choice(values[0].deps, there)
             return Value(self.kept(there), consts=self.fold(expr.operator, values))
-        deps = NONE
+        deps, name = NONE, _asked(expr)
         for number, value in enumerate(values):
-            deps |= self.tested(expr.operator, value, frame, (expr.pos, number))
+            deps |= self.tested(name, value, frame, (expr.pos, number))
         return Value(deps, consts=self.fold(expr.operator, values))
 
     def tested(self, name: str, value: Value, frame: Frame, slot: tuple[ir.Pos, int]) -> Nodes:
@@ -83,8 +83,9 @@ class Operators(Presence):
             return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in OURS)))
         if name in MEMBER and slot[1] == 1:
             return self.membership(value, frame, slot)
-        if name in ("is", "is not"):
-            return self.use(Value(value.deps, frozenset(o for o in value.pts if not _there(o))))
+        if name in ("is", "is none"):
+            hollow = _there if name == "is none" else _whole
+            return self.use(Value(value.deps, frozenset(o for o in value.pts if not hollow(o))))
         return self.truth(value, frame, slot) if name == "not" else self.use(value)
 
     def membership(self, value: Value, frame: Frame, slot: Hashable) -> Nodes:
@@ -181,6 +182,18 @@ class Operators(Presence):
             if len(texts) > MAX_TEXTS or len(texts[0]) > MAX_TEXT:
                 return None
         return frozenset(texts)
+
+
+def _asked(expr: ir.Operation) -> str:
+    """Return an operator's name, of `is` whether it asks for None: a field of a message may be True or a number."""
+    if expr.operator not in ("is", "is not"):
+        return expr.operator
+    return "is none" if any(isinstance(p, ir.Const) and p.value is None for p in expr.parts) else "is"
+
+
+def _whole(obj: Obj) -> bool:
+    """Tell whether an object is a thing of its own, so that which one it is says nothing of what is in it."""
+    return _there(obj) and obj.parent is None
 
 
 def _there(obj: Obj) -> bool:

@@ -30,6 +30,7 @@ MADE_BY: Final = {
     **dict.fromkeys(("list", "set", "deque", "tuple", "frozenset"), "sequence"),
     **dict.fromkeys(("dict", "OrderedDict", "Counter"), "mapping"),
 }
+PLAIN: Final = frozenset(["abc.ABC", "typing.Generic", "typing.Protocol"])  # bases that make no constructor
 
 
 class Records(Containers):
@@ -43,13 +44,18 @@ class Records(Containers):
         given = dict(named)
         rest = given.pop("*", None)
         mapping = given.pop("**", None)
-        numbered = _named_tuple(cls)
+        numbered, arriving = _named_tuple(cls), iter(plain)
         for number, (owner, name) in enumerate(_fields(cls)):
-            value = plain[number] if number < len(plain) else given.pop(name, None)
-            if value is None and mapping is not None:
+            options = self._options(owner, name)
+            inside = not _says(options, "init", False)
+            value = given.pop(name, None)
+            if value is None and inside and not _says(options, "kw_only", True):
+                value = next(arriving, None)
+            if value is None and mapping is not None and inside:
                 value = self.read_item(mapping, const(name))
             if value is None or value is BOTTOM:
-                value = rest if rest is not None else self._preset(owner, name, frame, call, number)
+                passed = rest if inside else None
+                value = passed if passed is not None else self._preset(owner, name, frame, call, number)
             if value is None:
                 continue
             self.store.put((obj, name), value)
@@ -70,16 +76,19 @@ class Records(Containers):
 
     def _preset(self, owner: Obj, name: str, frame: Frame, call: ir.Call, number: int) -> Value | None:
         """Return a field's default: of `field(default_factory=f)` what f makes."""
+        options = self._options(owner, name)
+        if options is None:
+            return self.store.get((owner, name))
+        if "default_factory" in options:
+            made = ir.Call(call.function, (), (), call.pos, -1000 * abs(call.slot) - number)
+            return self.call_value(options["default_factory"], ([], {}), frame, made)
+        return options.get("default", UNKNOWN)
+
+    def _options(self, owner: Obj, name: str) -> dict[str, Value] | None:
+        """Return what `field(...)` says of a field of a dataclass, None where that was not called."""
         preset = self.store.get((owner, name))
         spec = next((o for o in preset.pts if o.kind == "field"), None) if preset is not None else None
-        if spec is None or not isinstance(spec.info, dict):
-            return preset
-        if "default_factory" in spec.info:
-            made = ir.Call(call.function, (), (), call.pos, -1000 * abs(call.slot) - number)
-            value: Value = self.call_value(spec.info["default_factory"], ([], {}), frame, made)
-            return value
-        default: Value = spec.info.get("default", UNKNOWN)
-        return default
+        return spec.info if spec is not None and isinstance(spec.info, dict) else None
 
     def _field(self, it: Invocation) -> Value:
         obj = self.intern("field", (it.frame.id, it.statement, it.call.slot))
@@ -244,11 +253,23 @@ _MISSING: Final = ir.Call(ir.Const(None, (0, 0, 0, 0)), (), (), (0, 0, 0, 0), -1
 def _fields(cls: Obj) -> Iterator[tuple[Obj, str]]:
     """Yield the fields of a class and of those it inherits from, in the order of the constructor."""
     seen: set[str] = set()
+    made = any(isinstance(o.info, ClassInfo) and not set(o.info.external) <= PLAIN for o in lineage(cls))
     for owner in reversed(lineage(cls)):
-        for name in owner.info.fields if isinstance(owner.info, ClassInfo) else ():
+        info = owner.info if isinstance(owner.info, ClassInfo) else None
+        for name in info.fields if info is not None and (made or _decorated(info)) else ():
             if name not in seen:
                 seen.add(name)
                 yield owner, name
+
+
+def _decorated(info: ClassInfo) -> bool:
+    """Tell whether a class has a decorator, as dataclasses do: what others annotate is no field."""
+    return info.statement is None or bool(info.statement.decorators)
+
+
+def _says(options: dict[str, Value] | None, name: str, answer: bool) -> bool:
+    """Tell whether `field(...)` is given an option, for certain."""
+    return options is not None and name in options and options[name].constant() == (True, answer)
 
 
 def _named_tuple(cls: object) -> bool:
