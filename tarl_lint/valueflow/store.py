@@ -221,7 +221,8 @@ class Store:
             return value
         theirs = join(known[0], known[-1])
         part = Value(value.deps - theirs.deps, value.pts - theirs.pts, value.consts)
-        return part if part.deps or part.pts or not (value.deps or value.pts) else None
+        news = part.deps or part.pts or not value.consts_in(theirs)
+        return part if news or not (value.deps or value.pts) else None
 
     def own(self) -> Iterable[Key]:
         """Return the keys written in this run which others can see."""

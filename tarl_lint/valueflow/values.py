@@ -229,6 +229,10 @@ class Value:
         """Tell whether the value is one constant, whichever way it came."""
         return self.consts is not None and len(self.consts) == 1 and not self.pts
 
+    def consts_in(self, other: Value) -> bool:
+        """Tell whether another value may be every constant that this one may be."""
+        return other.consts is None or (self.consts is not None and self.consts <= other.consts)
+
     def texts(self) -> tuple[str, ...]:
         """Return the texts it may be, sorted; none when it may be another thing."""
         if self.consts is None or not all(isinstance(c, str) for c in self.consts):
