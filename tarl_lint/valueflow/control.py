@@ -42,6 +42,9 @@ class _Graph:
 
     edges: dict[int, dict[str, int]] = field(default_factory=dict)
     raising: Raising = field(default_factory=dict)
+    finals: list[tuple[ir.Try, int]] = field(
+        default_factory=list
+    )  # inner ones first; where each `finally` begins
 
     def link(self, source: int, way: str, target: int) -> None:
         self.edges.setdefault(source, {})[way] = target
@@ -69,9 +72,11 @@ def control_dependence(body: Sequence[ir.Stmt], raising: Raising = NOTHING_RAISE
     """Return the control dependence of a function's statements. `raising` names what calls in a statement raise."""
     graph = _Graph(raising=raising)
     entry = _block(graph, body, EXIT, _Exits())
-    order = _reachable(graph, entry)
+    order = _reachable(graph, [entry, *(begin for _, begin in graph.finals)])
     after = _postdominators(graph, order)
     direct = _direct(graph, order, after)
+    for attempt, _ in reversed(graph.finals):
+        _run_anyway(attempt, direct)
     always = frozenset(n for n in order if after.get(entry, 0) >> n & 1)
     closed = _closure(direct)
     far = frozenset(n for n, branches in closed.items() if len(branches) >= NEAR)
@@ -135,9 +140,31 @@ def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
     inner = _Exits(exits.on_break, exits.on_continue, after, takes)
     orelse = _block(graph, s.orelse, after, exits)
     graph.link(s.id, "body", _block(graph, s.body, orelse, inner))
+    if s.final:
+        graph.finals.append((s, after))
     for number, handler in enumerate(handlers):
         graph.link(s.id, f"except {number}", handler)
     return s.id
+
+
+def _run_anyway(attempt: ir.Try, direct: dict[int, frozenset[Branch]]) -> None:
+    """Let no branch inside a `try` decide on its `finally`, which runs however the rest is left."""
+    blocks = [attempt.body, attempt.orelse, *(body for _, _, body in attempt.handlers)]
+    inside = {s.id for block in blocks for s in _all(block)}
+    inside.add(attempt.id)
+    around = direct.get(attempt.id, frozenset())
+    for statement in _all(attempt.final):
+        branches = direct.get(statement.id, frozenset())
+        kept = frozenset(branch for branch in branches if branch[0] not in inside)
+        direct[statement.id] = kept | around if statement in attempt.final or kept != branches else kept
+
+
+def _all(body: Sequence[ir.Stmt]) -> Iterator[ir.Stmt]:
+    """Yield statements and those inside them."""
+    for s in body:
+        yield s
+        for inner in (*_bodies(s), *_loop_bodies(s)):
+            yield from _all(inner)
 
 
 def _breaks(body: Sequence[ir.Stmt]) -> bool:
@@ -175,10 +202,10 @@ def _bodies(s: ir.Stmt) -> tuple[Sequence[ir.Stmt], ...]:
     return ()
 
 
-def _reachable(graph: _Graph, entry: int) -> list[int]:
-    """Return the statements in depth-first order from the entry."""
+def _reachable(graph: _Graph, entries: Sequence[int]) -> list[int]:
+    """Return the statements in depth-first order from where ways begin, the last one first."""
     seen: dict[int, None] = {}
-    pending = [entry]
+    pending = [*reversed(entries)]
     while pending:
         node = pending.pop()
         if node != EXIT and node not in seen:
