@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Hashable
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.allocation import BORN
 from tarl_lint.valueflow.bounds import ALL_LEISURE, LEISURE, MANY, MAX_CALLS, MAX_FRAMES, OFTEN
 from tarl_lint.valueflow.evaluate import Evaluation
 from tarl_lint.valueflow.heap import item_field
 from tarl_lint.valueflow.machine import Arguments
-from tarl_lint.valueflow.store import Delta
+from tarl_lint.valueflow.store import BORN, Delta
 from tarl_lint.valueflow.values import (
     BOTTOM,
     NONE,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 
 from tarl_lint.valueflow.machine import Machine
+from tarl_lint.valueflow.store import BORN
 from tarl_lint.valueflow.values import (
     ABSENT,
     BOTTOM,
@@ -14,7 +15,6 @@ from tarl_lint.valueflow.values import (
     join,
 )
 
-BORN = "<born>"  # the field that every object has which exists
 MAX_NESTING = 7
 
 

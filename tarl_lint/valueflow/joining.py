@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tarl_lint.valueflow.allocation import BORN
 from tarl_lint.valueflow.contents import Contents
-from tarl_lint.valueflow.store import Delta
+from tarl_lint.valueflow.store import BORN, Delta
 from tarl_lint.valueflow.values import (
     ABSENT,
     BOTTOM,

@@ -10,7 +10,7 @@ from tarl_lint.relevance import mentioning
 from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import ROOT_CALL
-from tarl_lint.valueflow.bounds import EXCHANGED, HASTE, LEISURE, MAX_ROUNDS, MAX_STATEMENTS, PATIENCE
+from tarl_lint.valueflow.bounds import EXCHANGED, HASTE, LARGE, LEISURE, MAX_ROUNDS, MAX_STATEMENTS, PATIENCE
 from tarl_lint.valueflow.execute import Execution
 from tarl_lint.valueflow.lower import lower_module
 from tarl_lint.valueflow.starting import STARTING, definitions, registers, starts_node
@@ -101,9 +101,10 @@ class Linker(Execution):
             batch = sorted(self.pending, key=self._turn)
             if not batch:
                 return
-            self.pending.clear()
-            for root in batch:
-                if self.hurried and (root in self.took or self.total > 2 * PATIENCE):
+            small = [root for root in batch if self.took.get(root, 0) < LARGE]
+            for root in small or batch:
+                self.pending.pop(root, None)
+                if self.hurried and (self.took.get(root, 0) > HASTE or self.total > 2 * PATIENCE):
                     continue
                 self._run(root, self.roots[root.key][1])
                 for news in self.shared.dirty:
@@ -153,27 +154,23 @@ class Linker(Execution):
 
     def wait(self, frame: Frame) -> None:  # noqa: ARG002 - who waits may matter to a lock
         """Let other roots see what was stored, and store what they may."""
-        root, own = self.store.root, list(self.store.own())
+        store, root = self.store, self.store.root
+        own = store.own()
         self.spent += len(own) // EXCHANGED
+        store.waited = True
         for key in own:
-            value = self.store.get(key)
-            before, version = self.store.exchanged.get(key, (BOTTOM, -1))
-            if version == self.shared.versions.get(key, 0) and before is value:
-                continue
-            self.store.exchanged[key] = (value, self.shared.versions.get(key, 0))
-            if value is None:  # a field of a new object, which others may fill
-                news = self.shared.others(key, root)
-                if news is not None:
-                    self.store.put(key, self.store.admit(key, self.default(*key), news))
-                continue
-            mine = self.store.mine(key, value)
-            if mine is not None:
-                self.shared.leave(self.shared.pauses, root, key, mine)
-            news = self.shared.others(key, root)
+            value = store.now[key]
+            if value is not ABSENT and store.exchanged.get(key) is not value:
+                store.exchanged[key] = value
+                mine = store.mine(key, value)
+                if mine is not None:
+                    self.shared.leave(self.shared.pauses, root, key, mine)
+            news = self.shared.others(key, root) if key in root.heeds else None
             if news is not None:
-                both = self.store.admit(key, value, news)
+                former = self.default(*key) if value is ABSENT else value  # a field of a new object
+                both = store.admit(key, former, news)
                 if both is not value:
-                    self.store.put(key, both)
+                    store.put(key, both)
 
     def root_frame(self, root: Root) -> Frame:
         """Return the frame that stands for ROS itself, calling."""

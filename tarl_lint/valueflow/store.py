@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 
+from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.values import ABSENT, Frame, Key, Obj, Value, join
 
 Delta = dict[Key, Value]
+
+BORN = "<born>"  # the field that every object has which exists
 
 
 @dataclass(slots=True, eq=False)
@@ -18,6 +21,17 @@ class Root:
     kind: str
     name: str = ""
     once: bool = False
+    function: ir.Function | None = None  # what it runs, where that is known
+    maker: Root | None = None  # in whose run it was added
+    heeds: set[Key] = field(default_factory=set)  # what it stores itself and reads after it has waited
+
+    def generations(self) -> int:
+        """Count the roots before that run the same function, each of which led to the next."""
+        count, maker = 0, self.maker
+        while maker is not None:
+            count += maker.function is self.function
+            maker = maker.maker
+        return count
 
 
 NOBODY: set[Root] = set()
@@ -33,7 +47,6 @@ class Shared:
     watchers: dict[Obj, set[Root]] = field(default_factory=dict)
     doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # roots that found no data inside an object
     dirty: set[Root] = field(default_factory=set)
-    versions: dict[Key, int] = field(default_factory=dict)  # how often there was news of a field
 
     def entry(self, key: Key, root: Root) -> Value | None:
         """Return what a root finds when it starts: the join of all that any other can have stored."""
@@ -93,11 +106,13 @@ class Shared:
         owners = table.setdefault(key, {})
         before = owners.get(root)
         after = value if before is None else join(before, value)
+        if key[1] == BORN:  # who can see the object has seen what holds it
+            owners[root] = after
+            return
         if not owners:
             self._appeared(key[0], root)
         if before is None or after != before:
             owners[root] = after
-            self.versions[key] = self.versions.get(key, 0) + 1
             self.dirty |= self._others(self.readers.get(key), root)
 
 
@@ -120,23 +135,33 @@ class Store:
     layers: list[Delta] = field(default_factory=lambda: [{}])
     seen: set[Obj] = field(default_factory=set)
     found: dict[Key, Value | None] = field(default_factory=dict)
-    exchanged: dict[Key, tuple[Value | None, int]] = field(default_factory=dict)  # at the last wait
+    exchanged: dict[Key, Value] = field(default_factory=dict)  # at the last wait
     foreign: dict[Key, Value] = field(default_factory=dict)  # what others stored while this root waited
     now: Delta = field(default_factory=dict)
     hidden: list[dict[Key, Value | None]] = field(default_factory=lambda: [{}])
     insides: dict[frozenset[Obj], frozenset[int]] = field(default_factory=dict)  # data inside objects now
     looked: object = None  # what else that was true of when somebody looked
+    waited: bool = False  # so that others may have stored meanwhile
 
     def get(self, key: Key) -> Value | None:
         """Return the value now, None where nothing was stored."""
         value = self.now.get(key)
         if value is not None:
+            if self.waited and key not in self.root.heeds and not private(key):
+                self._heed(key, value)
             return None if value is ABSENT else value
         if key in self.found:
             return self.found[key]
         value = None if private(key) else self.shared.entry(key, self.root)
         self.found[key] = value
         return value
+
+    def _heed(self, key: Key, value: Value) -> None:
+        """From now on, take in what others store here meanwhile; run again if they have."""
+        self.root.heeds.add(key)
+        news = self.shared.others(key, self.root)
+        if news is not None and (value is ABSENT or join(value, news) is not value):
+            self.shared.dirty.add(self.root)
 
     def stored(self, key: Key) -> bool:
         """Tell whether this run has stored here."""
@@ -224,6 +249,6 @@ class Store:
         news = part.deps or part.pts or not value.consts_in(theirs)
         return part if news or not (value.deps or value.pts) else None
 
-    def own(self) -> Iterable[Key]:
+    def own(self) -> list[Key]:
         """Return the keys written in this run which others can see."""
         return [key for key in self.now if not private(key)]

@@ -9,6 +9,7 @@ from typing import Final
 from tarl_lint import catalog
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE, ROOT_CALL
+from tarl_lint.valueflow.bounds import MAX_GENERATIONS
 from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.ends import Kind, Publisher, SourceRecord
 from tarl_lint.valueflow.graph import Place
@@ -203,7 +204,10 @@ class Sources(Sinks):
         named: Mapping[str, Value] = NOTHING,
     ) -> None:
         """Run a function on its own with these arguments; `answer` takes what it returns."""
-        root = Root((key, target.kind, target.key), kind, target.name, once=kind == "thread")
+        root = Root((key, target.kind, target.key), kind, target.name, kind == "thread", _function(target))
+        root.maker = self.store.root
+        if root.function is not None and root.generations() > MAX_GENERATIONS:
+            return
         before = self.passed.get(root.key, [])
         values = [join(a, b) for a, b in zip_longest(before, values, fillvalue=BOTTOM)]
         news = bool(before) and values != before
@@ -229,6 +233,13 @@ class Sources(Sinks):
     def call_later(self, target: Obj, values: Sequence[Value]) -> None:
         """Have a function run on its own; of other arguments than these nothing is known."""
         self.call_when("later", target, values, "callback")
+
+
+def _function(target: Obj) -> ir.Function | None:
+    """Return the function of ours that a call of an object runs, None where nothing tells."""
+    closure = target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
+    found = closure.info[0] if closure.kind == "closure" and isinstance(closure.info, tuple) else None
+    return found if isinstance(found, ir.Function) else None
 
 
 def _supplied(frame: Frame, callback: Value) -> bool:
