@@ -88,9 +88,9 @@ class Branches(Raising):
 
     def _length(self, source: Value, node: int) -> None:
         """How often a loop runs depends on a container's length: on what chose to add elements, not on them."""
-        ours = frozenset(o for o in source.pts if o.kind in ("sequence", "mapping"))
+        ours = frozenset(filter(self.sized, source.pts))
         self.graph.flow(self.use(Value(source.deps, source.pts - ours)) | self.length(Value(pts=ours)), node)
-        self.graph.choice(self.deep(ours), node)
+        self.graph.choice(self.placed(ours), node)
 
     def _loop_end(self, s: ir.Loop, done: list[Delta], broken: list[Delta], frame: Frame) -> bool:
         if done and s.orelse:

@@ -134,12 +134,33 @@ class Combining(Special):
         """Return the nodes that a value's length is data of: of our containers not their elements."""
         deps = value.deps
         for obj in value.pts:
-            if obj.kind in ("sequence", "mapping"):
+            if self.sized(obj):
                 stored = self.store.get((obj, LENGTH))
-                deps |= self.graph.through(stored.deps, value.deps) if stored is not None else NONE
+                made = stored.deps if stored is not None else NONE
+                if obj.parent is not None:
+                    made |= self.content(obj.parent).deps
+                deps |= self.graph.through(made, value.deps)
             else:
                 deps |= self.use(Value(value.deps, frozenset([obj])))
         return deps
+
+    def sized(self, obj: Obj) -> bool:
+        """Tell whether an object has elements that say nothing of how many there are: ours, and arrays of messages."""
+        if obj.kind in ("sequence", "mapping"):
+            return True
+        return obj.parent is not None and (ANY in obj.fields or any(n.startswith("[") for n in obj.subs))
+
+    def placed(self, objects: frozenset[Obj]) -> Nodes:
+        """Return the nodes that put elements into containers, whatever was stored inside the elements later."""
+        found: set[int] = set()
+        for obj in objects:
+            self.store.look(obj)
+            found |= self.content(obj).deps
+            for name in list(obj.fields):
+                if name.startswith("[") or name in (KEYS, LENGTH):
+                    value = self.store.get((obj, name))
+                    found |= value.deps if value is not None else NONE
+        return frozenset(found)
 
     def lengthen(self, obj: Obj, value: Value) -> None:
         """Let an object's length depend on that of a value whose elements it takes over."""

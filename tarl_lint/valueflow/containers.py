@@ -195,9 +195,9 @@ class Containers(Iterating):
         deps, ours = NONE, []
         for value in it.arguments[0]:
             deps |= self.length(value)
-            ours += [o for o in value.pts if o.kind in ("sequence", "mapping")]
+            ours += [o for o in value.pts if self.sized(o)]
         node = self.node(it.frame, ("length", it.call.slot), "call")
-        self.graph.choice(self.deep(frozenset(ours)), node)
+        self.graph.choice(self.placed(frozenset(ours)), node)
         return Value(deps | self.kept(node))
 
     def _read_length(self, it: Invocation) -> Value:

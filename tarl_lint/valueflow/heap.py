@@ -86,7 +86,10 @@ class Heap(Allocation):
                 return content
             if kind == "lib" and obj.info is not BY_CLASS and name in MEASURES:
                 return Value(self.deep(frozenset([obj])))
-            return pointer(obj.sub(name))
+            any_of_them = obj.subs.get("[]") if name.startswith("[") else None
+            return Value(
+                pts=frozenset([obj.sub(name)] if any_of_them is None else [obj.sub(name), any_of_them])
+            )
         if kind in ("sequence", "mapping"):
             return self.content(obj) if name.startswith("[") else BOTTOM
         if name == "__class__" and kind == "instance" and isinstance(obj.info, Obj):
@@ -196,7 +199,8 @@ class Heap(Allocation):
                 if value is not None:
                     result = join(result, value)
         if obj.kind in ("message", "lib") and not result.pts:
-            result = join(result, pointer(obj.sub("[]")))
+            parts = [obj.sub("[]"), *(sub for name, sub in obj.subs.items() if name.startswith("["))]
+            result = join(result, Value(pts=frozenset(parts)))
             result = Value(NONE, result.pts) if result.deps == self.content(obj).deps else result
         return result
 

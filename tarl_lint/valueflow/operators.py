@@ -42,7 +42,6 @@ FOLDED: Mapping[str, Callable[..., object]] = {
 }
 MEMBER = frozenset(["in", "not in"])
 PRESENT = frozenset(["is", "is not", "==", "!="])  # operators that may ask whether a value is None
-CONTAINERS = frozenset(["sequence", "mapping"])
 CALLING = (ir.Call, ir.Choice, ir.Operation)  # parts in which calls may depend on those before
 OURS = frozenset(["instance", "sequence", "mapping"])  # whose type is in the files, whatever is in them
 MESSAGES = frozenset(["message", "goal"])
@@ -99,7 +98,7 @@ class Operators(Presence):
     def chosen(self, objects: frozenset[Obj], frame: Frame, slot: Hashable) -> Nodes:
         """Return a node that what decided to put something into containers decides, and no data of theirs."""
         node = self.node(frame, slot, "condition")
-        self.graph.choice(self.deep(objects), node)
+        self.graph.choice(self.placed(objects), node)
         return self.kept(node)
 
     def truth(self, value: Value, frame: Frame, slot: Hashable) -> Nodes:
@@ -112,8 +111,8 @@ class Operators(Presence):
         said = self.special(value, "__bool__", (), frame, frame.function.pos)
         if said is not None:
             return self.use(said)
-        ours = frozenset(o for o in value.pts if o.kind in CONTAINERS)
-        kept = frozenset(o for o in value.pts if o.kind not in CONTAINERS and not self._always_true(o))
+        ours = frozenset(filter(self.sized, value.pts))
+        kept = frozenset(o for o in value.pts - ours if not self._always_true(o))
         deps = self.use(Value(value.deps, kept)) | self.length(Value(pts=ours))
         if ours:
             deps |= self.chosen(ours, frame, ("truth", slot))
