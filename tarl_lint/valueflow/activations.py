@@ -101,13 +101,14 @@ class Activations(Evaluation):
         frame.root_waits = caller.root_waits
         frame.jumps, frame.tries, frame.escapes = [], [], []
         self.bind_parameters(frame, closure, passed)
+        self._note_arguments(frame, arguments, caller, call)
         frame.guards |= frozenset(self.guards)
         self.guards, guards = [], self.guards
         self.stack.append(frame)
         result = self.run(frame)
         self.stack.pop()
         self.guards = guards
-        self.note_result(call, [v for _, v in frame.returns])
+        self.note_result(call, [v for _, v in frame.returns], frame)
         if frame.escapes:
             self.escaped(frame, caller)
         self.store.cut(depth)
@@ -154,6 +155,20 @@ class Activations(Evaluation):
                 self.mark(node, keywords[name], value, caller)
             renamed[name] = self.carry(value, node)
         return passed, renamed
+
+    def _note_arguments(self, frame: Frame, arguments: Arguments, caller: Frame, call: ir.Call) -> None:
+        """Remember which parameters hold what is None only as long as nothing has come."""
+        plain, named = arguments
+        if caller.statement is None or any(isinstance(a, ir.Starred) for a in call.arguments):
+            return
+        shift = len(plain) - len(call.arguments)
+        for parameter, value, expr in zip(
+            frame.function.parameters[shift:], plain[shift:], call.arguments, strict=False
+        ):
+            self.note_passed((frame, parameter.name), expr, value, caller)
+        for name, expr in call.keywords:
+            if name is not None and name in named:
+                self.note_passed((frame, name), expr, named[name], caller)
 
     def bind_parameters(self, frame: Frame, closure: Obj, arguments: Arguments) -> None:
         """Store arguments under the parameters' names."""

@@ -25,6 +25,7 @@ class Displays(Operators):
         exact = True
         for number, (item, value) in enumerate(items):
             value = self.entry(item, value, frame, (expr.slot, number))
+            self.note_passed((obj, item_field(number)), item, value, frame)
             if isinstance(item, ir.Starred):
                 exact = False
                 self.add_element(where, self.elements(value))

@@ -11,6 +11,7 @@ from tarl_lint.valueflow.ends import Publisher
 from tarl_lint.valueflow.heap import item_field
 from tarl_lint.valueflow.lower import lower_body
 from tarl_lint.valueflow.machine import Invocation
+from tarl_lint.valueflow.presence import RETURNED
 from tarl_lint.valueflow.values import (
     ABSENT,
     BOTTOM,
@@ -85,6 +86,8 @@ class Execution(Branches):
             if isinstance(source, ir.SequenceDisplay) and number < len(source.items) and starred is None:
                 expr = source.items[number]
             self.bind_target(item, part, frame, f"{slot}.{number}", expr)
+            if starred is None:
+                self.note_taken(item, value, number, part, frame)
 
     def assign(self, target: ir.Expr, value: Value, frame: Frame) -> None:
         """Store into a target."""
@@ -157,6 +160,7 @@ class Execution(Branches):
         if s.value is not None:
             node = self.node(frame, ("return",), "return")
             self.mark(node, s.value, value, frame)
+            self.note_passed((frame, RETURNED), s.value, value, frame)
             value = self.carry(value, node)
             if isinstance(frame.answer, Publisher):
                 self.send(Invocation("response", BOTTOM, ([value], {}), frame, _answer(s)), frame.answer)

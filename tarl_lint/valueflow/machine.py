@@ -74,6 +74,8 @@ class Machine:
         self.vacant: set[Key] = set()  # variables and fields that None is stored in
         self.optional: set[Key] = set()  # those that get what may be None or not
         self.doubtful: set[ir.Call] = set()  # calls that give such
+        self.came: dict[Key, set[int]] = {}  # what decides whether a copy of what is vacant at first is there
+        self.came_out: dict[ir.Call, set[int]] = {}  # the same of calls that give such a copy
         self.patient = True  # what is not known yet may be stored by a root that runs later
         self.waiting: dict[Root, None] = {}  # roots that met such a thing
         self.doubts: dict[
@@ -281,8 +283,12 @@ class Machine:
         """Return the object that holds a variable: an activation, a class being made, a module."""
         raise NotImplementedError
 
-    def note_result(self, call: ir.Call, returned: list[Value]) -> None:
+    def note_result(self, call: ir.Call, returned: list[Value], frame: Frame) -> None:
         """Remember a call of a function that gives None beside other things."""
+        raise NotImplementedError
+
+    def note_passed(self, key: Key, source: ir.Expr, value: Value, frame: Frame) -> None:
+        """Remember where a value is held that is None only as long as nothing has come."""
         raise NotImplementedError
 
     def gate(self, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:

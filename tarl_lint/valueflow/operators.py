@@ -65,9 +65,10 @@ class Operators(Presence):
             made = self.combined(expr, values, frame)
             if made is not None:
                 return made
-        if expr.operator in PRESENT and self.only_presence(expr, frame):
+        if expr.operator in PRESENT and (decides := self.only_presence(expr, frame)) is not None:
             there = self.node(frame, ("there", expr.pos), "condition")
             self.graph.choice(values[0].deps, there)
+            self.graph.flow(decides, there)
             return Value(self.kept(there), consts=self.fold(expr.operator, values))
         deps, name = NONE, _asked(expr)
         for number, value in enumerate(values):

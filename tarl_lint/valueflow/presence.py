@@ -7,43 +7,81 @@ from collections.abc import Iterator
 from tarl_lint import catalog
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.combining import Combining
-from tarl_lint.valueflow.heap import ANY
+from tarl_lint.valueflow.heap import ANY, item_field
 from tarl_lint.valueflow.machine import NONE_ONLY
-from tarl_lint.valueflow.values import Frame, Key, Obj, Value, lineage
+from tarl_lint.valueflow.values import Frame, Key, Nodes, Obj, Value, lineage
+
+RETURNED = "<return>"  # stands for what a function gives back
+COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)  # expressions that may be another's value
 
 
 class Presence(Combining):
     """Knows where None stands for nothing yet, and where for what was found."""
 
-    def only_presence(self, expr: ir.Operation, frame: Frame) -> bool:
-        """Tell whether `x is None` asks if anything was stored in place of the None that was there at first.
+    def only_presence(self, expr: ir.Operation, frame: Frame) -> Nodes | None:
+        """Return what decides on `x is None` where it asks if anything was stored, None where it asks for data.
 
         That a message has come is no data of it; what decided whether to store is.
         """
         first, second = expr.parts
         if not isinstance(second, ir.Const) or second.value is not None:
-            return False
-        keys = list(self._keys(first, frame))
-        if isinstance(first, (ir.Item, ir.Call)):
-            return (
-                bool(keys)
-                and not self._index_chosen(first, frame)
-                and not any(k in self.optional for k in keys)
-            )
-        return any(k in self.vacant for k in keys) and not any(k in self.optional for k in keys)
+            return None
+        return self._absence(first, frame)
+
+    def _absence(self, expr: ir.Expr, frame: Frame) -> Nodes | None:
+        """Return what decided whether anything is there, None where that may be data."""
+        if isinstance(expr, ir.Call) and expr in self.came_out:
+            return None if expr in self.doubtful else frozenset(self.came_out[expr])
+        keys = list(self._keys(expr, frame))
+        if any(k in self.optional for k in keys):
+            return None
+        if isinstance(expr, (ir.Item, ir.Call)):
+            known = bool(keys) and not self._index_chosen(expr, frame)
+        else:
+            known = any(k in self.vacant for k in keys)
+        return frozenset(n for k in keys for n in self.came.get(k, ())) if known else None
 
     def note_absence(self, target: ir.Expr, source: ir.Expr, value: Value, frame: Frame) -> None:
         """Remember that a target gets None, or what may be None as well as something else."""
         if value.consts == NONE_ONLY and not value.pts:
             self.vacant.update(self._keys(target, frame))
+        elif self._holds_data(value) and (decides := self._absence(source, frame)) is not None:
+            self._note_copy(list(self._keys(target, frame)), value, decides, frame, target.pos)
         elif self._may_be_none(source, frame):
             self.optional.update(self._keys(target, frame))
 
-    def note_result(self, call: ir.Call, returned: list[Value]) -> None:
-        """Remember a call of a function that gives None beside other things."""
+    def note_passed(self, key: Key, source: ir.Expr, value: Value, frame: Frame) -> None:
+        """Remember where a value is held that is None only as long as nothing has come."""
+        if isinstance(source, COPIED) and self._holds_data(value):
+            decides = self._absence(source, frame)
+            if decides is not None:
+                self._note_copy([key], value, decides, frame, source.pos)
+
+    def note_taken(self, target: ir.Expr, held: Value, number: int, value: Value, frame: Frame) -> None:
+        """Remember the same of a target that gets an element of a sequence."""
+        keys = [(o, item_field(number)) for o in held.pts if o.kind == "sequence"]
+        if any(k in self.vacant for k in keys):
+            decides = frozenset(n for k in keys for n in self.came.get(k, ()))
+            self._note_copy(list(self._keys(target, frame)), value, decides, frame, target.pos)
+
+    def _note_copy(self, keys: list[Key], value: Value, decides: Nodes, frame: Frame, pos: ir.Pos) -> None:
+        there = self.node(frame, ("came", pos), "condition")
+        self.graph.choice(value.deps, there)
+        self.graph.flow(decides, there)
+        for key in keys:
+            self.vacant.add(key)
+            self.came.setdefault(key, set()).add(there)
+
+    def _holds_data(self, value: Value) -> bool:
+        return bool(value.deps) or any(o.laden for o in value.pts)
+
+    def note_result(self, call: ir.Call, returned: list[Value], frame: Frame) -> None:
+        """Remember a call of a function that gives None beside other things, or only as long as nothing has come."""
         without = [v.consts == NONE_ONLY and not v.pts for v in returned]
         if any(without) and not all(without):
             self.doubtful.add(call)
+        elif (frame, RETURNED) in self.vacant:
+            self.came_out.setdefault(call, set()).update(self.came.get((frame, RETURNED), ()))
 
     def _may_be_none(self, expr: ir.Expr, frame: Frame) -> bool:
         if isinstance(expr, ir.Call):
