@@ -43,3 +43,25 @@ def in_order(
             if not waiting[latter] and latter in left:
                 heapq.heappush(ready, (False, spans[latter], latter))
     return order
+
+
+def before_loops(
+    edges: Iterable[tuple[int, int]], turns: Iterable[tuple[int, int]], function: Mapping[int, object]
+) -> list[tuple[int, int]]:
+    """What a loop carries to its head was fed from outside the function before: that comes before the head."""
+    formers: dict[int, list[int]] = {}
+    for before, after in edges:
+        formers.setdefault(after, []).append(before)
+    heads: dict[int, set[int]] = {}
+    for carried, head in turns:
+        heads.setdefault(head, set()).add(carried)
+    found: list[tuple[int, int]] = []
+    for head, carried_to in heads.items():
+        seen, pending = set(carried_to), list(carried_to)
+        while pending:
+            for before in formers.get(pending.pop(), ()):
+                if before not in seen:
+                    seen.add(before)
+                    pending.append(before)
+        found += [(s, head) for s in seen if function.get(s) is not function.get(head)]
+    return found

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from tarl_lint.model import Dependence, Flow, Role, Sink, Source, Span, Step
-from tarl_lint.order import in_order
+from tarl_lint.order import before_loops, in_order
 from tarl_lint.valueflow.context import Surroundings
 from tarl_lint.valueflow.ends import SinkRecord, SourceRecord
+from tarl_lint.valueflow.entrances import entrances
 from tarl_lint.valueflow.graph import Place
 from tarl_lint.valueflow.link import Linker
 from tarl_lint.valueflow.sites import Texts, Written
@@ -126,6 +128,7 @@ class Tracer:
             else:
                 dependence.setdefault(key, "control")
         edges = self.edges(on_any, statement_of, written)
+        edges += self.entered(on_any, statement_of, written, dependence)
         steps = {(self.graph.places[n].frame, k): written[k] for n, k in statement_of.items()}
         context, outer = self.surroundings.context(origin, [(f, w) for (f, _), w in steps.items()])
         for item in context:
@@ -143,6 +146,28 @@ class Tracer:
         roles |= dict.fromkeys(arrivals, "receive")
         roles |= dict.fromkeys(sinks, "publish")
         return tuple(self.step(written[k], spans[k], dependence[k], roles.get(k)) for k in order)
+
+    def entered(
+        self,
+        nodes: set[int],
+        statement_of: Mapping[int, int],
+        written: dict[int, Written],
+        dependence: dict[int, Dependence],
+    ) -> list[tuple[int, int]]:
+        """Add the calls by which decisions lead to what functions store; return what comes before what."""
+        edges: dict[tuple[int, int], None] = {}
+        for decision, calls, made in entrances(self.graph, nodes):
+            chain = [statement_of.get(decision)]
+            for place in calls:
+                found = self._statement(place)
+                if found is not None:
+                    written.setdefault(id(found), found)
+                    dependence.setdefault(id(found), "control")
+                    chain.append(id(found))
+            chain.append(statement_of.get(made))
+            known = [key for key in chain if key is not None]
+            edges.update(dict.fromkeys((a, b) for a, b in pairwise(known) if a != b))
+        return list(edges)
 
     def statement(self, node: int) -> Written | None:
         """Return the statement that a node belongs to; of a message arriving, the callback's header."""
@@ -182,7 +207,7 @@ class Tracer:
                     turns.append((before, after))
                 else:
                     found[before, after] = None
-        return [*found, *_before_loops(found, turns, function)]
+        return [*found, *before_loops(found, turns, function)]
 
     def formers(self, node: int) -> list[int]:
         """Return what a node is made from or depends on, in order."""
@@ -246,28 +271,6 @@ class Tracer:
 
     def _spans(self, places: set[tuple[str, tuple[int, int, int, int]]]) -> tuple[Span, ...]:
         return tuple(sorted(self._span(*p) for p in places))
-
-
-def _before_loops(
-    edges: Iterable[tuple[int, int]], turns: Iterable[tuple[int, int]], function: Mapping[int, object]
-) -> list[tuple[int, int]]:
-    """What a loop carries to its head was fed from outside the function before: that comes before the head."""
-    formers: dict[int, list[int]] = {}
-    for before, after in edges:
-        formers.setdefault(after, []).append(before)
-    heads: dict[int, set[int]] = {}
-    for carried, head in turns:
-        heads.setdefault(head, set()).add(carried)
-    found: list[tuple[int, int]] = []
-    for head, carried_to in heads.items():
-        seen, pending = set(carried_to), list(carried_to)
-        while pending:
-            for before in formers.get(pending.pop(), ()):
-                if before not in seen:
-                    seen.add(before)
-                    pending.append(before)
-        found += [(s, head) for s in seen if function.get(s) is not function.get(head)]
-    return found
 
 
 def _kin(record: SinkRecord) -> tuple[str, str, set[str]]:
