@@ -9,6 +9,7 @@ from tarl_lint.valueflow.branches import Branches
 from tarl_lint.valueflow.control import control_dependence, raised
 from tarl_lint.valueflow.ends import Publisher
 from tarl_lint.valueflow.heap import item_field
+from tarl_lint.valueflow.library import LATER
 from tarl_lint.valueflow.lower import lower_body
 from tarl_lint.valueflow.machine import Invocation
 from tarl_lint.valueflow.presence import RETURNED
@@ -225,14 +226,24 @@ class Execution(Branches):
         return True
 
     def decorated(self, value: Value, decorators: Sequence[ir.Expr], s: ir.Stmt, frame: Frame) -> Value:
-        """Return what decorators of ours make of a function or class; those of libraries leave it as it is."""
+        """Return what decorators of ours make of a function or class; those of libraries leave it as it is.
+
+        One that is a method of a library's object, as `@server.route("/")`, hands it to that object, to be called.
+        """
         for decorator in reversed(decorators):
             wrapper = self.evaluate(decorator, frame)
+            maker = decorator.function if isinstance(decorator, ir.Call) else decorator
+            if isinstance(maker, ir.Attribute) and self._of_library(self.evaluate(maker.base, frame)):
+                for target in sorted((o for o in value.pts if o.kind in LATER), key=lambda o: o.number):
+                    self.call_later(target, ())
             if any(self.wraps(o) for o in wrapper.pts):
                 call = ir.Call(decorator, (), (), s.pos, -1)
                 value = self.call_value(wrapper, ([value], {}), frame, call)
         frame.statement = s
         return value
+
+    def _of_library(self, value: Value) -> bool:
+        return bool(value.pts) and all(o.kind == "lib" for o in value.pts)
 
     def wraps(self, obj: Obj) -> bool:
         """Tell whether a decorator is one of ours; of classes those whose instances can be called."""

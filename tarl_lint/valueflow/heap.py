@@ -62,6 +62,8 @@ class Heap(Allocation):
 
     def read_field(self, obj: Obj, name: str) -> Value:
         """Return what a field of one object may be."""
+        if obj.kind == "closure":
+            name = attribute_of_function(name)
         stored = self.store.get((obj, name))
         if stored is not None:
             if obj.kind == "class":
@@ -251,8 +253,10 @@ class Heap(Allocation):
         """Store into a field; for certain when there is only one object that it can be."""
         certain = len(base.pts) == 1
         for obj in base.pts:
-            if obj.kind in ("closure", "bound", "ext", "method"):
+            if obj.kind in ("bound", "ext", "method"):
                 continue
+            if obj.kind == "closure":
+                name = attribute_of_function(name)
             for attributes in self.replaced_attributes(obj):
                 self.weaken(attributes, item_field(name), value)
             if certain and not obj.many:
@@ -308,6 +312,11 @@ class Heap(Allocation):
     def unpacked(self, value: Value) -> list[Value] | None:
         """Return the elements of a sequence whose elements are known one by one."""
         raise NotImplementedError
+
+
+def attribute_of_function(name: str) -> str:
+    """Return the field that an attribute of a function is kept under, beside the defaults of its parameters."""
+    return f"<{name}>"
 
 
 def _binding(obj: Obj) -> str:
