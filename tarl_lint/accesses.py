@@ -10,6 +10,7 @@ from typing import Final
 from tarl_lint import catalog
 from tarl_lint.evidence import Outline
 from tarl_lint.held import FUNCTIONS, in_loop, locks_around
+from tarl_lint.trees import children, walk
 
 MUTATORS: Final = catalog.MUTATORS | {"pop", "popleft", "remove", "clear", "sort", "reverse", "discard"}
 CONTAINERS: Final = frozenset(["OrderedDict", "Counter", "ChainMap", "UserDict", "UserList"])
@@ -46,25 +47,28 @@ def accesses(function: ast.AST, receiver: str, outline: Outline) -> Iterator[Acc
             yield Access(node, locks_around(node, outline), writes, constant, in_loop(node, outline))
 
 
-def _globals(outline: Outline) -> set[str]:
+def _globals(outline: Outline) -> frozenset[str]:
     """Return the names that the module's functions change and those that hold containers from the start."""
-    declared = {
-        name for node in ast.walk(outline.tree) if isinstance(node, ast.Global) for name in node.names
-    }
-    made = {
+    if outline.shared is None:
+        outline.shared = frozenset(outline.declared | _containers(outline))
+    return outline.shared
+
+
+def _containers(outline: Outline) -> set[str]:
+    """Return the globals that hold containers from the start."""
+    return {
         target.id
         for node in outline.tree.body
         if isinstance(node, ast.Assign) and isinstance(node.value, (ast.List, ast.Dict, ast.Set, ast.Call))
         for target in node.targets
         if isinstance(target, ast.Name) and not _foreign(target.id, outline)
     }
-    return declared | made
 
 
 def _locals(function: ast.AST) -> set[str]:
     """Return the names that are a function's own."""
     arguments = getattr(function, "args", None)
-    names = {a.arg for a in ast.walk(arguments) if isinstance(a, ast.arg)} if arguments is not None else set()
+    names = {a.arg for a in walk(arguments) if isinstance(a, ast.arg)} if arguments is not None else set()
     shared: set[str] = set()
     for node in _own(function):
         if isinstance(node, ast.Global):
@@ -81,7 +85,7 @@ def _own(function: ast.AST) -> Iterator[ast.AST]:
     while pending:
         node = pending.pop()
         yield node
-        pending += [c for c in ast.iter_child_nodes(node) if not isinstance(c, FUNCTIONS)]
+        pending += [c for c in children(node) if not isinstance(c, FUNCTIONS)]
 
 
 def _writes(node: ast.Attribute | ast.Name, outline: Outline) -> bool:

@@ -11,6 +11,7 @@ from typing import Final
 from tarl_lint.bounds import limits
 from tarl_lint.model import Finding, Flow, Source, Span
 from tarl_lint.taint import Tracer
+from tarl_lint.trees import children, walk
 from tarl_lint.valueflow.ir import Pos
 
 PROGRAM: Final = re.compile(r"__main__|\bdef main\(|\binit_node\(|\brclpy\.init\(")
@@ -40,17 +41,30 @@ class Outline:
     definitions: list[Definition] = field(default_factory=list)  # in the order of their lines
     locks: dict[str, str] = field(default_factory=dict)  # name of a lock → the lock, which a condition shares
     assigned: dict[str, list[ast.expr]] = field(default_factory=dict)  # last part of a name → what is stored
+    declared: set[str] = field(default_factory=set)  # names that functions declare global
+    shared: frozenset[str] | None = None  # globals that functions change, once somebody asked
+    held: dict[ast.AST, frozenset[str]] = field(
+        default_factory=dict
+    )  # locks held at nodes that were asked for
+    lock_calls: dict[ast.AST, list[tuple[str, str, int]]] = field(default_factory=dict)  # of functions
     by_text: bool = False  # names may be looked up by texts made at run time
 
     def __post_init__(self) -> None:
-        for node in ast.walk(self.tree):
-            for child in ast.iter_child_nodes(node):
-                self.parents[child] = node
+        pending: list[ast.AST] = [self.tree]
+        while pending:
+            node = pending.pop()
+            inside = children(node)
+            if inside:
+                self.parents.update(dict.fromkeys(inside, node))
+                inside.reverse()
+                pending += inside
             if isinstance(node, DEFINITIONS):
                 self.definitions.append(node)
             elif isinstance(node, ast.Call):
                 self.calls.setdefault((node.lineno, node.col_offset), []).append(node)
                 self.by_text |= _by_text(node)
+            elif isinstance(node, ast.Global):
+                self.declared.update(node.names)
             elif isinstance(node, ast.Attribute):
                 self.by_text |= node.attr == "__dict__"
             elif isinstance(node, ast.Assign):
@@ -143,7 +157,7 @@ class Evidence:
             if name not in module.text or (path and module.path != path):
                 continue
             outline = self.outline(module.path)
-            for node in ast.walk(module.tree):
+            for node in walk(module.tree):
                 if not isinstance(node, ast.expr) or not _reads(node, name, attribute):
                     continue
                 if not isinstance(node, ast.Constant) or self._looked_up(node, outline):
@@ -162,7 +176,7 @@ class Evidence:
             alias.name == name
             for module in self.machine.modules.values()
             if name in module.text
-            for node in ast.walk(module.tree)
+            for node in walk(module.tree)
             if isinstance(node, ast.ImportFrom)
             for alias in node.names
         )

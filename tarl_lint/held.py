@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tarl_lint.evidence import Outline
+from tarl_lint.trees import walk
 
 LOCKISH: Final = re.compile(r"lock|mutex|sem(aphore)?$|cond(ition)?$", re.I)
 FUNCTIONS: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
@@ -16,6 +17,13 @@ EXITS: Final = (ast.Return, ast.Continue, ast.Break, ast.Raise)
 
 def locks_around(node: ast.AST, outline: Outline) -> frozenset[str]:
     """Return the names of the locks that are held at a node."""
+    known = outline.held.get(node)
+    if known is None:
+        known = outline.held[node] = _around(node, outline)
+    return known
+
+
+def _around(node: ast.AST, outline: Outline) -> frozenset[str]:
     found: set[str] = set()
     function: ast.AST | None = None
     for outer in outline.around(node):
@@ -48,13 +56,15 @@ def _acquired(node: ast.AST, function: ast.AST, outline: Outline) -> set[str]:
     return above & below
 
 
-def _calls(function: ast.AST, outline: Outline) -> Iterator[tuple[str, str, int]]:
-    """Yield lock, method and line of the calls of methods of locks in a function."""
-    for call in ast.walk(function):
-        if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute):
-            name = lock_name(call.func.value, outline)
-            if name:
-                yield name, call.func.attr, call.lineno
+def _calls(function: ast.AST, outline: Outline) -> list[tuple[str, str, int]]:
+    """Return lock, method and line of the calls of methods of locks in a function."""
+    known = outline.lock_calls.get(function)
+    if known is None:
+        calls = [n for n in walk(function) if isinstance(n, ast.Call)]
+        named = [(lock_name(c.func.value, outline), c) for c in calls if isinstance(c.func, ast.Attribute)]
+        known = [(n, c.func.attr, c.lineno) for n, c in named if n and isinstance(c.func, ast.Attribute)]
+        outline.lock_calls[function] = known
+    return known
 
 
 def lock_name(expr: ast.expr, outline: Outline) -> str:
@@ -90,7 +100,7 @@ def _later(statement: ast.If, outline: Outline) -> frozenset[str]:
     line = statement.body[-1].lineno
     taken = {
         name
-        for other in ast.walk(function)
+        for other in walk(function)
         if isinstance(other, (ast.With, ast.AsyncWith)) and other.lineno > line
         for name in _taken(other, outline)
     }

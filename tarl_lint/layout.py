@@ -9,6 +9,8 @@ import os
 import re
 from pathlib import Path
 
+from tarl_lint.trees import walk
+
 _SETUP = frozenset({"setup", "generate_distutils_setup"})
 
 
@@ -111,7 +113,7 @@ def _from_setup_py(path: Path) -> dict[str, str]:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return {}
-    calls = (node for node in ast.walk(tree) if isinstance(node, ast.Call))
+    calls = (node for node in walk(tree) if isinstance(node, ast.Call))
     setups = (call for call in calls if _name(call.func) in _SETUP)
     for value in (k.value for call in setups for k in call.keywords if k.arg == "package_dir"):
         if isinstance(value, ast.Dict):

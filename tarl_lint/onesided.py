@@ -17,6 +17,7 @@ from tarl_lint.locking import MADE
 from tarl_lint.relevance import code, whole
 from tarl_lint.rules import tarl201, tarl203, tarl204
 from tarl_lint.source import Module
+from tarl_lint.trees import walk
 
 HEARS: Final = re.compile("|".join(whole(w) for w in (*catalog.SOURCE_WORDS, *sorted(catalog.LOOKUPS))))
 ANSWERS: Final = re.compile(r"Service\(|create_service|ActionServer")  # sources that are sinks, too
@@ -61,7 +62,7 @@ def _all_publish(module: Module, text: str) -> bool:
     if not any(maker in text for maker in MAKERS):
         return True
     mentioned, names = 0, list[str]()
-    for node in ast.walk(module.tree):
+    for node in walk(module.tree):
         if isinstance(node, (ast.Name, ast.Attribute)) and _last(node) in MAKERS:
             mentioned += 1
         elif isinstance(node, ast.ImportFrom) and any(a.name in MAKERS and a.asname for a in node.names):

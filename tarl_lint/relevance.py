@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from typing import Final, TypeVar
 
 from tarl_lint import catalog
@@ -71,6 +72,7 @@ def mentioning(modules: Iterable[M], config: Config) -> Iterator[M]:
     return (m for m in modules if any(w in m.text for w in first) and search(m.text) and search(code(m.text)))
 
 
+@lru_cache(maxsize=512)
 def code(text: str) -> str:
     """Return a file's text without comments and texts over several lines, which are prose mostly."""
     return PROSE.sub(lambda found: found["kept"] or "", text)

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from tarl_lint.evidence import Evidence
+from tarl_lint.trees import walk
 from tarl_lint.valueflow.ir import Pos
 from tarl_lint.valueflow.store import Root
 from tarl_lint.valueflow.values import Frame
@@ -76,7 +77,7 @@ class Threads:
 
     def _made(self, path: str, target: str) -> Iterator[str]:
         """Yield the names of the classes whose instances are assigned to a target."""
-        for node in ast.walk(self.machine.modules[path].tree):
+        for node in walk(self.machine.modules[path].tree):
             if not isinstance(node, ast.Assign) or not isinstance(node.value, ast.Call):
                 continue
             if any(ast.unparse(t) == target for t in node.targets):

@@ -16,6 +16,7 @@ from tarl_lint.evidence import Evidence
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
 from tarl_lint.rules.wording import end
+from tarl_lint.trees import walk
 from tarl_lint.valueflow.ends import SourceRecord
 from tarl_lint.valueflow.ir import Function
 
@@ -133,7 +134,7 @@ def acting(node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
     """Tell whether a function is no idle callback, whatever it keeps: it says so, does or returns something."""
     if node.decorator_list or any(a.arg.startswith("_") for a in node.args.args):
         return True
-    return any(_acts(p) or _returns(p) for statement in node.body for p in ast.walk(statement))
+    return any(_acts(p) or _returns(p) for statement in node.body for p in walk(statement))
 
 
 def _kept(function: Function, path: str, evidence: Evidence) -> set[str] | None:
@@ -142,9 +143,9 @@ def _kept(function: Function, path: str, evidence: Evidence) -> set[str] | None:
     if isinstance(node, ast.Lambda):
         return None
     receiver = node.args.args[0].arg if node.args.args and "." in function.qualname else ""
-    shared = {n for s in ast.walk(node) if isinstance(s, (ast.Global, ast.Nonlocal)) for n in s.names}
+    shared = {n for s in walk(node) if isinstance(s, (ast.Global, ast.Nonlocal)) for n in s.names}
     stored: set[str] = set()
-    for part in (n for statement in node.body for n in ast.walk(statement)):
+    for part in (n for statement in node.body for n in walk(statement)):
         if _acts(part) or _returns(part):
             return None
         if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store) and part.id in shared:

@@ -13,6 +13,7 @@ from typing import Final
 from tarl_lint.evidence import Evidence, Read
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
+from tarl_lint.trees import walk
 from tarl_lint.valueflow.ends import Publisher
 from tarl_lint.valueflow.ir import Pos
 
@@ -126,7 +127,7 @@ def _target_read(target: ast.expr, path: str, pos: Pos, evidence: Evidence) -> b
 
 def _declared(function: ast.AST, name: str) -> bool:
     """Tell whether a function says that a name is not its own."""
-    return any(isinstance(n, (ast.Global, ast.Nonlocal)) and name in n.names for n in ast.walk(function))
+    return any(isinstance(n, (ast.Global, ast.Nonlocal)) and name in n.names for n in walk(function))
 
 
 def _harmless(read: Read, path: str, pos: Pos, evidence: Evidence) -> bool:

@@ -10,6 +10,7 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.lower_expr import OPERATORS, Expressions, position
 from tarl_lint.valueflow.patterns import captures, conditions
 from tarl_lint.valueflow.scopes import Scope, collect, plain
+from tarl_lint.valueflow.telling import only_tells
 
 NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations of what is no field of a dataclass
 
@@ -77,7 +78,7 @@ class Lowering(Expressions):
         return [ir.Assign(scope.next(), position(node), [target], value, augmented=True)]
 
     def _evaluate(self, node: ast.Expr, scope: Scope) -> list[ir.Stmt]:
-        if isinstance(node.value, ast.Constant):
+        if isinstance(node.value, ast.Constant) or only_tells(node.value):
             return []
         return [ir.Evaluate(scope.next(), position(node), self.expr(node.value, scope))]
 

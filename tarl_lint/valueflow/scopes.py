@@ -6,6 +6,7 @@ import ast
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
+from tarl_lint.trees import children, walk
 from tarl_lint.valueflow.ir import Scope as ScopeKind
 
 SIMPLE = frozenset([ast.Expr, ast.Return, ast.Raise, ast.Pass, ast.Break, ast.Continue, ast.Assert])
@@ -88,9 +89,9 @@ def _own_nodes(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
             pending.extend(node.decorator_list)
         elif isinstance(node, COMPREHENSIONS):
-            pending.extend(n for n in ast.walk(node) if isinstance(n, ast.NamedExpr))
+            pending.extend(n for n in walk(node) if isinstance(n, ast.NamedExpr))
         elif not isinstance(node, ast.Lambda):
-            pending.extend(ast.iter_child_nodes(node))
+            pending.extend(children(node))
 
 
 def plain(text: str) -> bool:
@@ -118,4 +119,4 @@ def _own_statements(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
             yield from _own_nodes((node,))
         else:
             yield node
-            pending.extend(ast.iter_child_nodes(node))
+            pending.extend(children(node))

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from tarl_lint.model import SiteId, Span
 from tarl_lint.source import Module
+from tarl_lint.trees import children
 from tarl_lint.valueflow.ir import Pos
 
 COMPOUND = (ast.If, ast.For, ast.AsyncFor, ast.While, ast.With, ast.AsyncWith, ast.Try, ast.Match)
@@ -79,7 +80,7 @@ class Text:
             return
         self.by_start[start] = written
         self.by_name.setdefault(qualname, []).append(written)
-        for child in ast.iter_child_nodes(node):
+        for child in children(node):
             if isinstance(child, (ast.stmt, ast.match_case)):
                 self._enter(child, qualname, written)
             elif isinstance(child, ast.excepthandler):
@@ -253,4 +254,4 @@ def _outer_lambdas(node: ast.expr) -> Iterator[ast.Lambda]:
         if isinstance(current, ast.Lambda):
             yield current
         else:
-            pending.extend(ast.iter_child_nodes(current))
+            pending.extend(children(current))

@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Iterator, Sequence
 
+from tarl_lint.trees import walk
 from tarl_lint.valueflow import ir
 
 STARTS = frozenset(["init_node", "init", "create_node", "spin", "Subscriber", "create_subscription"])
@@ -34,6 +35,6 @@ def starts(function: ir.Function) -> bool:
     if function.starts is None:
         function.starts = any(
             isinstance(n, ast.Call) and isinstance(n.func, ast.Attribute) and n.func.attr in STARTS
-            for n in ast.walk(function.node)
+            for n in walk(function.node)
         )
     return function.starts

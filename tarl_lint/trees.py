@@ -1,0 +1,49 @@
+"""Ways through syntax trees, faster than those of `ast`: each kind of node is asked only for what can hold others."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from typing import Final
+
+ATOMS: Final = frozenset(
+    ["id", "attr", "arg", "name", "asname", "module", "level", "ctx", "op", "ops", "kind", "type_comment", "names",
+     "conversion", "is_async", "simple", "rest", "kwd_attrs", "type_ignores", "tag", "lineno"]
+)  # fmt: skip
+ALIASES: Final = (ast.Import, ast.ImportFrom)  # whose names are nodes
+
+
+def children(node: ast.AST) -> list[ast.AST]:
+    """Return the nodes directly inside a node, in order, without operators and contexts."""
+    found: list[ast.AST] = []
+    kind = type(node)
+    names = _HOLDING.get(kind)
+    if names is None:
+        names = _HOLDING[kind] = _holding(kind)
+    for name in names:
+        value = getattr(node, name, None)
+        if type(value) is list:
+            found += [item for item in value if isinstance(item, ast.AST)]
+        elif isinstance(value, ast.AST):
+            found.append(value)
+    return found
+
+
+def walk(*trees: ast.AST) -> Iterator[ast.AST]:
+    """Yield nodes and all that is inside them, in the order of the text."""
+    pending = [*reversed(trees)]
+    while pending:
+        node = pending.pop()
+        yield node
+        inside = children(node)
+        inside.reverse()
+        pending += inside
+
+
+def _holding(kind: type[ast.AST]) -> tuple[str, ...]:
+    if kind is ast.Constant:
+        return ()
+    return tuple(n for n in kind._fields if n not in ATOMS or (n == "names" and kind in ALIASES))
+
+
+_HOLDING: dict[type[ast.AST], tuple[str, ...]] = {}

@@ -1,0 +1,66 @@
+"""Statements that only tell people something, and change nothing: prints and log messages."""
+
+from __future__ import annotations
+
+import ast
+from typing import Final
+
+from tarl_lint.trees import walk
+
+LEVELS: Final = frozenset(["debug", "info", "warn", "warning", "error", "fatal", "critical"])
+ROSPY: Final = frozenset(
+    f"log{level}{how}"
+    for level in ("debug", "info", "warn", "err", "fatal")
+    for how in ("", "_throttle", "_throttle_identical", "_once")
+)
+PURE: Final = frozenset(
+    [
+        "str",
+        "repr",
+        "len",
+        "round",
+        "int",
+        "float",
+        "bool",
+        "format",
+        "type",
+        "abs",
+        "min",
+        "max",
+        "sum",
+        "sorted",
+    ]
+)  # functions that change nothing, whatever they are given
+FORMATTING: Final = frozenset(["format", "join", "get_time", "to_sec", "time", "now", "get_name", "tolist"])
+ACTING: Final = (ast.Await, ast.Yield, ast.YieldFrom, ast.NamedExpr)
+
+
+def only_tells(expr: ast.expr) -> bool:
+    """Tell whether an expression for its effect writes a message for people, made without any other effect."""
+    if not isinstance(expr, ast.Call) or not _tells(expr.func):
+        return False
+    given = [*expr.args, *(k.value for k in expr.keywords)]
+    return all(map(_pure, walk(*given)))
+
+
+def _tells(function: ast.expr) -> bool:
+    if isinstance(function, ast.Name):
+        return function.id == "print"
+    if not isinstance(function, ast.Attribute):
+        return False
+    base = function.value
+    if isinstance(base, ast.Name):
+        return base.id == "rospy" and function.attr in ROSPY
+    asked = (
+        isinstance(base, ast.Call) and isinstance(base.func, ast.Attribute) and base.func.attr == "get_logger"
+    )
+    return asked and function.attr in LEVELS
+
+
+def _pure(node: ast.AST) -> bool:
+    if isinstance(node, ast.Call):
+        function = node.func
+        if isinstance(function, ast.Name):
+            return function.id in PURE
+        return isinstance(function, ast.Attribute) and function.attr in FORMATTING
+    return not isinstance(node, ACTING)

@@ -1,0 +1,43 @@
+"""The quick ways through trees see what `ast` sees."""
+
+import ast
+import sys
+from pathlib import Path
+
+import pytest
+
+from tarl_lint.trees import children, walk
+
+TEXTS = [
+    Path(__file__).read_text(),
+    Path(ast.__file__).read_text(),
+    "match x:\n    case {'a': [1, *rest], **others} if (y := rest): pass\n    case P(q=1) | None as z: pass\n",
+    "async def f(a, /, b: int = 1, *c, d=2, **e) -> str:\n    async with g() as h, i: yield f'{a!r:>{b}}'\n",
+    "import a.b as c\nfrom . import d\nglobal e\nfor x in y:\n    del x[1:2, ::3]\nelse:\n    raise X from Y\n",
+    "try: pass\nexcept (A, B) as c: pass\nelse: pass\nfinally: pass\nlambda *a: {**a, 'b': {*c}}\n",
+]
+if sys.version_info >= (3, 12):
+    TEXTS.append("def f[T: int](x: T) -> T: return x\n")
+
+
+def plain(nodes):
+    """Leave out what the quick ways leave out: operators and contexts."""
+    return [
+        n
+        for n in nodes
+        if not isinstance(n, (ast.expr_context, ast.operator, ast.unaryop, ast.boolop, ast.cmpop))
+    ]
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_all_nodes_are_found_in_the_order_of_the_tree(text):
+    tree = ast.parse(text)
+    assert set(walk(tree)) == set(plain(ast.walk(tree)))
+    for node in plain(ast.walk(tree)):
+        assert children(node) == plain(ast.iter_child_nodes(node))
+
+
+def test_functions_come_in_the_order_of_their_lines():
+    tree = ast.parse(TEXTS[1])
+    lines = [n.lineno for n in walk(tree) if isinstance(n, (ast.FunctionDef, ast.ClassDef))]
+    assert lines == sorted(lines)
