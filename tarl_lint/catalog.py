@@ -204,7 +204,9 @@ ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
     **dict.fromkeys(("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"), 0),
     **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), 0),
 }  # fmt: skip
-LEARNING: Final = re.compile(r"(?:set|add)(?:_|[A-Z])|(?:correct|fit|partial_fit|feed|observe|learn|train)$")
+LEARNING: Final = re.compile(
+    r"(?:set|add)(?:_|[A-Z])|(?:correct|fit|partial_fit|feed|observe|learn|train)$|[Aa]ccept_?[Ww]aveform"
+)
 METHODS_WRITING: Final = {"pack_into": 0, "readinto": 0, "recv_into": 0}  # position of what they fill
 DEVICE_WRITERS: Final = frozenset(["write", "writelines", "send", "sendall", "sendto"])
 DEVICE_READERS: Final = frozenset(

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.heap import item_field
 from tarl_lint.valueflow.machine import Arguments, Invocation
 from tarl_lint.valueflow.texts import Texts
-from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Obj, Value, join_all, lineage
+from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Obj, Value, join_all, lineage, pointer
 
 
 class Attributes(Texts):
@@ -35,6 +36,28 @@ class Attributes(Texts):
             return None
         decides = self.use(name)
         return Value(found.deps | decides, join_all([found, *rest]).pts)
+
+    def getter(self, it: Invocation) -> Value:
+        """Return the function that `attrgetter(...)` or `itemgetter(...)` makes."""
+        obj = self.intern("partial", (it.frame.id, it.statement, it.call.slot), it.name)
+        obj.info = (self.external(f"{it.name}.<made>"), it.arguments[0], {})
+        return pointer(obj)
+
+    def get_named(self, it: Invocation) -> Value:
+        """Return what a function made by `attrgetter` or `itemgetter` gives: several things as a tuple."""
+        *keys, given = it.arguments[0] or [UNKNOWN]
+        found = [self._by_path(given, k) if "attr" in it.name else self.read_item(given, k) for k in keys]
+        if len(found) == 1:
+            return found[0]
+        obj = self.allocate("sequence", it.frame, ("display", it.call.slot, it.name))
+        for number, value in enumerate(found):
+            self.store.put((obj, item_field(number)), value)
+        return pointer(obj)
+
+    def _by_path(self, value: Value, name: Value) -> Value:
+        for part in (name.texts() or ("",))[0].split("."):
+            value = self.read(value, part)
+        return value
 
     def set_attribute(self, it: Invocation) -> Value:
         """Store into the attribute that is named, into any where no name is known."""

@@ -89,7 +89,7 @@ class Branches(Raising):
     def _length(self, source: Value, node: int) -> None:
         """How often a loop runs depends on a container's length: on what chose to add elements, not on them."""
         ours = frozenset(filter(self.sized, source.pts))
-        self.graph.flow(self.use(Value(source.deps, source.pts - ours)) | self.length(Value(pts=ours)), node)
+        self.graph.flow(self.length(source), node)
         self.graph.choice(self.placed(ours), node)
 
     def _loop_end(self, s: ir.Loop, done: list[Delta], broken: list[Delta], frame: Frame) -> bool:

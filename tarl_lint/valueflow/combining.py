@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.heap import ANY, KEYS, LENGTH, item_field
+from tarl_lint.valueflow.heap import ANY, KEYS, LENGTH, SENT, item_field
 from tarl_lint.valueflow.special import Special
 from tarl_lint.valueflow.values import (
     ABSENT,
@@ -140,6 +140,8 @@ class Combining(Special):
                 if obj.parent is not None:
                     made |= self.content(obj.parent).deps
                 deps |= self.graph.through(made, value.deps)
+            elif SENT in obj.fields:
+                deps |= self.content(obj).deps
             else:
                 deps |= self.use(Value(value.deps, frozenset([obj])))
         return deps

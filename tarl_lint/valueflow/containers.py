@@ -8,7 +8,7 @@ from typing import Any
 
 from tarl_lint import catalog
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.heap import ANY, LENGTH, item_field
+from tarl_lint.valueflow.heap import ANY, LENGTH, SENT, item_field
 from tarl_lint.valueflow.iterating import Iterating
 from tarl_lint.valueflow.machine import Arguments, Invocation
 from tarl_lint.valueflow.values import (
@@ -30,7 +30,6 @@ QUEUES = frozenset(
     for module in ("queue", "Queue", "asyncio", "multiprocessing")
     for name in ("Queue", "LifoQueue", "PriorityQueue", "SimpleQueue", "JoinableQueue")
 )
-SENT = "<sent>"  # the field of a port, file or socket that holds what was written to it
 FLAG = "<flag>"  # the field of an event that says whether it is set
 FLAGGING = frozenset(["set", "clear"])
 IN_ORDER = frozenset(["list", "tuple", "deque", "iter", "reversed"])  # keep their argument's elements apart

@@ -22,6 +22,7 @@ from tarl_lint.valueflow.values import (
 ANY = "*"  # the field that stands for all elements
 KEYS = "<keys>"  # of a mapping: what its keys are made of
 LENGTH = "<length>"  # of a container: what its length is made of
+SENT = "<sent>"  # the field of a port, file or socket that holds what was written to it
 METHODS_OF = {
     "publisher": frozenset(["publish"]),
     "sequence": frozenset(
@@ -246,72 +247,6 @@ class Heap(Allocation):
             if not any(e.rpartition(".")[2] in DICTIONARIES for e in external):
                 return key
         return item_field(key)
-
-    # --- writing ------------------------------------------------------------------------------------------
-
-    def write_field(self, base: Value, name: str, value: Value) -> None:
-        """Store into a field; for certain when there is only one object that it can be."""
-        certain = len(base.pts) == 1
-        for obj in base.pts:
-            if obj.kind in ("bound", "ext", "method"):
-                continue
-            if obj.kind == "closure":
-                name = attribute_of_function(name)
-            for attributes in self.replaced_attributes(obj):
-                self.weaken(attributes, item_field(name), value)
-            if certain and not obj.many:
-                self.store.put((obj, name), value)
-            else:
-                self.weaken(obj, name, value)
-
-    def weaken(self, obj: Obj, name: str, value: Value) -> None:
-        """Store into a field of one of several objects."""
-        before = self.store.get((obj, name))
-        if before is None:
-            before = self.default(obj, name)
-        self.store.put((obj, name), join(before, value))
-
-    def add_element(self, base: Value, value: Value) -> None:
-        """Store into an element that is not known."""
-        for obj in base.pts:
-            if obj.kind in HOLLOW:
-                continue
-            before = self.content(obj)
-            self.store.put((obj, ANY), join(before, value))
-            for name in list(obj.fields):
-                if name.startswith("["):
-                    known = self.store.get((obj, name))
-                    if known is not None:
-                        self.store.put((obj, name), join(known, value))
-
-    def write_item(self, base: Value, index: Value, value: Value) -> None:
-        """Store into an element."""
-        keys = self.use(index)
-        for obj in base.pts if keys else ():
-            if obj.kind == "mapping":
-                self.weaken(obj, KEYS, Value(keys))
-        if index.consts is None or not index.consts or len(index.consts) > 1:
-            self.add_element(base, value)
-            return
-        key = next(iter(index.consts))
-        if isinstance(key, int) and key < 0 and any(o.kind == "sequence" for o in base.pts):
-            key = self.from_end(base, key)
-            if key < 0:
-                self.add_element(base, value)
-                return
-        fields = {self.attribute_of_item(obj, key) for obj in base.pts}
-        for field in sorted(fields):
-            kin = frozenset(o for o in base.pts if self.attribute_of_item(o, key) == field)
-            self.write_field(base if kin == base.pts else Value(base.deps, kin), field, value)
-
-    def from_end(self, base: Value, key: int) -> int:
-        """Return a negative index counted from the start, where the length is known."""
-        known = self.unpacked(base)
-        return key + len(known) if known and -key <= len(known) else key
-
-    def unpacked(self, value: Value) -> list[Value] | None:
-        """Return the elements of a sequence whose elements are known one by one."""
-        raise NotImplementedError
 
 
 def attribute_of_function(name: str) -> str:

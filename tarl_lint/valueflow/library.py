@@ -280,6 +280,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "dataclasses.replace": Library._replaced,
     "copy.replace": Library._replaced,
     **dict.fromkeys(("dataclasses.asdict", "attr.asdict", "attrs.asdict"), Library._as_mapping),
+    **dict.fromkeys(("dataclasses.astuple", "attr.astuple", "attrs.astuple"), Library._as_sequence),
     **dict.fromkeys(("attr.evolve", "attrs.evolve"), Library._replaced),
     "object.__new__": Library._blank_object,
     **dict.fromkeys(("weakref.ref", "weakref.WeakMethod"), Library._weak),
@@ -300,6 +301,8 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "asyncio.gather": Library._gathered,
     **dict.fromkeys(catalog.AWAITING, Library._awaited),
     "getattr": Library.get_attribute,
+    **dict.fromkeys(("operator.attrgetter", "operator.itemgetter"), Library.getter),
+    **dict.fromkeys(("operator.attrgetter.<made>", "operator.itemgetter.<made>"), Library.get_named),
     "setattr": Library.set_attribute,
     "super": Library.parent,
 }

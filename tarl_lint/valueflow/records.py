@@ -128,14 +128,22 @@ class Records(Containers):
 
     def _as_mapping(self, it: Invocation) -> Value:
         """Return the mapping of field names to fields that `asdict(x)` or a named tuple's `_asdict()` makes."""
+        return self._listing(it, "mapping")
+
+    def _as_sequence(self, it: Invocation) -> Value:
+        """Return the tuple of fields that `astuple(x)` makes."""
+        return self._listing(it, "sequence")
+
+    def _listing(self, it: Invocation, kind: str) -> Value:
         given = it.base if it.base is not BOTTOM else it.arguments[0][0] if it.arguments[0] else UNKNOWN
         ours = {o: o.info for o in given.pts if o.kind == "instance" and isinstance(o.info, Obj)}
         if not ours or len(ours) < len(given.pts):
             return Value(self.use(given))
-        made = self.allocate("mapping", it.frame, ("display", it.call.slot))
+        made = self.allocate(kind, it.frame, ("display", it.call.slot))
         for obj, cls in ours.items():
-            for _, name in _fields(cls):
-                self.weaken(made, item_field(name), self.arrive(self.read_field(obj, name), given.deps))
+            for number, (_, name) in enumerate(_fields(cls)):
+                field = item_field(name if kind == "mapping" else number)
+                self.weaken(made, field, self.arrive(self.read_field(obj, name), given.deps))
         return pointer(made)
 
     def _read_copy(self, it: Invocation) -> Value:

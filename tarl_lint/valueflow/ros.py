@@ -25,8 +25,9 @@ class Ros(Serving):
 
     def _done(self, it: Invocation) -> Value:
         """Run a callback on a future, with the future."""
+        future = self.through_statement(it.base, it.frame, it.call, "future")
         for target in it.argument(it.fact.callback).pts:
-            self.call_when(("done", it.frame.program.path, it.call.pos), target, [it.base], "callback")
+            self.call_when(("done", it.frame.program.path, it.call.pos), target, [future], "callback")
         return UNKNOWN
 
     def _thread(self, it: Invocation) -> Value:
