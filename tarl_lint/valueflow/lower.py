@@ -10,14 +10,14 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.lower_expr import OPERATORS, Expressions, position
 from tarl_lint.valueflow.patterns import captures, conditions
 from tarl_lint.valueflow.scopes import Scope, collect, plain
-from tarl_lint.valueflow.telling import only_tells
+from tarl_lint.valueflow.telling import OWN_PRINT, only_tells
 
 NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations of what is no field of a dataclass
 
 
 def lower_module(module: Module) -> ir.Program:
     """Lower the top level of a module."""
-    scope = Scope("module", "", plain=plain(module.text))
+    scope = Scope("module", "", plain=plain(module.text), prints=OWN_PRINT.search(module.text) is None)
     lowering = Lowering(module.name)
     package = module.name if module.is_package else module.name.rpartition(".")[0]
     lowering.package = package
@@ -78,7 +78,7 @@ class Lowering(Expressions):
         return [ir.Assign(scope.next(), position(node), [target], value, augmented=True)]
 
     def _evaluate(self, node: ast.Expr, scope: Scope) -> list[ir.Stmt]:
-        if isinstance(node.value, ast.Constant) or only_tells(node.value):
+        if isinstance(node.value, ast.Constant) or only_tells(node.value, scope.module().prints):
             return []
         return [ir.Evaluate(scope.next(), position(node), self.expr(node.value, scope))]
 

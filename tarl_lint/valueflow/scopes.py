@@ -28,6 +28,7 @@ class Scope:
     renamed: dict[str, str] = field(default_factory=dict)  # targets of comprehensions being lowered
     around: dict[str, str] = field(default_factory=dict)  # the same of the parent, where this one is written
     plain: bool = False  # nothing in the file binds a name, or yields, inside an expression
+    prints: bool = False  # of a module: `print` is Python's own
 
     def resolve(self, name: str) -> tuple[str, ScopeKind, int]:
         """Return the name as stored, its kind, and how many functions up it lives."""
@@ -45,6 +46,10 @@ class Scope:
             if scope.kind == "function" and stored in scope.bound and stored not in scope.nonlocals:
                 return stored, "free", level
         return name, "global", 0
+
+    def module(self) -> Scope:
+        """Return the scope of the module."""
+        return self if self.parent is None else self.parent.module()
 
     def child(self, name: str) -> str:
         """Return the qualified name of what is defined here, without `<locals>`."""

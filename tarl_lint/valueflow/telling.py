@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import ast
+import re
 from typing import Final
 
 from tarl_lint.trees import walk
 
+OWN_PRINT: Final = re.compile(r"\bdef\s+print\b|\bprint\s*=|\bimport\b[^\n]*(\bprint\b|\*)")
 LEVELS: Final = frozenset(["debug", "info", "warn", "warning", "error", "fatal", "critical"])
 ROSPY: Final = frozenset(
     f"log{level}{how}"
@@ -35,17 +37,20 @@ FORMATTING: Final = frozenset(["format", "join", "get_time", "to_sec", "time", "
 ACTING: Final = (ast.Await, ast.Yield, ast.YieldFrom, ast.NamedExpr)
 
 
-def only_tells(expr: ast.expr) -> bool:
-    """Tell whether an expression for its effect writes a message for people, made without any other effect."""
-    if not isinstance(expr, ast.Call) or not _tells(expr.func):
+def only_tells(expr: ast.expr, prints: bool) -> bool:
+    """Tell whether an expression for its effect writes a message for people, made without any other effect.
+
+    `prints` tells whether `print` is Python's own.
+    """
+    if not isinstance(expr, ast.Call) or not _tells(expr.func, prints):
         return False
     given = [*expr.args, *(k.value for k in expr.keywords)]
     return all(map(_pure, walk(*given)))
 
 
-def _tells(function: ast.expr) -> bool:
+def _tells(function: ast.expr, prints: bool) -> bool:
     if isinstance(function, ast.Name):
-        return function.id == "print"
+        return prints and function.id == "print"
     if not isinstance(function, ast.Attribute):
         return False
     base = function.value

@@ -1,0 +1,77 @@
+"""What only tells people something is not run; what does more is."""
+
+import ast
+
+import pytest
+
+from tarl_lint.config import Config
+from tarl_lint.engine import analyse
+from tarl_lint.source import parse
+from tarl_lint.valueflow.telling import only_tells
+
+NODE = """
+import rospy
+from std_msgs.msg import Float64
+
+pub = rospy.Publisher("/out", Float64, queue_size=1)
+
+def send(value):
+    pub.publish(Float64(value))
+    return value
+
+{own}
+
+def heard(msg):
+    {statement}
+
+rospy.Subscriber("/in", Float64, heard)
+"""
+
+
+def flows(statement: str, own: str = "") -> int:
+    module = parse("node.py", NODE.format(statement=statement, own=own).encode(), "node")
+    return len(analyse([module], Config()))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "print(msg.data, len(msg.data), file=sys.stderr)",
+        "rospy.loginfo('%.2f of %s' % (msg.x, str(msg.y)))",
+        "rospy.logwarn_throttle(5, f'{round(a)!r}')",
+        "self.get_logger().info('{}'.format(self.x))",
+        "rclpy.logging.get_logger('a').error(','.join(str(a) for a in b))",
+    ],
+)
+def test_messages_made_of_what_is_there_only_tell(text):
+    assert only_tells(ast.parse(text, mode="eval").body, prints=True)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "print(send(msg.data))",
+        "rospy.loginfo(self.update(msg))",
+        "self.get_logger().info((x := msg.data))",
+        "self.logger.info(msg.data)",
+        "rospy.sleep(1)",
+        "self.get_logger().set_level(10)",
+        "print",
+    ],
+)
+def test_what_calls_or_binds_does_more(text):
+    assert not only_tells(ast.parse(text, mode="eval").body, prints=True)
+
+
+def test_a_message_that_sends_is_followed():
+    assert flows("print(send(msg.data))") == 1
+    assert flows("rospy.loginfo(send(msg.data))") == 1
+
+
+def test_a_message_leads_nowhere():
+    assert flows("print(msg.data)") == flows("rospy.loginfo(msg.data)") == 0
+
+
+@pytest.mark.parametrize("own", ["def print(value): send(value)", "print = send"])
+def test_a_print_of_ones_own_is_a_function_like_any_other(own):
+    assert flows("print(msg.data)", own) == 1
