@@ -50,7 +50,7 @@ class Activations(Evaluation):
             self.spent > self.limit
             or (self.spent > MANY and runs > OFTEN)
             or len(self.stack) > MAX_CALLS
-            or sum(f.function is function for f in self.stack) > 1
+            or [f.function for f in self.stack].count(function) > 1
         ):
             return None
         statement = caller.statement.id if caller.statement is not None else -1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE, Activations
+from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.machine import Arguments
 from tarl_lint.valueflow.values import (
     BOTTOM,
@@ -53,7 +54,7 @@ class Calls(Activations):
 
     def one_by_one(self, value: Value) -> list[Value] | None:
         """Return what `*value` passes, argument by argument; of several sequences those of one length are joined."""
-        ways = [self.unpacked(Value(value.deps, frozenset([o]))) for o in sorted(value.pts, key=_order)]
+        ways = [self.unpacked(Value(value.deps, frozenset([o]))) for o in in_order(value.pts)]
         lengths = {-1 if way is None else len(way) for way in ways}
         if -1 in lengths or len(lengths) != 1:
             return None
@@ -68,7 +69,7 @@ class Calls(Activations):
         if not base.pts:
             return self.call_method(base, None, function.name, arguments, frame, expr)
         targets: list[tuple[Obj, Value]] = []
-        for obj in sorted(base.pts, key=_order):
+        for obj in in_order(base.pts):
             member = self.read_field(obj, function.name) if obj.kind != "ext" else BOTTOM
             targets.append((obj, member))
         if len(targets) == 1:
@@ -112,7 +113,7 @@ class Calls(Activations):
 
     def call_value(self, function: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
         """Call whatever a value may be; what is not known passes its arguments on."""
-        targets = sorted(function.pts, key=_order)
+        targets = in_order(function.pts)
         if self.nothing_yet(function):
             return BOTTOM
         if not targets:
@@ -164,7 +165,3 @@ class Calls(Activations):
             if any(o.kind in CALLABLE for o in member.pts):
                 return self.call_value(member, arguments, frame, call)
         return self.call_method(pointer(target), target, "__call__", arguments, frame, call)
-
-
-def _order(obj: Obj) -> str:
-    return f"{obj.kind}{obj.key}"

@@ -38,7 +38,9 @@ class Evaluation(Displays):
         return value
 
     def _constant(self, expr: ir.Const, frame: Frame) -> Value:  # noqa: ARG002 - one signature for all
-        return const(expr.value)
+        if expr.known is None:
+            expr.known = const(expr.value)
+        return expr.known  # type: ignore[return-value] - a Value, which ir.py must not know
 
     def _name(self, expr: ir.Name, frame: Frame) -> Value:
         value = self.store.get((self.holder(expr, frame), expr.name))

@@ -128,6 +128,8 @@ class Execution(Branches):
     def set_property(self, base: Value, target: ir.Attribute, value: Value, frame: Frame) -> bool:
         """Call the setter where the attribute is a property."""
         done = False
+        if target.name not in self.setters:
+            return done
         for obj in base.pts:
             cls = obj.info if obj.kind == "instance" else None
             for owner in lineage(cls) if isinstance(cls, Obj) else ():
@@ -220,6 +222,7 @@ class Execution(Branches):
                 and decorator.name == "setter"
                 and isinstance(s.target, ir.Name)
             ):
+                self.setters.add(s.target.name)
                 self.store.put((self.holder(s.target, frame), f"{s.target.name}.setter"), value)
                 return True
         self.assign(s.target, self.decorated(value, s.function.decorators, s, frame), frame)

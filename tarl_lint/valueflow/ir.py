@@ -14,10 +14,11 @@ FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
 @dataclass(slots=True, eq=False)
 class Const:
-    """A literal, also a signed one."""
+    """A literal, also a signed one; `known` is what it evaluates to, once somebody asked."""
 
     value: object
     pos: Pos
+    known: object = None
 
 
 @dataclass(slots=True, eq=False)

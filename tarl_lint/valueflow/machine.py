@@ -73,6 +73,7 @@ class Machine:
         self.delivered: frozenset[Obj] = frozenset()  # messages that ROS hands over in this run
         self.vacant: set[Key] = set()  # variables and fields that None is stored in
         self.optional: set[Key] = set()  # those that get what may be None or not
+        self.setters: set[str] = set()  # names of attributes that some class sets by a method
         self.doubtful: set[ir.Call] = set()  # calls that give such
         self.came: dict[Key, set[int]] = {}  # what decides whether a copy of what is vacant at first is there
         self.came_out: dict[ir.Call, set[int]] = {}  # the same of calls that give such a copy

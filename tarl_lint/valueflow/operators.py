@@ -162,8 +162,10 @@ class Operators(Presence):
         function = FOLDED.get(name)
         if function is None or any(v.pts for v in values):
             return None if any(v.pts or v.consts is None for v in values) or function is None else frozenset()
+        if not all(v.consts for v in values):
+            return None
         known = [sorted(v.consts, key=str) for v in values if v.consts]
-        if len(known) < len(values) or math.prod(map(len, known)) > MAX_TEXTS:
+        if math.prod(map(len, known)) > MAX_TEXTS:
             return None
         try:
             results = frozenset(function(*constants) for constants in itertools.product(*known))

@@ -89,7 +89,7 @@ class Presence(Combining):
             return expr in self.doubtful or name in catalog.MAY_BE_NONE
         if isinstance(expr, ir.Choice):
             return any(_none(arm) or self._may_be_none(arm, frame) for arm in (expr.then, expr.other))
-        if isinstance(expr, (ir.Name, ir.Attribute)):
+        if isinstance(expr, (ir.Name, ir.Attribute)) and self.optional:
             return any(k in self.optional for k in self._keys(expr, frame))
         return False
 
