@@ -246,6 +246,15 @@ MAY_BE_NONE: Final = frozenset(
 )  # functions of libraries that give None where they find nothing
 WRITTEN_KEYWORDS: Final = frozenset(["out", "dst"])  # arguments that numpy and cv2 put their result into
 
+STATES: Final = "smach"  # a state of its machines is given, when it runs, what the states share
+RUNS_STATE: Final = "execute"
+ADDS_STATE: Final = tuple(
+    f"smach.{machine}.add" for machine in ("StateMachine", "Sequence", "Concurrence", "Container")
+)
+STATE_BY_CALLBACKS: Final = (
+    "smach.CBState", "smach.state.CBState", "smach_ros.SimpleActionState", "smach_ros.ServiceState",
+)  # fmt: skip
+
 NODE_BASES: Final = frozenset(
     [
         "rclpy.node.Node", "rclpy.lifecycle.Node", "rclpy.lifecycle.LifecycleNode", "object", "Exception",

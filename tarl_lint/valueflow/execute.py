@@ -9,10 +9,10 @@ from tarl_lint.valueflow.branches import Branches
 from tarl_lint.valueflow.control import control_dependence, raised
 from tarl_lint.valueflow.ends import Publisher
 from tarl_lint.valueflow.heap import item_field
-from tarl_lint.valueflow.library import LATER
 from tarl_lint.valueflow.lower import lower_body
 from tarl_lint.valueflow.machine import Invocation
 from tarl_lint.valueflow.presence import RETURNED
+from tarl_lint.valueflow.states import LATER
 from tarl_lint.valueflow.values import (
     ABSENT,
     BOTTOM,

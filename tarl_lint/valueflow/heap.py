@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tarl_lint.catalog import MEASURES, METHODS
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.allocation import Allocation
+from tarl_lint.valueflow.userdata import VIEW, Userdata
 from tarl_lint.valueflow.values import (
     BOTTOM,
     BY_CLASS,
@@ -35,8 +35,9 @@ METHODS_OF = {
 }
 DICTIONARIES = frozenset(["dict", "OrderedDict", "defaultdict", "UserDict", "Counter", "TypedDict", "?"])
 HOLLOW = frozenset(
-    ["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super"]
+    ["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super", VIEW]
 )
+RENAMING = frozenset(["closure", VIEW])  # objects whose attributes are kept elsewhere or under other names
 
 
 def item_field(constant: object) -> str:
@@ -44,7 +45,7 @@ def item_field(constant: object) -> str:
     return f"[{constant!r}]"
 
 
-class Heap(Allocation):
+class Heap(Userdata):
     """Reads and writes fields."""
 
     # --- reading ------------------------------------------------------------------------------------------
@@ -63,8 +64,8 @@ class Heap(Allocation):
 
     def read_field(self, obj: Obj, name: str) -> Value:
         """Return what a field of one object may be."""
-        if obj.kind == "closure":
-            name = attribute_of_function(name)
+        if obj.kind in RENAMING:
+            obj, name = self.renamed(obj, name)
         stored = self.store.get((obj, name))
         if stored is not None:
             if obj.kind == "class":
@@ -73,6 +74,10 @@ class Heap(Allocation):
                 return join(stored, pointer(obj.sub(name)))  # each message brings its own
             return stored
         return self.default(obj, name)
+
+    def renamed(self, obj: Obj, name: str) -> tuple[Obj, str]:
+        """Return where an attribute is kept, and under which name: those of functions beside their defaults."""
+        return (obj, f"<{name}>") if obj.kind == "closure" else self.seen_through(obj, name)
 
     def written_here(self, obj: Obj, name: str) -> bool:
         """Tell whether this run has stored to a field."""
@@ -247,11 +252,6 @@ class Heap(Allocation):
             if not any(e.rpartition(".")[2] in DICTIONARIES for e in external):
                 return key
         return item_field(key)
-
-
-def attribute_of_function(name: str) -> str:
-    """Return the field that an attribute of a function is kept under, beside the defaults of its parameters."""
-    return f"<{name}>"
 
 
 def _binding(obj: Obj) -> str:

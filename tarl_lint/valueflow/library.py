@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 
 from tarl_lint import catalog
 from tarl_lint.catalog import Fact
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.attributes import Attributes
 from tarl_lint.valueflow.containers import CONTAINERS, QUEUES, is_device
 from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.ends import Publisher
@@ -15,7 +14,9 @@ from tarl_lint.valueflow.futures import READERS
 from tarl_lint.valueflow.heap import ANY
 from tarl_lint.valueflow.machine import Arguments, Invocation
 from tarl_lint.valueflow.special import FUNCTIONS
+from tarl_lint.valueflow.states import LATER, States
 from tarl_lint.valueflow.texts import TEXT_METHODS
+from tarl_lint.valueflow.userdata import MACHINE_FIELD
 from tarl_lint.valueflow.values import (
     BOTTOM,
     BY_CLASS,
@@ -29,10 +30,8 @@ from tarl_lint.valueflow.values import (
 )
 from tarl_lint.wrapping import facts
 
-LATER = frozenset(["closure", "bound", "partial"])  # what a library can call of what it is given
 
-
-class Library(Attributes):
+class Library(States):
     """Performs calls of functions, classes and methods that are not analysed."""
 
     def call_library(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
@@ -134,10 +133,6 @@ class Library(Attributes):
             for target in in_order(value.pts):
                 if target.kind in LATER:
                     self.call_later(target, ())
-
-    def call_later(self, target: Obj, values: Sequence[Value]) -> None:
-        """Have a function run on its own; of other arguments than these nothing is known."""
-        raise NotImplementedError
 
     # --- methods ------------------------------------------------------------------------------------------
 
@@ -262,6 +257,8 @@ class Library(Attributes):
                 if value is not None:
                     return self.bind(value, this, base)
             return BOTTOM
+        if obj.kind == "lib" and name == MACHINE_FIELD:
+            return self.userdata()
         if obj.kind == "parameter":
             return self.store.get((obj, "value")) or UNKNOWN if name in catalog.PARAMETER_VALUES else UNKNOWN
         return super().default(obj, name)
@@ -299,6 +296,8 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "max": Library._chosen,
     "next": Library._chosen,
     "asyncio.gather": Library._gathered,
+    **dict.fromkeys(catalog.ADDS_STATE, Library.add_state),
+    **dict.fromkeys(catalog.STATE_BY_CALLBACKS, Library.state_by_callbacks),
     **dict.fromkeys(catalog.AWAITING, Library._awaited),
     "getattr": Library.get_attribute,
     **dict.fromkeys(("operator.attrgetter", "operator.itemgetter"), Library.getter),

@@ -271,12 +271,13 @@ class Linker(Execution):
                 continue
             for closure in self._values(owner, name):
                 if closure.kind == "closure":
-                    self._start_method(closure, obj, owner)
+                    state = name == catalog.RUNS_STATE and any(e.startswith(catalog.STATES) for e in external)
+                    self._start_method(closure, obj, owner, [self.userdata(obj)] if state else [])
 
-    def _start_method(self, closure: Obj, obj: Obj, owner: Obj) -> None:
+    def _start_method(self, closure: Obj, obj: Obj, owner: Obj, given: list[Value]) -> None:
         method = self.intern("bound", (closure.key, obj), closure.name)
         method.info = (closure, obj, owner)
-        self.call_when("framework", method, [], "callback")
+        self.call_when("framework", method, given, "callback")
 
     # --- imports ------------------------------------------------------------------------------------------
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tarl_lint.valueflow.heap import ANY, HOLLOW, KEYS, Heap, attribute_of_function, item_field
+from tarl_lint.valueflow.heap import ANY, HOLLOW, KEYS, RENAMING, Heap, item_field
 from tarl_lint.valueflow.values import Obj, Value, join
 
 MAX_KEYS = 8  # of a mapping, one of which a store may be for
@@ -14,12 +14,12 @@ class Storing(Heap):
     def write_field(self, base: Value, name: str, value: Value) -> None:
         """Store into a field; for certain when there is only one object that it can be."""
         certain = len(base.pts) == 1
-        for obj in base.pts:
-            if obj.kind in ("bound", "ext", "method"):
+        for held in base.pts:
+            if held.kind in ("bound", "ext", "method"):
                 continue
+            obj, field = self.renamed(held, name) if held.kind in RENAMING else (held, name)
             for attributes in self.replaced_attributes(obj):
-                self.weaken(attributes, item_field(name), value)
-            field = attribute_of_function(name) if obj.kind == "closure" else name
+                self.weaken(attributes, item_field(field), value)
             if certain and not obj.many:
                 self.store.put((obj, field), value)
             else:

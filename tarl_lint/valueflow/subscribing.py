@@ -13,9 +13,9 @@ from tarl_lint.valueflow.bounds import MAX_GENERATIONS
 from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.ends import Kind, Publisher, SourceRecord
 from tarl_lint.valueflow.graph import Place
-from tarl_lint.valueflow.library import LATER
 from tarl_lint.valueflow.machine import Invocation
 from tarl_lint.valueflow.publishing import Sinks, type_names
+from tarl_lint.valueflow.states import LATER
 from tarl_lint.valueflow.store import Root
 from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Obj, Value, join, join_all, pointer
 
