@@ -12,6 +12,7 @@ from tarl_lint.valueflow.patterns import captures, conditions
 from tarl_lint.valueflow.scopes import Scope, collect, plain
 from tarl_lint.valueflow.telling import OWN_PRINT, only_tells
 
+MADE = (ir.Call, ir.SequenceDisplay, ir.Walrus, ir.Yield)  # subjects of `match` that are made once
 NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations of what is no field of a dataclass
 
 
@@ -187,6 +188,11 @@ class Lowering(Expressions):
         """Lower to a chain of conditions; captured names take the subject's parts."""
         subject = self.expr(node.subject, scope)
         orelse: list[ir.Stmt] = []
+        once: list[ir.Stmt] = []
+        if isinstance(subject, MADE):
+            scope.bound.add(name := f"<match {scope.next()}>")
+            kept = ir.Name(*scope.resolve(name), position(node))
+            once, subject = [ir.Assign(scope.next(), position(node), [kept], subject)], kept
         for case in reversed(node.cases):
             bound = self.captures(case, subject, scope)
             body = self.block(case.body, scope)
@@ -201,7 +207,7 @@ class Lowering(Expressions):
                 continue
             test = ir.Operation("and", tests, where) if len(tests) > 1 else tests[0]
             orelse = [*bound, ir.If(scope.next(), where, test, body, orelse)]
-        return orelse
+        return once + orelse
 
     def captures(self, case: ast.match_case, subject: ir.Expr, scope: Scope) -> list[ir.Stmt]:
         """Return assignments of the names that a pattern binds."""

@@ -228,6 +228,85 @@ STATES: Final[Mapping[str, tuple[str, str, str, str]]] = {
         "value = self.filt.y",
         "clean = self.filt2.y",
     ),
+    "own items": (
+        "self.d = Table()\nself.e = Table()",
+        'self.d["a"] = VALUE',
+        'value = self.d["a"]',
+        'clean = self.e["a"]',
+    ),
+    "items by special names": (
+        'self.d = {}\nself.e = {"a": 1.0}',
+        'self.d.__setitem__("a", VALUE)',
+        'value = self.d.__getitem__("a")',
+        'clean = self.e.__getitem__("a")',
+    ),
+    "vars": ("self.x = 0.0\nself.y = 1.0", 'vars(self)["x"] = VALUE', "value = self.x", "clean = self.y"),
+    "enumeration keys": (
+        "self.d = {Side.LEFT: 0.0, Side.RIGHT: 1.0}",
+        "self.d[Side.LEFT] = VALUE",
+        "value = self.d[Side.LEFT]",
+        "clean = self.d[Side.RIGHT]",
+    ),
+    "key out of two": (
+        'self.d = {"a": 0.0, "b": 0.0, "c": 1.0}\nself.n = 0',
+        'self.d["a" if self.n else "b"] = VALUE',
+        'value = self.d["b"]',
+        'clean = self.d["c"]',
+    ),
+    "taken with a tuple": (
+        "self.d = Data()",
+        "self.d.a = VALUE",
+        "value = astuple(self.d)[0]",
+        "clean = astuple(self.d)[1]",
+    ),
+    "taken with a getter": (
+        "self.d = Data()",
+        "self.d.a = VALUE",
+        'value = attrgetter("a")(self.d)',
+        'clean = attrgetter("b")(self.d)',
+    ),
+    "rows turned round": (
+        "self.rows = [(0.0, 1.0)]",
+        "self.rows = [(VALUE, 1.0), (VALUE, 2.0)]",
+        "value = list(zip(*self.rows))[0]",
+        "clean = list(zip(*self.rows))[1]",
+    ),
+    "context manager": (
+        "self.s = Store()\nself.t = Store()",
+        "with self.s as held:\n    held.x = VALUE",
+        "value = self.s.x",
+        "clean = self.t.x",
+    ),
+    "match": (
+        "self.x = 0.0\nself.y = 1.0",
+        "match [VALUE, 1.0]:\n    case [v, 1.0]:\n        self.x = v",
+        "value = self.x",
+        "clean = self.y",
+    ),
+    "comprehension": (
+        "self.l = []\nself.k = [1.0]",
+        "self.l = [2 * v for v in (VALUE, 0.0)]",
+        "value = max(self.l)",
+        "clean = max(self.k)",
+    ),
+    "sorted": (
+        "self.l = []\nself.k = [1.0]",
+        "self.l = sorted([*self.l, VALUE])",
+        "value = self.l[0]",
+        "clean = sorted(self.k)[0]",
+    ),
+    "object of a library": (
+        "self.kf = cv2.KalmanFilter(2, 1)\nself.kf2 = cv2.KalmanFilter(2, 1)",
+        "self.kf.correct(VALUE)",
+        "value = self.kf.predict()",
+        "clean = self.kf2.predict()",
+    ),
+    "array of a message": (
+        "self.a = Float64MultiArray()\nself.b = Float64MultiArray()",
+        "self.a.data.append(VALUE)",
+        "value = self.a.data[0]",
+        "clean = len(self.a.data) + sum(self.b.data)",
+    ),
     "walrus store": (
         "self.x = 0.0\nself.y = 0.0",
         "if (v := VALUE) is not None:\n    self.x = v",
@@ -354,7 +433,10 @@ BODY""",
 HEAD: Final = """import asyncio, copy, functools, heapq, json, queue, threading, time
 from collections import defaultdict, deque, namedtuple
 from concurrent.futures import Future
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
+from enum import Enum
+from operator import attrgetter
+import cv2
 import numpy as np
 import rospy
 from geometry_msgs.msg import Twist
@@ -375,6 +457,29 @@ class Store:
 
     def get(self):
         return self.x
+
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        return None
+
+
+class Side(Enum):
+    LEFT = 1
+    RIGHT = 2
+
+
+class Table:
+    def __init__(self):
+        self.entries = {"a": 0.0}
+
+    def __getitem__(self, key):
+        return self.entries[key]
+
+    def __setitem__(self, key, entry):
+        self.entries[key] = entry
 
 
 class Filter:
