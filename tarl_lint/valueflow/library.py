@@ -183,6 +183,8 @@ class Library(States):
     def _unknown_method(
         self, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
     ) -> Value:
+        if name == "join" and not base.pts:
+            arguments = self.keys_joined(arguments, frame, call)
         self.call_back(arguments, frame, call)
         if catalog.LEARNING.match(name) and base.pts and all(o.kind == "lib" for o in base.pts):
             self._insert(base, [Value(self.all_used(arguments))], frame, call)

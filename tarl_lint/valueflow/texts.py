@@ -7,9 +7,10 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any, Final
 
+from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.futures import Futures
 from tarl_lint.valueflow.machine import Arguments, Invocation
-from tarl_lint.valueflow.values import MAX_TEXTS, UNKNOWN, Consts, Value
+from tarl_lint.valueflow.values import MAX_TEXTS, UNKNOWN, Consts, Frame, Value
 
 TEXT_METHODS: Final = frozenset(
     [
@@ -41,6 +42,16 @@ class Texts(Futures):
             ),
             [base, *plain, *named.values()],
         )
+
+    def keys_joined(self, arguments: Arguments, frame: Frame, call: ir.Call) -> Arguments:
+        """Return what `text.join(mapping)` joins: its keys, whatever they stand for."""
+        given = [
+            Value(self.membership(v, frame, ("joined", call.slot)))
+            if any(o.kind == "mapping" for o in v.pts)
+            else v
+            for v in arguments[0]
+        ]
+        return given, arguments[1]
 
     def _made(self, function: Callable[..., object], values: Sequence[Value]) -> Consts:
         """Return the texts that a function makes of all that the values may be, the first being a text."""
