@@ -71,7 +71,7 @@ class Cache:
 
     def put(self, key: str, report: Report) -> None:
         """Store a report, unless a mistake of ours is in it: the next version may do better."""
-        if not any(error.bug for error in report.errors):
+        if self._file is not None and not any(error.bug for error in report.errors):
             self._used[key] = [_packed(report.findings), _packed(report.errors), report.hurried]
 
     def plan(self, key: str) -> Sequence[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 MAX_CALLS = 24  # nested calls that are told apart; deeper ones are taken for library calls
 MAX_FRAMES = 20_000  # activations in all
-MAX_STATEMENTS = 20_000  # executed in one run of a root; then calls are taken for library calls
+MAX_STATEMENTS = 10_000  # executed in one run of a root; then calls are taken for library calls
 MANY = 4_000  # statements in one run of a root, after which no function runs often
 OFTEN = 8  # runs of one function in one run of a root that is as long as that
 PATIENCE = 40_000  # statements in all; then what did not run yet runs once, and at twice as many nothing more
@@ -14,4 +14,5 @@ HASTE = 400  # statements in one run of a root after that
 MAX_ROUNDS = 40  # of what runs on its own
 LARGE = 500  # statements in the last run of a root that waits until smaller ones have nothing to do
 EXCHANGED = 40  # values that a root shares while it waits, in the time of a statement
-MAX_GENERATIONS = 2  # of threads and callbacks that start themselves anew
+MAX_GENERATIONS = 1  # of threads and callbacks that start themselves anew
+MAX_ALIKE = 6  # objects of a class for which a thread or a framework runs a method

@@ -9,7 +9,7 @@ from typing import Final
 from tarl_lint import catalog
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE, ROOT_CALL
-from tarl_lint.valueflow.bounds import MAX_GENERATIONS
+from tarl_lint.valueflow.bounds import MAX_ALIKE, MAX_GENERATIONS
 from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.ends import Kind, Publisher, SourceRecord
 from tarl_lint.valueflow.graph import Place
@@ -206,7 +206,7 @@ class Sources(Sinks):
         """Run a function on its own with these arguments; `answer` takes what it returns."""
         root = Root((key, target.kind, target.key), kind, target.name, kind == "thread", _function(target))
         root.maker = self.store.root
-        if root.function is not None and root.generations() > MAX_GENERATIONS:
+        if root.key not in self.roots and self._too_many(root, key):
             return
         before = self.passed.get(root.key, [])
         values = [join(a, b) for a, b in zip_longest(before, values, fillvalue=BOTTOM)]
@@ -225,6 +225,17 @@ class Sources(Sinks):
             self.call_object(target, (list(values), dict(named)), frame, ROOT_CALL)
 
         self.add_root(root, run, news=news)
+
+    def _too_many(self, root: Root, key: Hashable) -> bool:
+        """Tell whether a function runs on its own often enough: for itself, or for other objects of a class."""
+        if root.function is None:
+            return False
+        if root.generations() > MAX_GENERATIONS:
+            return True
+        if root.kind != "thread" and key != "framework":
+            return False
+        count = self.alike[root.function] = self.alike.get(root.function, 0) + 1
+        return count > MAX_ALIKE
 
     def root_frame(self, root: Root) -> Frame:
         """Return the frame that stands for ROS itself, calling."""

@@ -12,7 +12,7 @@ from tarl_lint.cli import main
 from tarl_lint.config import Config
 from tarl_lint.source import Module
 from tarl_lint.taint import Tracer
-from tarl_lint.valueflow.bounds import LEISURE, PATIENCE
+from tarl_lint.valueflow.bounds import LEISURE, MAX_GENERATIONS, PATIENCE
 from tarl_lint.valueflow.link import Linker
 
 MOST = 2.5 * PATIENCE  # statements that any program may take
@@ -157,6 +157,43 @@ def test_analysing_leaves_nothing_behind_that_holds_itself():
         gc.set_debug(0)
         gc.garbage.clear()
     assert ours == set()
+
+
+RESTARTS = """
+import threading
+import rospy
+from std_msgs.msg import Float64
+
+class Watchdog:
+    def __init__(self, topic):
+        self.topic, self.last = topic, 0.0
+        self.pub = rospy.Publisher(topic, Float64, queue_size=1)
+        rospy.Subscriber("in", Float64, self.heard)
+
+    def heard(self, msg):
+        self.last = msg.data
+
+    def start(self):
+        threading.Thread(target=self.watch).start()
+
+    def watch(self):
+        while not rospy.is_shutdown():
+            self.pub.publish(Float64(self.last))
+            rospy.sleep(1.0)
+            again = Watchdog(self.topic)
+            again.start()
+
+Watchdog("out").start()
+"""
+
+
+def test_a_thread_that_starts_itself_anew_comes_to_an_end():
+    machine = work(RESTARTS)
+    flows = Tracer(machine).flows()
+    assert [(f.kind, f.source.topics, f.sink.topics) for f in flows] == [("explicit", ("in",), ("out",))]
+    threads = [root for root, _ in machine.roots.values() if root.kind == "thread"]
+    assert 1 < len(threads) <= 1 + MAX_GENERATIONS
+    assert machine.total < 1_000
 
 
 def test_conditions_that_no_source_decides_lead_to_nothing():
