@@ -13,8 +13,9 @@ from tarl_lint.valueflow.ends import Publisher
 from tarl_lint.valueflow.futures import READERS
 from tarl_lint.valueflow.heap import ANY
 from tarl_lint.valueflow.machine import Arguments, Invocation
+from tarl_lint.valueflow.signals import Signals
 from tarl_lint.valueflow.special import FUNCTIONS
-from tarl_lint.valueflow.states import LATER, States
+from tarl_lint.valueflow.states import LATER
 from tarl_lint.valueflow.texts import TEXT_METHODS
 from tarl_lint.valueflow.userdata import MACHINE_FIELD
 from tarl_lint.valueflow.values import (
@@ -30,8 +31,10 @@ from tarl_lint.valueflow.values import (
 )
 from tarl_lint.wrapping import facts
 
+SIGNALLING = frozenset(["connect", "emit"])
 
-class Library(States):
+
+class Library(Signals):
     """Performs calls of functions, classes and methods that are not analysed."""
 
     def call_library(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
@@ -186,6 +189,8 @@ class Library(States):
         if name == "join" and not base.pts:
             arguments = self.keys_joined(arguments, frame, call)
         self.call_back(arguments, frame, call)
+        if name in SIGNALLING:
+            self.signal(base, name, arguments, frame, call)
         if catalog.LEARNING.match(name) and base.pts and all(o.kind == "lib" for o in base.pts):
             self._insert(base, [Value(self.all_used(arguments))], frame, call)
         written = catalog.METHODS_WRITING.get(name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE
 from tarl_lint.valueflow.heap import item_field
+from tarl_lint.valueflow.machine import Arguments
 from tarl_lint.valueflow.ros import Ros
 from tarl_lint.valueflow.values import BOTTOM, Frame, Obj, Value, const, join, pointer
 
@@ -12,8 +13,29 @@ ITERATED = -2  # slots of the calls that a loop makes
 NEXT = -3
 
 
+ITERATING = frozenset(
+    f"builtins.{name}"
+    for name in (
+        "list", "tuple", "set", "frozenset", "sorted", "iter", "sum", "min", "max", "any", "all", "enumerate", "zip",
+        "map", "filter",
+    )
+) | {"collections.deque", "numpy.array", "numpy.asarray"}  # fmt: skip
+
+
 class Taking(Ros):
     """Gives the parts of values."""
+
+    def call_library(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+        """Call a function or class of a library; those that go over objects of ours ask these for iterators."""
+        if qualified in ITERATING:
+            arguments = [self._gone_over(v, frame, call) for v in arguments[0]], arguments[1]
+        return super().call_library(qualified, arguments, frame, call)
+
+    def _gone_over(self, value: Value, frame: Frame, call: ir.Call) -> Value:
+        if not any(o.kind == "instance" and self._iterator(o) is not BOTTOM for o in value.pts):
+            return value
+        given = self.iterated(value, ir.Const(None, call.pos), frame)
+        return self.listed_parts(given, frame, f"{call.slot}")
 
     def parts(self, value: Value, count: int, starred: int | None, frame: Frame, slot: str) -> list[Value]:
         """Return what each of several targets gets; the starred one gets a sequence."""
