@@ -40,7 +40,7 @@ class Evaluation(Displays):
     def _constant(self, expr: ir.Const, frame: Frame) -> Value:  # noqa: ARG002 - one signature for all
         if expr.known is None:
             expr.known = const(expr.value)
-        return expr.known  # type: ignore[return-value] - a Value, which ir.py must not know
+        return expr.known  # type: ignore[return-value]  # a Value, which ir.py must not know
 
     def _name(self, expr: ir.Name, frame: Frame) -> Value:
         value = self.store.get((self.holder(expr, frame), expr.name))
