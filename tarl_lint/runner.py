@@ -84,7 +84,8 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
     scripts, unread = read(discovery.files, options.stdin, tell)
     report = _examine(scripts, options, config, tell)
     errors = tuple(sorted((*unread, *report.errors), key=lambda e: (e.path, e.line)))
-    broken = {error.path for error in errors if not error.bug}
+    found_in = {finding.span.path for finding in report.findings}
+    broken = {error.path for error in errors if not error.bug} - found_in
     texts = {script.path: script.text for script in scripts if script.path not in broken}
     identities = _Identities(discovery.files, config)
     wanted = tuple(identities.mark(f) for f in report.findings if config.enabled(f.code))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.bounds import MAX_STATEMENTS
 from tarl_lint.valueflow.raising import Raising
 from tarl_lint.valueflow.store import Delta
 from tarl_lint.valueflow.values import (
@@ -65,8 +66,8 @@ class Branches(Raising):
             frame.jumps.pop()
             self.store.cut(depth)
             again = self.joined([head, *backs]) if backs else head
-            if again == head:
-                break
+            if again == head or self.spent > MAX_STATEMENTS:
+                break  # loops in loops in loops take as many passes as all of theirs multiplied
             head = again
         return self._loop_end(s, done, table["break"], frame)
 

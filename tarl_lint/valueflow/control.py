@@ -1,7 +1,7 @@
 """Control dependence inside one function, after Ferrante, Ottenstein and Warren (TOPLAS 1987).
 
 Termination-insensitive: what follows a loop does not depend on the loop's condition. Exceptions come only
-from `raise`. Sets of statements are bit masks.
+from `raise`.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.postdominance import EXIT, passed, postdominators
 
 Branch = tuple[int, str]  # number of the deciding statement, the way it went
 
 Raising = Mapping[int, Iterable[str]]
 
-EXIT = 0
 NEAR: Final = 100  # branches that a statement is told of; those tell of the ones before them
 NOTHING_RAISES: Raising = {}
 ALL: Final = frozenset(["Exception", "BaseException"])
@@ -73,11 +73,14 @@ def control_dependence(body: Sequence[ir.Stmt], raising: Raising = NOTHING_RAISE
     graph = _Graph(raising=raising)
     entry = _block(graph, body, EXIT, _Exits())
     order = _reachable(graph, [entry, *(begin for _, begin in graph.finals)])
-    after = _postdominators(graph, order)
-    direct = _direct(graph, order, after)
+    if not graph.finals and all(len(graph.edges[n]) < 2 for n in order):
+        nothing = dict.fromkeys(order, frozenset[Branch]())
+        return Control(nothing, nothing, frozenset(), frozenset(order))
+    nearest = postdominators(graph.edges, order)
+    direct = _direct(graph, order, nearest)
     for attempt, _ in reversed(graph.finals):
         _run_anyway(attempt, direct)
-    always = frozenset(n for n in order if after.get(entry, 0) >> n & 1)
+    always = frozenset(passed(entry, EXIT, nearest))
     closed = _closure(direct)
     far = frozenset(n for n, branches in closed.items() if len(branches) >= NEAR)
     return Control(direct, closed, far, always)
@@ -214,47 +217,17 @@ def _reachable(graph: _Graph, entries: Sequence[int]) -> list[int]:
     return list(seen)
 
 
-def _postdominators(graph: _Graph, order: Sequence[int]) -> dict[int, int]:
-    """Return for each statement the mask of those that every way to the exit passes, itself included."""
-    everything = 1
-    for node in order:
-        everything |= 1 << node
-    after = dict.fromkeys(order, everything)
-    after[EXIT] = 1
-    changed = True
-    while changed:
-        changed = False
-        for node in reversed(order):
-            common = everything
-            for target in graph.edges[node].values():
-                common &= after[target]
-            common |= 1 << node
-            if common != after[node]:
-                after[node], changed = common, True
-    return after
-
-
-def _direct(graph: _Graph, order: Sequence[int], after: Mapping[int, int]) -> dict[int, frozenset[Branch]]:
+def _direct(graph: _Graph, order: Sequence[int], nearest: Mapping[int, int]) -> dict[int, frozenset[Branch]]:
     """Statement n depends on branch (a, b) when n follows every way from b but not every way from a."""
     found: dict[int, set[Branch]] = {n: set() for n in order}
     for node in order:
         ways = graph.edges[node]
         if len(ways) < 2:
             continue
-        strict = after[node] & ~(1 << node)
         for way, target in ways.items():
-            for dependent in _members(after[target] & ~strict):
-                if dependent in found:
-                    found[dependent].add((node, way))
+            for dependent in passed(target, nearest[node], nearest):
+                found[dependent].add((node, way))
     return {n: frozenset(branches) for n, branches in found.items()}
-
-
-def _members(mask: int) -> Iterator[int]:
-    """Yield the numbers in a set."""
-    while mask:
-        lowest = mask & -mask
-        yield lowest.bit_length() - 1
-        mask ^= lowest
 
 
 def _closure(direct: Mapping[int, frozenset[Branch]]) -> dict[int, frozenset[Branch]]:

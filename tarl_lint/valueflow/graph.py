@@ -10,6 +10,8 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.values import Branches, Frame, Nodes
 
 MAX_NODES = 15_000  # after which content is taken to arrive as it is, too
+MAX_EDGES = 200_000  # of data; then few of very many values that meet in one are followed
+FEW = 8
 MAX_CARRIED = 500  # content times carriers; beyond that, content is taken to arrive as it is
 
 
@@ -48,6 +50,7 @@ class Graph:
     arriving: dict[tuple[int, int], None] = field(
         default_factory=dict
     )  # (node of a carrier, what it carries)
+    edges: int = 0  # of data
     grown: int = 0  # how often something new was inside an object that was passed on
     live: set[int] = field(default_factory=set)  # nodes that sources lead to, by data or by decisions
     onward: dict[int, list[int]] = field(default_factory=dict)  # where nodes lead that are not live yet
@@ -69,12 +72,13 @@ class Graph:
         """Let data of `deps` reach `node`, and the choice that was made for them."""
         edges = self.data[node]
         mine = self.branches[node]
-        for dep in deps:
+        for dep in deps if self.edges < MAX_EDGES else islice(deps, FEW):
             if dep == node:
                 self.depend(node, [branch[0] for branch in mine])  # how often it ran is a choice, too
             if dep in edges or dep == node:
                 continue
             edges.add(dep)
+            self.edges += 1
             self._lead(dep, node)
             theirs = self.branches[dep]
             if theirs and not theirs <= mine:

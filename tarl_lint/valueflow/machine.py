@@ -16,7 +16,7 @@ from tarl_lint.valueflow.bounds import (
 )
 from tarl_lint.valueflow.control import Branch, Control, control_dependence
 from tarl_lint.valueflow.ends import SinkRecord, SourceRecord
-from tarl_lint.valueflow.graph import Graph, Place
+from tarl_lint.valueflow.graph import MAX_EDGES, Graph, Place
 from tarl_lint.valueflow.lower import lower_body
 from tarl_lint.valueflow.store import Root, Shared, Store
 from tarl_lint.valueflow.values import BOTTOM, NONE, Branches, Frame, Key, Nodes, Obj, Value
@@ -102,7 +102,7 @@ class Machine:
     @property
     def hurried(self) -> bool:
         """Tell whether there was too much to follow everything to its end."""
-        return self.total > PATIENCE
+        return self.total > PATIENCE or self.graph.edges >= MAX_EDGES
 
     # --- places -----------------------------------------------------------------------------------------
 

@@ -1,4 +1,5 @@
 import ast
+import tracemalloc
 from textwrap import dedent
 
 import pytest
@@ -118,3 +119,16 @@ def test_what_many_conditions_decide_takes_no_more_for_each():
     control = control_dependence(body)
     assert max(map(len, control.closure.values())) <= 2 * NEAR
     assert control.far
+
+
+def test_control_dependence_takes_no_more_memory_than_there_are_statements():
+    body = ast.parse("x = 0\n" + "if x:\n    x = 1\n" * 5_000)
+    program = lower_module(Module("node.py", "node", "", body))
+    tracemalloc.start()
+    try:
+        control = control_dependence(program.body)
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert len(control.always) == 5_001
+    assert most < 1_000 * 10_001

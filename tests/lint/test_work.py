@@ -13,6 +13,7 @@ from tarl_lint.config import Config
 from tarl_lint.source import Module
 from tarl_lint.taint import Tracer
 from tarl_lint.valueflow.bounds import LEISURE, MAX_GENERATIONS, PATIENCE
+from tarl_lint.valueflow.graph import MAX_EDGES
 from tarl_lint.valueflow.link import Linker
 
 MOST = 2.5 * PATIENCE  # statements that any program may take
@@ -220,3 +221,29 @@ rospy.Subscriber("a", Float64, on)
 def test_a_program_does_not_run_again_for_what_it_did_itself():
     text = "import rospy\nx = []\nfor i in range(3):\n    x.append([i])\nprint(x, rospy.Publisher('a', F))\n"
     assert work(text).total < 20
+
+
+def callback(body: str) -> str:
+    return (
+        "import rospy\nfrom std_msgs.msg import Float64\n"
+        "pub = rospy.Publisher('/out', Float64, queue_size=1)\n"
+        f"def on_value(msg):\n    x = msg.data\n{body}    pub.publish(x)\n"
+        "rospy.Subscriber('/in', Float64, on_value)\n"
+    )
+
+
+@pytest.mark.parametrize(
+    "again", ["    if x > 1:\n        x = x + 1\n", "    for i in range(9):\n        x = x + i\n"]
+)
+def test_a_value_that_may_have_been_changed_a_thousand_times_has_a_bounded_number_of_edges(again):
+    machine = work(callback(again * 1_500))
+    assert machine.graph.edges < 1.2 * MAX_EDGES
+    assert machine.hurried
+    assert len(Tracer(machine).flows()) == 1
+
+
+def test_loops_in_loops_take_a_bounded_number_of_passes():
+    nested = "".join(f"{'    ' + ' ' * depth}for x in range(int(x)):\n" for depth in range(12))
+    machine = work(callback(f"{nested}{' ' * 17}x = x + 1\n"))
+    assert machine.total < MOST
+    assert len(Tracer(machine).flows()) == 1
