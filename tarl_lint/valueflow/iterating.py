@@ -122,3 +122,20 @@ class Iterating(Calls):
             return elements
         said = self.call_value(key, ([elements], {}), it.frame, it.call)
         return Value(elements.deps | self.use(said), elements.pts, elements.consts)
+
+    def asked(self, it: Invocation) -> Value:
+        """Return what `bool(x)`, `any(xs)` and `all(xs)` say: whether something is there is no data of it."""
+        if not it.arguments[0]:
+            return UNKNOWN
+        value = it.arguments[0][0]
+        known, constant = value.constant()
+        if it.name == "bool" and known:
+            return Value(value.deps, consts=frozenset([bool(constant)]))
+        parts, deps = [value], NONE
+        if it.name != "bool":
+            each = self.unpacked(value)
+            parts = each if each is not None else [self.elements(value)]
+            deps = value.deps if each is not None else self.length(value)
+        for number, part in enumerate(parts):
+            deps |= self.truth(part, it.frame, (it.name, it.call.slot, number))
+        return Value(deps)

@@ -292,6 +292,7 @@ BUILTIN: Mapping[str, Callable[..., Value]] = {
     "type": Library.type_of,
     **dict.fromkeys(("isinstance", "issubclass", "hasattr", "callable"), Library.of_type),
     "len": Library._counted,
+    **dict.fromkeys(("bool", "any", "all"), Library.asked),
     "str": Library.as_text,
     **dict.fromkeys(catalog.SAME_TEXT, Library.same_text),
     **dict.fromkeys(catalog.PATH_JOINS, Library.joined_path),

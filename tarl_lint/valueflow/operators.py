@@ -81,6 +81,9 @@ class Operators(Presence):
             return self.length(value)
         if name == "type":
             return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in OURS)))
+        if name == "none in":
+            parts = self.unpacked(value) or [self.elements(value)]
+            return frozenset().union(*(self.tested("is none", p, frame, slot) for p in parts))
         if name in MEMBER and slot[1] == 1:
             return self.membership(value, frame, slot)
         if name in ("is", "is none"):
@@ -188,6 +191,9 @@ class Operators(Presence):
 
 def _asked(expr: ir.Operation) -> str:
     """Return an operator's name, of `is` whether it asks for None: a field of a message may be True or a number."""
+    first = expr.parts[0]
+    if expr.operator in MEMBER and isinstance(first, ir.Const) and first.value is None:
+        return "none in"
     if expr.operator not in ("is", "is not"):
         return expr.operator
     return "is none" if any(isinstance(p, ir.Const) and p.value is None for p in expr.parts) else "is"
