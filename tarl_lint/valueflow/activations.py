@@ -8,8 +8,9 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.bounds import ALL_LEISURE, LEISURE, MANY, MAX_CALLS, MAX_FRAMES, OFTEN
 from tarl_lint.valueflow.evaluate import Evaluation
 from tarl_lint.valueflow.heap import item_field
+from tarl_lint.valueflow.leftovers import lasting
 from tarl_lint.valueflow.machine import Arguments
-from tarl_lint.valueflow.store import BORN, Delta
+from tarl_lint.valueflow.store import BORN
 from tarl_lint.valueflow.values import (
     BOTTOM,
     NONE,
@@ -112,7 +113,7 @@ class Activations(Evaluation):
         if frame.escapes:
             self.escaped(frame, caller)
         self.store.cut(depth)
-        self.merge([_lasting(d, frame) for d, _ in frame.returns] or [{}])
+        self.merge([lasting(d, frame, _handed(frame, v), self.given) for d, v in frame.returns] or [{}])
         if frame.function.generator:
             collected = self.allocate("sequence", caller, ("generator", call.slot))
             self.add_element(pointer(collected), frame.yielded)
@@ -254,11 +255,10 @@ class Activations(Evaluation):
         """Tell who runs methods of such objects on their own (threads)."""
 
 
-def _lasting(delta: Delta, frame: Frame) -> Delta:
-    """Return what is left of the changes of an activation when its local variables are gone."""
-    if frame.captured:
-        return delta
-    return {key: value for key, value in delta.items() if key[0] is not frame}
+def _handed(frame: Frame, returned: Value) -> list[Obj]:
+    """Return the objects that a function hands out by other ways than by storing them."""
+    raised = (o for escape in frame.escapes for o in escape.value.pts)
+    return [*returned.pts, *frame.yielded.pts, *raised]
 
 
 def carries(arguments: Arguments) -> bool:

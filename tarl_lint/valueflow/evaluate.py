@@ -38,9 +38,10 @@ class Evaluation(Displays):
         return value
 
     def _constant(self, expr: ir.Const, frame: Frame) -> Value:  # noqa: ARG002 - one signature for all
-        if expr.known is None:
-            expr.known = const(expr.value)
-        return expr.known  # type: ignore[return-value]  # a Value, which ir.py must not know
+        known: Value | None = expr.known
+        if known is None:
+            known = expr.known = const(expr.value)
+        return known
 
     def _name(self, expr: ir.Name, frame: Frame) -> Value:
         value = self.store.get((self.holder(expr, frame), expr.name))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 Pos = tuple[int, int, int, int]  # line, column, end line, end column as `ast` counts them
 Scope = Literal["local", "free", "global"]
@@ -18,7 +18,7 @@ class Const:
 
     value: object
     pos: Pos
-    known: object = None
+    known: Any = None
 
 
 @dataclass(slots=True, eq=False)

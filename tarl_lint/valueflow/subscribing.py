@@ -13,6 +13,7 @@ from tarl_lint.valueflow.bounds import MAX_ALIKE, MAX_GENERATIONS
 from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.ends import Kind, Publisher, SourceRecord
 from tarl_lint.valueflow.graph import Place
+from tarl_lint.valueflow.leftovers import together
 from tarl_lint.valueflow.machine import Invocation
 from tarl_lint.valueflow.publishing import Sinks, type_names
 from tarl_lint.valueflow.states import LATER
@@ -212,6 +213,7 @@ class Sources(Sinks):
         values = [join(a, b) for a, b in zip_longest(before, values, fillvalue=BOTTOM)]
         news = bool(before) and values != before
         self.passed[root.key] = values
+        self.given |= together([target, *(o for v in (*values, *named.values()) for o in v.pts)])
 
         def run(root: Root) -> None:
             frame = self.root_frame(root)
