@@ -10,6 +10,7 @@ from typing import Final
 
 from tarl_lint.cache import Cache, Report, digest
 from tarl_lint.config import Config
+from tarl_lint.interrupts import end_silently, uninterrupted
 from tarl_lint.memory import without_collection
 from tarl_lint.progress import Tell, silent
 from tarl_lint.relevance import groups
@@ -100,10 +101,15 @@ def _in_processes(tasks: Sequence[Task], config: Config, workers: int, tell: Tel
 
     tell(f"Analysing in {workers} processes")
     order = sorted(range(len(tasks)), key=lambda number: -tasks[number].lines)
-    with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
+    with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), end_silently) as pool:
         chunk = 1 + len(tasks) // (workers * 16)
-        done = pool.map(partial(perform, config=config), [tasks[n] for n in order], chunksize=chunk)
-        reports = dict(zip(order, done, strict=True))
+        with uninterrupted():
+            done = pool.map(partial(perform, config=config), [tasks[n] for n in order], chunksize=chunk)
+        try:
+            reports = dict(zip(order, done, strict=True))
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     yield from (reports[number] for number in range(len(tasks)))
 
 

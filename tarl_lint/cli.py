@@ -51,6 +51,10 @@ def _guarded(arguments: Sequence[str] | None) -> int:
         print(f"tarl-lint: {error}", file=sys.stderr)
         return UNUSABLE
     except KeyboardInterrupt:
+        if arguments is None:
+            from tarl_lint.interrupts import over
+
+            over()
         print("tarl-lint: interrupted.", file=sys.stderr)
         return INTERRUPTED
 

@@ -92,6 +92,10 @@ def _whole(place: Path) -> bytes | None:
 
 def read(path: str, data: bytes, name: str) -> Script | SourceError:
     """Decode as PEP 263 says. Never raises."""
+    if path.endswith(".ipynb"):
+        return SourceError(
+            path, 1, "This is a notebook: lint what jupyter nbconvert --to script makes of it."
+        )
     decoded = _decode(path, data)
     if isinstance(decoded, SourceError):
         return decoded

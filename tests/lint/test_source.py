@@ -53,3 +53,9 @@ def test_a_package_is_told_from_a_module():
     module = parse("pkg/__init__.py", b"", "pkg")
     assert isinstance(module, Module)
     assert module.is_package
+
+
+def test_a_notebook_is_named_as_one_though_its_text_may_pass_for_python():
+    error = parse("a.ipynb", b'{"cells": []}', "a")
+    assert isinstance(error, SourceError)
+    assert "jupyter nbconvert --to script" in error.message
