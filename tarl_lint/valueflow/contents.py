@@ -42,8 +42,11 @@ class Contents(Storing):
         self.spent += (looks + self.graph.asked) // LOOKS
         self.graph.asked %= LOOKS
 
-    def _deep(self, obj: Obj, known: dict[Obj, Nodes], depth: int) -> Nodes:
-        """Return what is inside one object. What holds itself is left out at the second time."""
+    def _deep(self, obj: Obj, known: dict[Obj, Nodes], depth: int, *, counted: bool = False) -> Nodes:
+        """Return what is inside one object. What holds itself is left out at the second time.
+
+        `counted`: what may be anywhere in the object that it is part of was found there.
+        """
         if obj.kind in HOLLOW or depth > MAX_NESTING:
             return NONE
         if not obj.laden:
@@ -57,7 +60,9 @@ class Contents(Storing):
             return NONE
         self.store.look(obj)
         replaced = self.replaced(obj, self.defined(obj))
-        found = set() if replaced else set(self.content(obj).deps)
+        found: set[int] = set()
+        if not replaced and (not counted or ANY in obj.fields):
+            found |= self.content(obj).deps
         for name in list(obj.fields):
             value = self.store.get((obj, name)) if name != ANY or not replaced else None
             if value is not None:
@@ -66,7 +71,7 @@ class Contents(Storing):
                     found |= self._behind(value, known, depth + 1)
         for name, sub in list(obj.subs.items()):
             if sub is not obj and self.store.get((obj, name)) is None:
-                found |= self._deep(sub, known, depth + 1)
+                found |= self._deep(sub, known, depth + 1, counted=not replaced)
         known[obj] = inside = frozenset(found)
         return inside
 

@@ -44,7 +44,8 @@ class Evaluation(Displays):
         return known
 
     def _name(self, expr: ir.Name, frame: Frame) -> Value:
-        value = self.store.get((self.holder(expr, frame), expr.name))
+        holder = frame if expr.scope == "local" and frame.cls is None else self.holder(expr, frame)
+        value = self.store.get((holder, expr.name))
         if value is not None:
             return value
         if expr.scope == "local" and not frame.owner_class():

@@ -89,8 +89,7 @@ class Heap(Userdata):
         if name in METHODS_OF.get(kind, ()):
             return self.held_method(obj, name)
         if kind in ("message", "lib", "goal"):
-            content = self.content(obj)
-            if content.pts and name.startswith("["):
+            if name.startswith("[") and (content := self.content(obj)).pts:
                 return content
             if kind == "lib" and obj.info is not BY_CLASS and name in MEASURES:
                 return Value(self.deep(frozenset([obj])))
@@ -214,6 +213,9 @@ class Heap(Userdata):
 
     def read(self, base: Value, name: str) -> Value:
         """Return a field read through a pointer, as it arrives through all who passed the pointer on."""
+        if len(base.pts) == 1:
+            (obj,) = base.pts
+            return self.arrive(self.read_field(obj, name), base.deps)
         result = Value(base.deps, consts=frozenset())
         for obj in base.pts:
             value = self.read_field(obj, name)
@@ -241,6 +243,8 @@ class Heap(Userdata):
 
     def arrive(self, value: Value, carriers: Nodes) -> Value:
         """Return a field's value with the carriers of the pointer it was read through."""
+        if not carriers:
+            return value
         deps = self.graph.through(value.deps, carriers) | carriers
         return Value(deps, value.pts, value.consts)
 

@@ -309,7 +309,7 @@ class Linker(Execution):
     def default(self, obj: Obj, name: str) -> Value:
         """Return a field to which nothing was stored; of a package, its modules."""
         value = super().default(obj, name)
-        if obj.kind == "module" and value is BOTTOM:
+        if value is BOTTOM and obj.kind == "module":
             inner = self.module_objects.get(f"{obj.name}.{name}")
             return pointer(inner) if inner is not None else UNKNOWN
         return value
