@@ -7,8 +7,14 @@ from pathlib import Path
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a file under another name and rename it, so that nobody ever reads half of it."""
+    """Write a file under another name and rename it, so that nobody ever reads half of it.
+
+    What is no file, as a device or a pipe, is written to and never replaced.
+    """
     target = path.resolve()  # through a link, not over it
+    if target.exists() and not target.is_file():
+        target.write_text(text, encoding="utf-8", errors="surrogateescape", newline="\n")
+        return
     temporary = target.with_name(f".{target.name}.{os.getpid()}.{os.urandom(4).hex()}")
     descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
     try:
