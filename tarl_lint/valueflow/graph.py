@@ -47,6 +47,7 @@ class Graph:
     carried: dict[int, tuple[int, int]] = field(
         default_factory=dict
     )  # node → who passed on what inside an object
+    passed_on: dict[tuple[int, int], int] = field(default_factory=dict)  # (carrier, item) → its node of that
     arriving: dict[tuple[int, int], None] = field(
         default_factory=dict
     )  # (node of a carrier, what it carries)
@@ -145,15 +146,21 @@ class Graph:
             return content
         self.asked += len(content) + len(carriers)
         found: set[int] = set()
-        rest = content
+        taken: set[int] = set()
         for carrier in carriers:
+            if carrier not in self.carried:
+                inside = self.held.get(carrier)
+                if inside:
+                    taken |= content & inside
+                    found.update([self._carry(carrier, item) for item in content & inside])
+                continue
             inside = self.held.get(self._first(carrier))
             for item in content & inside if inside else ():
                 arrived = self._by(carrier, item)
                 if arrived:
                     found |= arrived
-                    rest = rest - {item}
-        return rest | found if found else content
+                    taken.add(item)
+        return (content - taken) | found if found else content
 
     def _first(self, carrier: int) -> int:
         """Return who first held what arrives by a carrier: what was not inside then does not come this way."""
@@ -180,6 +187,9 @@ class Graph:
         What was passed on before is the same thing still, so there are no more such nodes than pairs of a
         carrier and a first maker.
         """
+        known = self.passed_on.get((carrier, item))
+        if known is not None:
+            return known
         origin = self.carried[item][1] if item in self.carried else item
         if carrier in (item, origin):
             return item
@@ -191,6 +201,7 @@ class Graph:
         self._lead(item, node)
         if item != node:
             self.arriving[node, item] = None
+        self.passed_on[carrier, item] = node
         return node
 
     def settle(self) -> None:
