@@ -10,7 +10,13 @@ from pathlib import Path
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write to a temporary file beside `path` and rename it, making folders as needed. Raises OSError."""
+    """Write to a temporary file beside `path` and rename it, making folders as needed. Raises OSError.
+
+    What is no file, as a device or a pipe, is written to and never replaced.
+    """
+    if path.exists() and not path.is_file():
+        path.write_bytes(content)
+        return
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:

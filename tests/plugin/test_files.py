@@ -1,0 +1,28 @@
+"""Reports and fixtures are written whole or not at all; what is no file is never replaced by one."""
+
+import os
+import stat
+import threading
+
+from pytest_tarl.files import write_atomically
+
+
+def test_a_file_is_replaced_whole(tmp_path):
+    target = tmp_path / "new" / "report.html"
+    write_atomically(target, b"old")
+    write_atomically(target, b"new")
+    assert target.read_bytes() == b"new"
+    assert [p.name for p in target.parent.iterdir()] == ["report.html"]
+
+
+def test_a_pipe_or_device_is_written_to_and_stays_what_it_is(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    read: list[bytes] = []
+    reader = threading.Thread(target=lambda: read.append(pipe.read_bytes()))
+    reader.start()
+    write_atomically(pipe, b"report")
+    reader.join(timeout=20)
+    assert read == [b"report"]
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+    assert [p.name for p in tmp_path.iterdir()] == ["pipe"]
