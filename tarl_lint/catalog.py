@@ -262,6 +262,10 @@ NODE_BASES: Final = frozenset(
     ]
 )  # fmt: skip
 
+SHAPED: Final = frozenset(
+    ["zeros_like", "ones_like", "empty_like", "full_like"]
+)  # functions that take of their first argument nothing but its shape
+
 LOGGING: Final = frozenset(
     ["debug", "info", "warn", "warning", "error", "fatal", "critical", "get_logger", "exception", "log"]
 )

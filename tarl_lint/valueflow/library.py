@@ -80,7 +80,8 @@ class Library(Signals):
     def generic(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
         """Pass the arguments on to the result; write the argument that the catalog says is written."""
         name = qualified.rpartition(".")[2]
-        deps = self.all_used(arguments)
+        shaped = name in catalog.SHAPED and qualified not in self.config.named
+        deps = self.all_used((arguments[0][1:], arguments[1]) if shaped else arguments)
         if qualified not in catalog.KEEPERS:
             self.call_back(arguments, frame, call)
         written = catalog.written(qualified)
