@@ -169,6 +169,6 @@ PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "via": _spans,
     "source": lambda packed: _unpacked(Source, packed),
     "sink": lambda packed: _unpacked(Sink, packed),
-    "steps": lambda packed: tuple(_unpacked(Step, step) for step in packed),
+    "steps": lambda packed: tuple(Step(SiteId(*site), Span(*span), *rest) for site, span, *rest in packed),
     "flow": lambda packed: None if packed is None else _unpacked(Flow, packed),
 }  # by the names of fields

@@ -93,9 +93,9 @@ class _Walk:
         """Search a directory that the user named."""
         self._search(directory, _ignores_above(directory))
 
-    def take(self, path: str) -> None:
-        """Add a file, unless it is there already under another name."""
-        real = os.path.realpath(path)
+    def take(self, path: str, real: str = "") -> None:
+        """Add a file, unless it is there already under another name. `real` is where it is without links, if known."""
+        real = real or os.path.realpath(path)
         if real in self._files and self._files[real] != path:
             self._duplicates += 1
         self._files.setdefault(real, path)
@@ -119,10 +119,9 @@ class _Walk:
         return Discovery(tuple(sorted(files, key=lambda f: f.shown)), notes)
 
     def _search(self, top: str, ignores: tuple[Ignore, ...]) -> None:
-        pending = [(top, ignores)]
+        pending = [(top, os.path.realpath(top), ignores)]
         while pending:
-            directory, above = pending.pop()
-            real = os.path.realpath(directory)
+            directory, real, above = pending.pop()
             if real in self._seen:
                 continue
             self._seen.add(real)
@@ -134,9 +133,9 @@ class _Walk:
                 if entry.is_symlink():
                     self._links += [(entry.path, inside)] if _is_directory(entry) or _is_python(entry) else []
                 elif _is_directory(entry):
-                    pending.append((entry.path, inside))
+                    pending.append((entry.path, _below(real, entry), inside))
                 else:
-                    self._file(entry)
+                    self._file(entry, _below(real, entry))
 
     def _entries(self, directory: str) -> list[os.DirEntry[str]]:
         try:
@@ -152,13 +151,18 @@ class _Walk:
             return True
         return gitignore.ignored(entry.path, (*ignores, self._excluded), is_directory=is_directory)
 
-    def _file(self, entry: os.DirEntry[str]) -> None:
+    def _file(self, entry: os.DirEntry[str], real: str) -> None:
         if _is_python(entry):
-            self.take(entry.path)
+            self.take(entry.path, real)
         if entry.name.endswith(_CPP):
             self._cpp += _mentions(entry.path, _CPP_NODE)
         elif entry.name.endswith(_LAUNCH):
             self._launch += _mentions(entry.path, (b"remap",))
+
+
+def _below(directory: str, entry: os.DirEntry[str]) -> str:
+    """Return where an entry that is no link is, in a directory that is reached without links."""
+    return f"{directory.rstrip('/')}/{entry.name}"
 
 
 def _absolute(path: Path) -> str:

@@ -6,6 +6,7 @@ import os
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
@@ -221,13 +222,16 @@ def _judge(
     files: Sequence[SourceFile], errors: Sequence[SourceError], config: Config
 ) -> Callable[[Accepted], bool]:
     """Return the test whether this run can know that an accepted flow is gone."""
-    unreadable = {error.path for error in errors}
-    analysed = {os.path.realpath(f.path) for f in files if f.shown not in unreadable}
     home = _home(config)
+
+    @lru_cache(maxsize=1)  # only baselines with entries ask
+    def analysed() -> set[str]:
+        unreadable = {error.path for error in errors}
+        return {os.path.realpath(f.path) for f in files if f.shown not in unreadable}
 
     def settled(name: str) -> bool:
         place = home / name
-        return os.path.realpath(place) in analysed or not place.exists()
+        return os.path.realpath(place) in analysed() or not place.exists()
 
     def judged(entry: Accepted) -> bool:
         return config.enabled(entry.fingerprint.code) and all(map(settled, entry.files))

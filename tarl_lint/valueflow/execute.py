@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.branches import Branches
-from tarl_lint.valueflow.control import control_dependence, raised
+from tarl_lint.valueflow.control import raised
+from tarl_lint.valueflow.defining import Defining
 from tarl_lint.valueflow.ends import Publisher
 from tarl_lint.valueflow.heap import item_field
 from tarl_lint.valueflow.lower import lower_body
 from tarl_lint.valueflow.machine import Invocation
 from tarl_lint.valueflow.presence import RETURNED
-from tarl_lint.valueflow.states import LATER
 from tarl_lint.valueflow.values import (
     ABSENT,
     BOTTOM,
     UNKNOWN,
-    ClassInfo,
     Escape,
     Frame,
     Obj,
@@ -25,11 +23,10 @@ from tarl_lint.valueflow.values import (
     const,
     join,
     lineage,
-    pointer,
 )
 
 
-class Execution(Branches):
+class Execution(Defining):
     """Executes statements. A block tells whether execution can go on after it."""
 
     def run(self, frame: Frame) -> Value:
@@ -212,106 +209,6 @@ class Execution(Branches):
             elif known and obj.kind == "mapping" and self.content(obj) is BOTTOM:
                 self.store.put((obj, item_field(key)), ABSENT)
 
-    # --- definitions --------------------------------------------------------------------------------------
-
-    def _define(self, s: ir.Define, frame: Frame) -> bool:
-        value = self.closure(s.function, frame, "def")
-        for decorator in s.function.decorators:
-            if (
-                isinstance(decorator, ir.Attribute)
-                and decorator.name == "setter"
-                and isinstance(s.target, ir.Name)
-            ):
-                self.setters.add(s.target.name)
-                self.store.put((self.holder(s.target, frame), f"{s.target.name}.setter"), value)
-                return True
-        self.assign(s.target, self.decorated(value, s.function.decorators, s, frame), frame)
-        return True
-
-    def decorated(self, value: Value, decorators: Sequence[ir.Expr], s: ir.Stmt, frame: Frame) -> Value:
-        """Return what decorators of ours make of a function or class; those of libraries leave it as it is.
-
-        One that is a method of a library's object, as `@server.route("/")`, hands it to that object, to be called.
-        """
-        for decorator in reversed(decorators):
-            wrapper = self.evaluate(decorator, frame)
-            maker = decorator.function if isinstance(decorator, ir.Call) else decorator
-            if isinstance(maker, ir.Attribute) and self._of_library(self.evaluate(maker.base, frame)):
-                for target in sorted((o for o in value.pts if o.kind in LATER), key=lambda o: o.number):
-                    self.call_later(target, ())
-            if any(self.wraps(o) for o in wrapper.pts):
-                call = ir.Call(decorator, (), (), s.pos, -1)
-                value = self.call_value(wrapper, ([value], {}), frame, call)
-        frame.statement = s
-        return value
-
-    def _of_library(self, value: Value) -> bool:
-        return bool(value.pts) and all(o.kind == "lib" for o in value.pts)
-
-    def wraps(self, obj: Obj) -> bool:
-        """Tell whether a decorator is one of ours; of classes those whose instances can be called."""
-        if obj.kind == "class":
-            return any(self.store.get((owner, "__call__")) is not None for owner in lineage(obj))
-        return obj.kind in ("closure", "bound", "partial") or (
-            obj.kind == "instance" and self.callable_held(obj)
-        )
-
-    def _class(self, s: ir.Class, frame: Frame) -> bool:
-        self.run_class(s, frame)
-        return True
-
-    def run_class(self, statement: ir.Class, frame: Frame) -> None:
-        """Execute a class statement: its body stores into the class."""
-        cls = self.intern("class", (frame.id, statement.id), statement.name)
-        info = ClassInfo(statement.name, statement.qualname, statement=statement, module=frame.program.name)
-        info.fields = statement.fields
-        for expr in statement.bases:
-            value = self.evaluate(expr, frame)
-            info.bases += sorted(
-                (o for o in value.pts if o.kind == "class" and o is not cls), key=lambda o: str(o.key)
-            )
-            info.external += [
-                o.name for o in value.pts if o.kind not in ("class",) and o.name != "builtins.object"
-            ]
-            if not value.pts:
-                info.external.append("?")
-        cls.info = info
-        body = Frame(
-            ("class", cls.key),
-            self.frame_number(("class", cls.key)),
-            frame.function,
-            frame.program,
-            frame.module,
-        )
-        body.cls, body.outer, body.base = cls, frame, self.branches(frame, statement)
-        body.control = statement.control = statement.control or control_dependence(statement.body)
-        body.caller, body.call = frame, statement
-        body.depth_of_layers = frame.depth_of_layers
-        self.block(statement.body, body)
-        frame.statement = statement
-        made = self.decorated(pointer(cls), statement.decorators, statement, frame)
-        self.assign(statement.target, made if made.pts else pointer(cls), frame)
-
-    def frame_number(self, key: object) -> int:
-        """Return a frame's number, the same at every run."""
-        return self.frame_numbers.setdefault(key, -2 - len(self.frame_numbers))
-
-    def _import(self, s: ir.Import, frame: Frame) -> bool:
-        importer = self.modules[frame.program.path]
-        for target, module, member in s.bindings:
-            if member == "*":
-                found = self.index.find(module, importer)
-                star = found.name if found is not None else module
-                if star not in frame.program.stars:
-                    frame.program.stars.append(star)
-            elif target is not None:
-                self.assign(target, self.imported(module, member, importer), frame)
-        return True
-
-    def imported(self, module: str, member: str | None, importer: object) -> Value:
-        """Return what an import binds: a module of ours, a name in one, or something of a library."""
-        raise NotImplementedError
-
 
 def _answer(s: ir.Return) -> ir.Call:
     """Return the call that ROS makes of what a handler returns."""
@@ -328,8 +225,8 @@ EXECUTE: Mapping[type, Callable[..., bool]] = {
     ir.Return: Execution._returned,
     ir.Raise: Execution._raised,
     ir.Jump: Execution._jump,
-    ir.Define: Execution._define,
-    ir.Class: Execution._class,
-    ir.Import: Execution._import,
+    ir.Define: Execution.define,
+    ir.Class: Execution.define_class,
+    ir.Import: Execution.import_names,
     ir.Delete: Execution._delete,
 }

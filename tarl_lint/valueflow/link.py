@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from tarl_lint import catalog
 from tarl_lint.config import Config
 from tarl_lint.relevance import mentioning
 from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.activations import ROOT_CALL
 from tarl_lint.valueflow.bounds import EXCHANGED, HASTE, LARGE, LEISURE, MAX_ROUNDS, MAX_STATEMENTS, PATIENCE
-from tarl_lint.valueflow.execute import Execution
 from tarl_lint.valueflow.lower import lower_module
-from tarl_lint.valueflow.starting import STARTING, definitions, registers, starts_node
 from tarl_lint.valueflow.store import Root, Store
-from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, ClassInfo, Frame, Obj, Value, lineage, pointer
+from tarl_lint.valueflow.uncalled import Uncalled
+from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, Frame, Obj, Value, pointer
 
 
-class Linker(Execution):
+class Linker(Uncalled):
     """Runs modules, then callbacks, timers, threads and main functions, until the shared memory is stable."""
 
     def __init__(
@@ -69,9 +66,9 @@ class Linker(Execution):
         self._settle()
         for _ in range(3):
             before = len(self.roots)
-            self._mains()
+            self.start_programs()
             self._settle()
-            self._frameworks()
+            self.start_hooks()
             self._settle()
             if len(self.roots) == before:
                 break
@@ -203,82 +200,6 @@ class Linker(Execution):
 
         self.add_root(root, run)
 
-    # --- what nothing in the files calls -------------------------------------------------------------------
-
-    def _mains(self) -> None:
-        """Run functions and make nodes that are there to be started from outside (entry points)."""
-        for program in list(self.programs.values()):
-            module = self.module_objects[program.name]
-            starts = STARTING.search(self.modules[program.path].text) is not None
-            for statement in definitions(program.body):
-                if isinstance(statement, ir.Define):
-                    if starts or statement.function.name == "main":
-                        self._main_function(statement, module)
-                elif starts:
-                    self._node_class(statement, program)
-
-    def _main_function(self, statement: ir.Define, module: Obj) -> None:
-        function = statement.function
-        if (function.module, function.pos[0]) in self.called or not starts_node(function):
-            return
-        for obj in self._values(module, function.name):
-            if obj.kind == "closure":
-                self._start(obj, "main")
-
-    def _values(self, holder: Obj, name: str) -> list[Obj]:
-        owners = self.shared.ends.get((holder, name), {})
-        return sorted({o for v in owners.values() for o in v.pts}, key=lambda o: str(o.key))
-
-    def _start(self, target: Obj, kind: str) -> None:
-        root = Root((kind, target.kind, target.key), kind, target.name, once=True)
-
-        def run(root: Root) -> None:
-            self.call_object(target, ([], {}), self.root_frame(root), ROOT_CALL)
-
-        self.add_root(root, run)
-
-    def _node_class(self, statement: ir.Class, program: ir.Program) -> None:
-        """Make an instance of a class that registers something and that nothing instantiates."""
-        for cls in self._values(self.module_objects[program.name], statement.name):
-            if cls.kind != "class" or cls.key in self.made or not registers(statement):
-                continue
-            if not self._has_made_heir(cls):
-                self._start(cls, "node")
-
-    def _has_made_heir(self, cls: Obj) -> bool:
-        return any(cls in lineage(self.objects["class", key]) for key in self.made)
-
-    def _frameworks(self) -> None:
-        """Run methods that a base class of a library may call: nothing in the files tells when."""
-        for obj in list(self.objects.values()):
-            if obj.kind != "instance" or not isinstance(obj.info, Obj):
-                continue
-            for owner in lineage(obj.info):
-                if isinstance(owner.info, ClassInfo) and owner.info.statement is not None:
-                    self._framework_methods(obj, owner, owner.info)
-
-    def _framework_methods(self, obj: Obj, owner: Obj, info: ClassInfo) -> None:
-        cls = obj.info.info if isinstance(obj.info, Obj) else None
-        external = _external(cls) if isinstance(cls, ClassInfo) else set()
-        unknown = external - catalog.NODE_BASES
-        for statement in info.statement.body if info.statement is not None else ():
-            if not isinstance(statement, ir.Define):
-                continue
-            name, function = statement.function.name, statement.function
-            hooked = (unknown and not name.startswith("_")) or (external and name.startswith("on_"))
-            hooked = hooked or (name == "run" and any("Thread" in e for e in external))
-            if not hooked or (function.module, function.pos[0]) in self.called:
-                continue
-            for closure in self._values(owner, name):
-                if closure.kind == "closure":
-                    state = name == catalog.RUNS_STATE and any(e.startswith(catalog.STATES) for e in external)
-                    self._start_method(closure, obj, owner, [self.userdata(obj)] if state else [])
-
-    def _start_method(self, closure: Obj, obj: Obj, owner: Obj, given: list[Value]) -> None:
-        method = self.intern("bound", (closure.key, obj), closure.name)
-        method.info = (closure, obj, owner)
-        self.call_when("framework", method, given, "callback")
-
     # --- imports ------------------------------------------------------------------------------------------
 
     def imported(self, module: str, member: str | None, importer: object) -> Value:
@@ -313,11 +234,3 @@ class Linker(Execution):
             inner = self.module_objects.get(f"{obj.name}.{name}")
             return pointer(inner) if inner is not None else UNKNOWN
         return value
-
-
-def _external(info: ClassInfo) -> set[str]:
-    found = set(info.external)
-    for base in info.bases:
-        if isinstance(base.info, ClassInfo):
-            found |= _external(base.info)
-    return found
