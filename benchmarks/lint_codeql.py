@@ -22,10 +22,11 @@ from tarl_lint import engine
 from tarl_lint.config import Config
 from tarl_lint.source import Module, parse
 from tarl_lint.taint import Tracer
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.ir import Expr, Pos, Stmt
 from tarl_lint.valueflow.link import Linker
 from tarl_lint.valueflow.machine import Machine
-from tarl_lint.valueflow.values import Frame, Value
+from tarl_lint.valueflow.values import Value
 
 TESTS = Path("python/ql/test/library-tests/dataflow")
 QUERY = "NormalDataflowTest.ql"

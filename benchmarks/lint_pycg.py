@@ -21,9 +21,10 @@ from pathlib import Path
 from tarl_lint.config import Config
 from tarl_lint.source import Module, parse
 from tarl_lint.valueflow.activations import ROOT_CALL
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.link import Linker
 from tarl_lint.valueflow.store import Root
-from tarl_lint.valueflow.values import Frame, Obj, pointer
+from tarl_lint.valueflow.values import Obj, pointer
 
 SNIPPETS = Path("micro-benchmark/snippets")
 

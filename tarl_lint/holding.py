@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.link import Linker
-from tarl_lint.valueflow.values import BOTTOM, NONE, Frame, Obj, Value, join
+from tarl_lint.valueflow.values import BOTTOM, NONE, Obj, Value, join
 
 MAX_VARIABLES = 400
 

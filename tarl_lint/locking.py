@@ -11,8 +11,9 @@ from tarl_lint.accesses import Access, accesses
 from tarl_lint.evidence import Evidence
 from tarl_lint.held import asked_before, in_loop, locks_around
 from tarl_lint.threads import EXECUTOR, MAIN, Threads
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.ir import Pos
-from tarl_lint.valueflow.values import Frame, Obj
+from tarl_lint.valueflow.values import Obj
 
 MADE: Final = re.compile(r"\b(R?Lock|Condition|(Bounded)?Semaphore)\(")
 State = tuple[object, str]  # an object with one of its attributes, or a module with one of its globals

@@ -9,10 +9,11 @@ from tarl_lint.holding import Holding, Origin, Origins
 from tarl_lint.model import Flow, Operand, SiteId
 from tarl_lint.operands import uses
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.link import Linker
 from tarl_lint.valueflow.machine import Machine
 from tarl_lint.valueflow.sites import Texts
-from tarl_lint.valueflow.values import Frame, Value, join
+from tarl_lint.valueflow.values import Value, join
 
 
 @dataclass(slots=True)

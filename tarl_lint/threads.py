@@ -9,9 +9,9 @@ from typing import Final
 
 from tarl_lint.evidence import Evidence
 from tarl_lint.trees import walk
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.ir import Pos
 from tarl_lint.valueflow.store import Root
-from tarl_lint.valueflow.values import Frame
 
 MAIN: Final = "main"
 EXECUTOR: Final = "executor"

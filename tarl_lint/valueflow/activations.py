@@ -7,22 +7,12 @@ from collections.abc import Hashable
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.bounds import ALL_LEISURE, LEISURE, MANY, MAX_CALLS, MAX_FRAMES, OFTEN
 from tarl_lint.valueflow.evaluate import Evaluation
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import item_field
+from tarl_lint.valueflow.invocation import Arguments
 from tarl_lint.valueflow.leftovers import lasting
-from tarl_lint.valueflow.machine import Arguments
 from tarl_lint.valueflow.store import BORN
-from tarl_lint.valueflow.values import (
-    BOTTOM,
-    NONE,
-    UNKNOWN,
-    Frame,
-    Nodes,
-    Obj,
-    Value,
-    join,
-    lineage,
-    pointer,
-)
+from tarl_lint.valueflow.values import BOTTOM, NONE, UNKNOWN, Nodes, Obj, Value, join, lineage, pointer
 
 CALLABLE = frozenset(["closure", "bound", "class", "ext", "partial", "method", "weak"])
 ROOT_CALL = ir.Call(ir.Const(None, (0, 0, 0, 0)), (), (), (0, 0, 0, 0), 0)

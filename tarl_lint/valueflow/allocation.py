@@ -4,16 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.machine import Machine
 from tarl_lint.valueflow.store import BORN
-from tarl_lint.valueflow.values import (
-    ABSENT,
-    BOTTOM,
-    Frame,
-    Obj,
-    Value,
-    join,
-)
+from tarl_lint.valueflow.values import ABSENT, BOTTOM, Obj, Value, join
 
 MAX_NESTING = 7
 

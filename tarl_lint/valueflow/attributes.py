@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import item_field
-from tarl_lint.valueflow.machine import Arguments, Invocation
+from tarl_lint.valueflow.invocation import Arguments, Invocation
 from tarl_lint.valueflow.texts import Texts
-from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Obj, Value, join_all, lineage, pointer
+from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Obj, Value, join_all, lineage, pointer
 
 
 class Attributes(Texts):

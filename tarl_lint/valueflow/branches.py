@@ -4,15 +4,10 @@ from __future__ import annotations
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.bounds import MAX_STATEMENTS
+from tarl_lint.valueflow.frames import Attempt, Frame
 from tarl_lint.valueflow.raising import Raising
 from tarl_lint.valueflow.store import Delta
-from tarl_lint.valueflow.values import (
-    BOTTOM,
-    UNKNOWN,
-    Attempt,
-    Frame,
-    Value,
-)
+from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Value
 
 MAX_PASSES = 12  # over a loop's body; a safety net, since the values that can arise are finite
 

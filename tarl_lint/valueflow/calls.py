@@ -5,18 +5,9 @@ from __future__ import annotations
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE, Activations
 from tarl_lint.valueflow.contents import in_order
-from tarl_lint.valueflow.machine import Arguments
-from tarl_lint.valueflow.values import (
-    BOTTOM,
-    NONE,
-    Frame,
-    Nodes,
-    Obj,
-    Value,
-    join,
-    join_all,
-    pointer,
-)
+from tarl_lint.valueflow.frames import Frame
+from tarl_lint.valueflow.invocation import Arguments
+from tarl_lint.valueflow.values import BOTTOM, NONE, Nodes, Obj, Value, join, join_all, pointer
 
 
 class Calls(Activations):

@@ -3,20 +3,10 @@
 from __future__ import annotations
 
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import ANY, KEYS, LENGTH, SENT, item_field
 from tarl_lint.valueflow.special import Special
-from tarl_lint.valueflow.values import (
-    ABSENT,
-    BOTTOM,
-    NONE,
-    UNKNOWN,
-    Frame,
-    Nodes,
-    Obj,
-    Value,
-    join_all,
-    pointer,
-)
+from tarl_lint.valueflow.values import ABSENT, BOTTOM, NONE, UNKNOWN, Nodes, Obj, Value, join_all, pointer
 
 MAX_KNOWN = 16  # elements of a made sequence that are told apart
 COMBINING = frozenset(["+", "*", "|", "-", "&"])

@@ -8,14 +8,14 @@ from typing import Any
 
 from tarl_lint import catalog
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import ANY, LENGTH, SENT, item_field
+from tarl_lint.valueflow.invocation import Arguments, Invocation
 from tarl_lint.valueflow.iterating import Iterating
-from tarl_lint.valueflow.machine import Arguments, Invocation
 from tarl_lint.valueflow.values import (
     BOTTOM,
     NONE,
     UNKNOWN,
-    Frame,
     Nodes,
     Obj,
     Value,

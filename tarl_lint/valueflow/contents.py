@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from tarl_lint.definitions import FIELDS
 from tarl_lint.valueflow.allocation import MAX_NESTING
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import ANY, HOLLOW
 from tarl_lint.valueflow.storing import Storing
-from tarl_lint.valueflow.values import NONE, ClassInfo, Frame, Nodes, Obj, Value
+from tarl_lint.valueflow.values import NONE, ClassInfo, Nodes, Obj, Value
 
 LOOKS = 20  # looks into objects that take as long as a statement
 

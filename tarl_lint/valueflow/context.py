@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tarl_lint.valueflow.ends import SourceRecord
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.sites import Texts, Written
-from tarl_lint.valueflow.values import Frame
 
 
 class Surroundings:

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.branches import Branches
 from tarl_lint.valueflow.control import control_dependence
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.states import LATER
-from tarl_lint.valueflow.values import ClassInfo, Frame, Obj, Value, lineage, pointer
+from tarl_lint.valueflow.values import ClassInfo, Obj, Value, lineage, pointer
 
 
 class Defining(Branches):

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import LENGTH, item_field
 from tarl_lint.valueflow.operators import Operators
-from tarl_lint.valueflow.values import (
-    NONE,
-    Frame,
-    Value,
-    pointer,
-)
+from tarl_lint.valueflow.values import NONE, Value, pointer
 
 MAX_EACH = 4  # elements that a comprehension takes one by one
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.values import Frame, Obj
+from tarl_lint.valueflow.frames import Frame
+from tarl_lint.valueflow.values import Obj
 
 Kind = Literal["topic", "service", "action", "transform"]
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.graph import Graph, Place
-from tarl_lint.valueflow.values import Branches, Frame
+from tarl_lint.valueflow.values import Branches
 
 Entrance = tuple[
     int, list[Place], int

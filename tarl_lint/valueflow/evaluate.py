@@ -9,19 +9,9 @@ from typing import Any
 from tarl_lint.catalog import fact
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.displays import Displays
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import ANY
-from tarl_lint.valueflow.values import (
-    BOTTOM,
-    NONE,
-    UNKNOWN,
-    Frame,
-    Obj,
-    Value,
-    const,
-    join,
-    join_all,
-    pointer,
-)
+from tarl_lint.valueflow.values import BOTTOM, NONE, UNKNOWN, Obj, Value, const, join, join_all, pointer
 
 BUILTINS = frozenset(dir(builtins))
 DEFINITIONS = frozenset(["msg", "srv", "action"])  # modules of classes that definition files make

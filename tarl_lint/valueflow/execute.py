@@ -8,22 +8,12 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.control import raised
 from tarl_lint.valueflow.defining import Defining
 from tarl_lint.valueflow.ends import Publisher
+from tarl_lint.valueflow.frames import Escape, Frame
 from tarl_lint.valueflow.heap import item_field
+from tarl_lint.valueflow.invocation import Invocation
 from tarl_lint.valueflow.lower import lower_body
-from tarl_lint.valueflow.machine import Invocation
 from tarl_lint.valueflow.presence import RETURNED
-from tarl_lint.valueflow.values import (
-    ABSENT,
-    BOTTOM,
-    UNKNOWN,
-    Escape,
-    Frame,
-    Obj,
-    Value,
-    const,
-    join,
-    lineage,
-)
+from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, Obj, Value, const, join, lineage
 
 
 class Execution(Defining):

@@ -8,10 +8,11 @@ from typing import Final
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE
 from tarl_lint.valueflow.containers import READERS as CONTAINER_READERS
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import item_field
-from tarl_lint.valueflow.machine import Arguments, Invocation
+from tarl_lint.valueflow.invocation import Arguments, Invocation
 from tarl_lint.valueflow.records import RECORDS, Records
-from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Value, join, pointer
+from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Value, join, pointer
 
 RESULT: Final = "<result>"  # the field of a future that holds its result
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from itertools import islice
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.values import Branches, Frame, Nodes
+from tarl_lint.valueflow.frames import Frame
+from tarl_lint.valueflow.values import Branches, Nodes
 
 MAX_NODES = 15_000  # after which content is taken to arrive as it is, too
 MAX_EDGES = 200_000  # of data; then few of very many values that meet in one are followed

@@ -7,18 +7,10 @@ from dataclasses import replace
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.calls import Calls
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import LENGTH, item_field
-from tarl_lint.valueflow.machine import Invocation
-from tarl_lint.valueflow.values import (
-    NONE,
-    UNKNOWN,
-    Frame,
-    Nodes,
-    Value,
-    const,
-    join_all,
-    pointer,
-)
+from tarl_lint.valueflow.invocation import Invocation
+from tarl_lint.valueflow.values import NONE, UNKNOWN, Nodes, Value, const, join_all, pointer
 
 MAX_ROWS = 8  # elements of zip, enumerate and map that are told apart
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Set
 from typing import Final
 
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.store import BORN, Delta
-from tarl_lint.valueflow.values import Frame, Obj, Value
+from tarl_lint.valueflow.values import Obj, Value
 
 TEMPORARY: Final = frozenset(["lib", "sequence", "mapping"])  # objects that a function makes by the way
 

@@ -10,25 +10,16 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.containers import CONTAINERS, QUEUES, is_device
 from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.ends import Publisher
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.futures import READERS
 from tarl_lint.valueflow.heap import ANY
-from tarl_lint.valueflow.machine import Arguments, Invocation
+from tarl_lint.valueflow.invocation import Arguments, Invocation
 from tarl_lint.valueflow.signals import Signals
 from tarl_lint.valueflow.special import FUNCTIONS
 from tarl_lint.valueflow.states import LATER
 from tarl_lint.valueflow.texts import TEXT_METHODS
 from tarl_lint.valueflow.userdata import MACHINE_FIELD
-from tarl_lint.valueflow.values import (
-    BOTTOM,
-    BY_CLASS,
-    NONE,
-    UNKNOWN,
-    Frame,
-    Obj,
-    Value,
-    lineage,
-    pointer,
-)
+from tarl_lint.valueflow.values import BOTTOM, BY_CLASS, NONE, UNKNOWN, Obj, Value, lineage, pointer
 from tarl_lint.wrapping import facts
 
 SIGNALLING = frozenset(["connect", "emit"])

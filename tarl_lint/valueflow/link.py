@@ -9,10 +9,11 @@ from tarl_lint.relevance import mentioning
 from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.bounds import EXCHANGED, HASTE, LARGE, LEISURE, MAX_ROUNDS, MAX_STATEMENTS, PATIENCE
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.lower import lower_module
 from tarl_lint.valueflow.store import Root, Store
 from tarl_lint.valueflow.uncalled import Uncalled
-from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, Frame, Obj, Value, pointer
+from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, Obj, Value, pointer
 
 
 class Linker(Uncalled):

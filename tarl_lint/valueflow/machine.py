@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass
 
-from tarl_lint.catalog import NO_FACT, Fact
 from tarl_lint.config import Config
 from tarl_lint.names import Index
 from tarl_lint.source import Module
@@ -16,38 +14,14 @@ from tarl_lint.valueflow.bounds import (
 )
 from tarl_lint.valueflow.control import Branch, Control, control_dependence
 from tarl_lint.valueflow.ends import SinkRecord, SourceRecord
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.graph import MAX_EDGES, Graph, Place
+from tarl_lint.valueflow.invocation import Arguments, Invocation
 from tarl_lint.valueflow.lower import lower_body
 from tarl_lint.valueflow.store import Root, Shared, Store
-from tarl_lint.valueflow.values import BOTTOM, NONE, Branches, Frame, Key, Nodes, Obj, Value
+from tarl_lint.valueflow.values import NONE, Branches, Key, Nodes, Obj, Value
 
 NONE_ONLY = frozenset([None])
-Arguments = tuple[list[Value], dict[str, Value]]
-
-
-@dataclass(slots=True)
-class Invocation:
-    """A call of something that is not analysed. Of a method, `base` is the receiver."""
-
-    name: str
-    base: Value
-    arguments: Arguments
-    frame: Frame
-    call: ir.Call
-    fact: Fact = NO_FACT
-
-    @property
-    def statement(self) -> int:
-        """Return the number of the calling statement, -1 when ROS itself calls."""
-        return self.frame.statement.id if self.frame.statement is not None else -1
-
-    def argument(self, which: tuple[int, str]) -> Value:
-        """Return an argument by position or keyword, BOTTOM where it is not given."""
-        number, name = which
-        plain, named = self.arguments
-        if 0 <= number < len(plain):
-            return plain[number]
-        return named.get(name, BOTTOM)
 
 
 Probe = Callable[["Machine", Frame, ir.Stmt, ir.Expr, Value], None]

@@ -9,19 +9,9 @@ from collections.abc import Callable, Hashable, Mapping
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.combining import COMBINING
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.presence import Presence
-from tarl_lint.valueflow.values import (
-    BOTTOM,
-    BY_CLASS,
-    MAX_CONSTS,
-    MAX_TEXTS,
-    NONE,
-    Frame,
-    Nodes,
-    Obj,
-    Value,
-    join,
-)
+from tarl_lint.valueflow.values import BOTTOM, BY_CLASS, MAX_CONSTS, MAX_TEXTS, NONE, Nodes, Obj, Value, join
 
 FOLDED: Mapping[str, Callable[..., object]] = {
     "+": operator.add,

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from tarl_lint import catalog
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.combining import Combining
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import ANY, item_field
 from tarl_lint.valueflow.machine import NONE_ONLY
-from tarl_lint.valueflow.values import Frame, Key, Nodes, Obj, Value, lineage
+from tarl_lint.valueflow.values import Key, Nodes, Obj, Value, lineage
 
 RETURNED = "<return>"  # stands for what a function gives back
 COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)  # expressions that may be another's value

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.ends import Publisher, SinkRecord
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.graph import Place
+from tarl_lint.valueflow.invocation import Invocation
 from tarl_lint.valueflow.library import Library
-from tarl_lint.valueflow.machine import Invocation
-from tarl_lint.valueflow.values import UNKNOWN, Frame, Value, pointer
+from tarl_lint.valueflow.values import UNKNOWN, Value, pointer
 
 
 class Sinks(Library):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from tarl_lint.valueflow.frames import Escape, Frame
 from tarl_lint.valueflow.taking import Taking
-from tarl_lint.valueflow.values import Escape, Frame, join
+from tarl_lint.valueflow.values import join
 
 
 class Raising(Taking):

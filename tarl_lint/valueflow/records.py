@@ -8,14 +8,14 @@ from typing import Final
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE
 from tarl_lint.valueflow.containers import Containers
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import ANY, KEYS, item_field
-from tarl_lint.valueflow.machine import Arguments, Invocation
+from tarl_lint.valueflow.invocation import Arguments, Invocation
 from tarl_lint.valueflow.values import (
     BOTTOM,
     BY_CLASS,
     UNKNOWN,
     ClassInfo,
-    Frame,
     Obj,
     Value,
     const,

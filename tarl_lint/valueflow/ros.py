@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Mapping
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.machine import Invocation
+from tarl_lint.valueflow.frames import Frame
+from tarl_lint.valueflow.invocation import Invocation
 from tarl_lint.valueflow.serving import Serving
-from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Value, join, pointer
+from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Value, join, pointer
 
 
 class Ros(Serving):

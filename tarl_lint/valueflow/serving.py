@@ -8,7 +8,7 @@ from typing import Final
 from tarl_lint import catalog
 from tarl_lint.valueflow.activations import CALLABLE
 from tarl_lint.valueflow.ends import Publisher, SourceRecord
-from tarl_lint.valueflow.machine import Invocation
+from tarl_lint.valueflow.invocation import Invocation
 from tarl_lint.valueflow.subscribing import Sources
 from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Obj, Value, pointer
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE
-from tarl_lint.valueflow.machine import Arguments
+from tarl_lint.valueflow.frames import Frame
+from tarl_lint.valueflow.invocation import Arguments
 from tarl_lint.valueflow.states import States
-from tarl_lint.valueflow.values import BOTTOM, Frame, Value, join
+from tarl_lint.valueflow.values import BOTTOM, Value, join
 
 CONNECTED = "<connected>"  # the field of a signal that holds what is connected to it
 

@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.joining import Joining
-from tarl_lint.valueflow.values import BOTTOM, Frame, Obj, Value, join, lineage
+from tarl_lint.valueflow.values import BOTTOM, Obj, Value, join, lineage
 
 METHOD_OF: Final[Mapping[str, str]] = {
     "+": "add", "-": "sub", "*": "mul", "/": "truediv", "//": "floordiv", "%": "mod", "**": "pow", "@": "matmul",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from tarl_lint.valueflow.attributes import Attributes
 from tarl_lint.valueflow.contents import in_order
-from tarl_lint.valueflow.machine import Invocation
+from tarl_lint.valueflow.invocation import Invocation
 from tarl_lint.valueflow.values import UNKNOWN, Obj, Value, pointer
 
 LATER = frozenset(["closure", "bound", "partial"])  # what a library can call of what it is given

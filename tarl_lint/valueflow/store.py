@@ -6,7 +6,8 @@ from collections.abc import Hashable
 from dataclasses import dataclass, field
 
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.values import ABSENT, Frame, Key, Obj, Value, join
+from tarl_lint.valueflow.frames import Frame
+from tarl_lint.valueflow.values import ABSENT, Key, Obj, Value, join
 
 Delta = dict[Key, Value]
 

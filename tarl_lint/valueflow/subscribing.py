@@ -12,13 +12,14 @@ from tarl_lint.valueflow.activations import CALLABLE, ROOT_CALL
 from tarl_lint.valueflow.bounds import MAX_ALIKE, MAX_GENERATIONS
 from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.ends import Kind, Publisher, SourceRecord
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.graph import Place
+from tarl_lint.valueflow.invocation import Invocation
 from tarl_lint.valueflow.leftovers import together
-from tarl_lint.valueflow.machine import Invocation
 from tarl_lint.valueflow.publishing import Sinks, type_names
 from tarl_lint.valueflow.states import LATER
 from tarl_lint.valueflow.store import Root
-from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Frame, Obj, Value, join, join_all, pointer
+from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Obj, Value, join, join_all, pointer
 
 KINDS: Final[Mapping[str, Kind]] = {"service": "service", "action": "action", "transform": "transform"}
 NOTHING: Final[Mapping[str, Value]] = {}

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import CALLABLE
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import item_field
-from tarl_lint.valueflow.machine import Arguments
+from tarl_lint.valueflow.invocation import Arguments
 from tarl_lint.valueflow.ros import Ros
-from tarl_lint.valueflow.values import BOTTOM, Frame, Obj, Value, const, join, pointer
+from tarl_lint.valueflow.values import BOTTOM, Obj, Value, const, join, pointer
 
 ITERATED = -2  # slots of the calls that a loop makes
 NEXT = -3

@@ -8,9 +8,10 @@ from collections.abc import Callable, Sequence
 from typing import Any, Final
 
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.futures import Futures
-from tarl_lint.valueflow.machine import Arguments, Invocation
-from tarl_lint.valueflow.values import MAX_TEXTS, UNKNOWN, Consts, Frame, Value
+from tarl_lint.valueflow.invocation import Arguments, Invocation
+from tarl_lint.valueflow.values import MAX_TEXTS, UNKNOWN, Consts, Value
 
 TEXT_METHODS: Final = frozenset(
     [
