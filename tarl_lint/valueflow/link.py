@@ -89,7 +89,10 @@ class Linker(Uncalled):
     def add_root(self, root: Root, run: Callable[[Root], None], *, news: bool = False) -> None:
         """Have something run on its own; seen again, only if its arguments are news."""
         root = self.roots.get(root.key, (root,))[0]
-        if news or root.key not in self.roots:
+        if root.key not in self.roots:
+            root.number = len(self.roots)
+            news = True
+        if news:
             self.pending[root] = None
         self.roots[root.key] = (root, run)
 
@@ -109,10 +112,10 @@ class Linker(Uncalled):
                     self.pending[news] = None
                 self.shared.dirty.clear()
 
-    def _turn(self, root: Root) -> tuple[int, int]:
+    def _turn(self, root: Root) -> tuple[int, int, int]:
         """Modules run first, but again only last, since what they wait for comes from the rest; small ones first."""
         took = self.took.get(root)
-        return 1 if root.kind != "module" else 0 if took is None else 2, took or 0
+        return 1 if root.kind != "module" else 0 if took is None else 2, took or 0, root.number
 
     def _reconsider(self) -> None:
         """Have those run again who went by a decision to which a source leads by now."""
