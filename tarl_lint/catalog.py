@@ -266,6 +266,10 @@ SHAPED: Final = frozenset(
     ["zeros_like", "ones_like", "empty_like", "full_like"]
 )  # functions that take of their first argument nothing but its shape
 
+CLOCKS: Final = frozenset(
+    ["get_clock"]
+)  # methods that give a clock: its time is nothing that their object holds
+
 LOGGING: Final = frozenset(
     ["debug", "info", "warn", "warning", "error", "fatal", "critical", "get_logger", "exception", "log"]
 )

@@ -16,6 +16,7 @@ def _fields(names: str, kind: str = "") -> dict[str, str]:
     return dict.fromkeys(names.split(), kind)
 
 
+HEADED: Final = _fields("header", "Header")
 FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     **{name: _fields("data") for name in NUMBERS},
     "ColorRGBA": _fields("r g b a"),
@@ -30,5 +31,25 @@ FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     "Accel": _fields("linear angular", "Vector3"),
     "Wrench": _fields("force torque", "Vector3"),
     "Transform": _fields("translation", "Vector3") | _fields("rotation", "Quaternion"),
-    **{f"{name}Stamped": _fields("header", "Header") | _fields(name.lower(), name) for name in STAMPED},
+    **{f"{name}Stamped": HEADED | _fields(name.lower(), name) for name in STAMPED},
+    "TransformStamped": HEADED | _fields("child_frame_id") | _fields("transform", "Transform"),
+    "PoseWithCovariance": _fields("pose", "Pose") | _fields("covariance"),
+    "TwistWithCovariance": _fields("twist", "Twist") | _fields("covariance"),
+    "PoseWithCovarianceStamped": HEADED | _fields("pose", "PoseWithCovariance"),
+    "Odometry": HEADED
+    | _fields("child_frame_id")
+    | _fields("pose", "PoseWithCovariance")
+    | _fields("twist", "TwistWithCovariance"),
+    "Path": HEADED | _fields("poses"),
+    "PoseArray": HEADED | _fields("poses"),
+    "MapMetaData": _fields("map_load_time resolution width height") | _fields("origin", "Pose"),
+    "OccupancyGrid": HEADED | _fields("info", "MapMetaData") | _fields("data"),
+    "Image": HEADED | _fields("height width encoding is_bigendian step data"),
+    "CompressedImage": HEADED | _fields("format data"),
+    "JointState": HEADED | _fields("name position velocity effort"),
+    "Joy": HEADED | _fields("axes buttons"),
+    "LaserScan": HEADED
+    | _fields(
+        "angle_min angle_max angle_increment time_increment scan_time range_min range_max ranges intensities"
+    ),
 }  # type → field → its type where that has fields, too

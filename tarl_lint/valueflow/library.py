@@ -151,7 +151,7 @@ class Library(Signals):
         fact = catalog.METHODS.get(name)
         if fact is not None and kind not in ("sequence", "mapping"):
             return self.ros_call(Invocation(name, base, arguments, frame, call, fact))
-        if name in catalog.LOGGING:
+        if name in catalog.LOGGING or name in catalog.CLOCKS:
             return UNKNOWN
         if name in catalog.WAITING_METHODS and base.consts is None:
             self.wait(frame)
