@@ -46,7 +46,8 @@ class Contents(Storing):
     def _deep(self, obj: Obj, known: dict[Obj, Nodes], depth: int, *, counted: bool = False) -> Nodes:
         """Return what is inside one object. What holds itself is left out at the second time.
 
-        `counted`: what may be anywhere in the object that it is part of was found there.
+        `counted`: what may be anywhere in the object that it is part of was found there. Who comes to the part by
+        another way asks again.
         """
         if obj.kind in HOLLOW or depth > MAX_NESTING:
             return NONE
@@ -62,7 +63,8 @@ class Contents(Storing):
         self.store.look(obj)
         replaced = self.replaced(obj, self.defined(obj))
         found: set[int] = set()
-        if not replaced and (not counted or ANY in obj.fields):
+        whole = not counted or ANY in obj.fields
+        if not replaced and whole:
             found |= self.content(obj).deps
         for name in list(obj.fields):
             value = self.store.get((obj, name)) if name != ANY or not replaced else None
@@ -73,7 +75,11 @@ class Contents(Storing):
         for name, sub in list(obj.subs.items()):
             if sub is not obj and self.store.get((obj, name)) is None:
                 found |= self._deep(sub, known, depth + 1, counted=not replaced)
-        known[obj] = inside = frozenset(found)
+        inside = frozenset(found)
+        if whole:
+            known[obj] = inside
+        else:
+            del known[obj]
         return inside
 
     def defined(self, obj: Obj) -> str:
