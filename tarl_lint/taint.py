@@ -34,6 +34,7 @@ class Reach:
 
     data: set[int]
     any: set[int]
+    counted: Mapping[int, set[int]]  # counts of elements → what of its data it decided to put there
 
 
 class Tracer:
@@ -64,7 +65,22 @@ class Tracer:
     def reach(self, record: SourceRecord) -> Reach:
         """Return what the messages of a source reach."""
         data = closure(record.nodes, [self.forward_data])
-        return Reach(data, closure(record.nodes, [self.forward_data, self.forward_control]))
+        counted: dict[int, set[int]] = {}
+        while more := self.counts(data):
+            counted.update(more)
+            data |= closure(more, [self.forward_data])
+        return Reach(data, closure(record.nodes, [self.forward_data, self.forward_control]), counted)
+
+    def counts(self, data: set[int]) -> dict[int, set[int]]:
+        """Return the counts, not in `data` yet, of elements that are made from it and that it puts there."""
+        graph = self.graph
+        found: dict[int, set[int]] = {}
+        for node, elements in graph.counts.items():
+            if node not in data and not elements.isdisjoint(data):
+                gates = graph.control[node] & graph.gates.keys()
+                if any(not graph.control[gate].isdisjoint(data) for gate in gates):
+                    found[node] = elements & data
+        return found
 
     def flow(
         self, source: Source, origin: SourceRecord, reach: Reach, sink: Sink, record: SinkRecord
@@ -75,11 +91,18 @@ class Tracer:
             return None
         explicit = bool(record.nodes & reach.data)
         graph = self.graph
-        on_data = closure(record.nodes & reach.data, [graph.data], reach.data) if explicit else set()
+        on_data = self.made_from(record.nodes & reach.data, reach)
         on_any = closure(ends, [graph.data, graph.control], reach.any)
-        on_any |= self.made_there(on_any)
+        on_any |= on_data | self.made_there(on_any)
         steps = self.steps(origin, on_data, on_any, record)
         return Flow("explicit" if explicit else "implicit", source, sink, steps)
+
+    def made_from(self, ends: set[int], reach: Reach) -> set[int]:
+        """Return the data of a source that its ends are made from."""
+        found = closure(ends, [self.graph.data], reach.data)
+        while more := set().union(*(reach.counted[n] for n in found & reach.counted.keys())) - found:
+            found |= closure(more, [self.graph.data], reach.data)
+        return found
 
     def made_there(self, nodes: set[int]) -> set[int]:
         """Return the constants that conditions among the nodes choose, with the statements that make them."""

@@ -197,7 +197,14 @@ class Containers(Iterating):
             ours += [o for o in value.pts if self.sized(o)]
         node = self.node(it.frame, ("length", it.call.slot), "call")
         self.graph.choice(self.placed(frozenset(ours)), node)
+        if self.graph.control[node]:
+            self.graph.counts.setdefault(node, set()).update(self.made_of(Value(pts=frozenset(ours))))
         return Value(deps | self.kept(node))
+
+    def made_of(self, value: Value) -> Nodes:
+        """Return what elements are made from, of our own objects not what they hold."""
+        found = self.elements_of_any(value)
+        return self.use(Value(found.deps, frozenset(o for o in found.pts if o.kind != "instance")))
 
     def _read_length(self, it: Invocation) -> Value:
         """Return what a queue says about how much is in it."""

@@ -39,6 +39,9 @@ class Graph:
     control: list[set[int]] = field(default_factory=list)
     branches: list[Branches] = field(default_factory=list)
     gates: dict[int, tuple[int, Branches]] = field(default_factory=dict)  # node → value, choice
+    counts: dict[int, set[int]] = field(
+        default_factory=dict
+    )  # node that counts elements → what those are made from
     stands_for: dict[int, int] = field(default_factory=dict)  # node → another that nothing chose
     held: dict[int, set[int]] = field(default_factory=dict)
     numbers: dict[Hashable, int] = field(default_factory=dict)

@@ -24,7 +24,7 @@ class Navigator(threading.Thread):
     def on_plan(self, path):
         for stamped in path.poses:  # step plan
             self.goals.put((stamped.pose.position.x, stamped.pose.position.y))  # step plan
-        self.left.publish(self.goals.qsize())  # sink ~plan
+        self.left.publish(self.goals.qsize())  # sink plan
 
     def on_pose(self, msg):
         with self.lock:
