@@ -31,6 +31,11 @@ class Access:
         """Return the name of the attribute or global."""
         return self.node.attr if isinstance(self.node, ast.Attribute) else self.node.id
 
+    @property
+    def is_global(self) -> bool:
+        """Tell whether it is to a global rather than to an attribute."""
+        return isinstance(self.node, ast.Name)
+
 
 def accesses(function: ast.AST, receiver: str, outline: Outline) -> Iterator[Access]:
     """Yield the accesses in a function to attributes of its receiver (its name, "" for none) and to globals."""

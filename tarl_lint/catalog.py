@@ -270,9 +270,8 @@ CLOCKS: Final = frozenset(
     ["get_clock"]
 )  # methods that give a clock: its time is nothing that their object holds
 
-LOGGING: Final = frozenset(
-    ["debug", "info", "warn", "warning", "error", "fatal", "critical", "get_logger", "exception", "log"]
-)
+LEVELS: Final = frozenset(["debug", "info", "warn", "warning", "error", "fatal", "critical"])  # of messages
+LOGGING: Final = LEVELS | {"get_logger", "exception", "log"}
 
 
 def on_topic(api: str) -> bool:

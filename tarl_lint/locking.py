@@ -91,7 +91,7 @@ class Locking:
         above = callers[0].locks if callers else frozenset[str]()
         asked = asked_before(node, self.evidence.outline(path))
         spot = Spot(path, pos, frame.function.name, access.locks | above, asked)
-        name = access.name if state_is_global(access) else f"self.{access.name}"
+        name = access.name if access.is_global else f"self.{access.name}"
         return Use(name, (spot, *callers), thread, access.writes, access.constant)
 
     def _callers(self, frame: Frame) -> tuple[list[Spot], bool]:
@@ -141,14 +141,9 @@ def unguarded(uses: Sequence[Use]) -> Iterator[tuple[Use, Spot]]:
             yield use, spot
 
 
-def state_is_global(access: Access) -> bool:
-    """Tell whether an access is to a global rather than to an attribute."""
-    return not hasattr(access.node, "attr")
-
-
 def _state(access: Access, frame: Frame, receiver: Obj | None) -> State | None:
     """Return what an access is to; None while it is being made, and where that is not known."""
-    if state_is_global(access):
+    if access.is_global:
         return frame.module, access.name
     return None if receiver is None or _making(frame, receiver) else (receiver, access.name)
 

@@ -158,5 +158,9 @@ class Combining(Special):
         """Let an object's length depend on that of a value whose elements it takes over."""
         length = self.length(value)
         if length:
-            before = self.store.get((obj, LENGTH))
-            self.store.put((obj, LENGTH), Value(length | (before.deps if before is not None else NONE)))
+            self.decide_length(obj, length)
+
+    def decide_length(self, obj: Obj, deps: Nodes) -> None:
+        """Let an object's length depend on more than before."""
+        before = self.store.get((obj, LENGTH))
+        self.store.put((obj, LENGTH), Value(deps | (before.deps if before is not None else NONE)))

@@ -150,8 +150,7 @@ class Containers(Iterating):
         ours = [o for o in base.pts if o.kind in ("sequence", "mapping")]
         kept = self.kept(self.node(frame, ("taken", call.slot), "call")) if ours else NONE
         for obj in ours if kept else ():
-            before = self.store.get((obj, LENGTH))
-            self.store.put((obj, LENGTH), Value(kept | (before.deps if before is not None else NONE)))
+            self.decide_length(obj, kept)
 
     def _write_entry(self, it: Invocation) -> Value:
         """Store an element as `x[key] = value` does."""
@@ -191,10 +190,8 @@ class Containers(Iterating):
 
     def _counted(self, it: Invocation) -> Value:
         """Return `len(x)`: data of what the length is made of, choice of what decided to add elements."""
-        deps, ours = NONE, []
-        for value in it.arguments[0]:
-            deps |= self.length(value)
-            ours += [o for o in value.pts if self.sized(o)]
+        deps = self.lengths(it.arguments[0])
+        ours = [o for value in it.arguments[0] for o in value.pts if self.sized(o)]
         node = self.node(it.frame, ("length", it.call.slot), "call")
         self.graph.choice(self.placed(frozenset(ours)), node)
         if self.graph.control[node]:

@@ -11,7 +11,18 @@ from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.displays import Displays
 from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import ANY
-from tarl_lint.valueflow.values import BOTTOM, NONE, UNKNOWN, Obj, Value, const, join, join_all, pointer
+from tarl_lint.valueflow.values import (
+    BOTTOM,
+    NONE,
+    UNKNOWN,
+    Obj,
+    Value,
+    const,
+    function_of,
+    join,
+    join_all,
+    pointer,
+)
 
 BUILTINS = frozenset(dir(builtins))
 DEFINITIONS = frozenset(["msg", "srv", "action"])  # modules of classes that definition files make
@@ -34,8 +45,7 @@ class Evaluation(Displays):
         return known
 
     def _name(self, expr: ir.Name, frame: Frame) -> Value:
-        holder = frame if expr.scope == "local" and frame.cls is None else self.holder(expr, frame)
-        value = self.store.get((holder, expr.name))
+        value = self.store.get((self.holder(expr, frame), expr.name))
         if value is not None:
             return value
         if expr.scope == "local" and not frame.owner_class():
@@ -88,9 +98,8 @@ class Evaluation(Displays):
 
     def is_property(self, method: Obj) -> bool:
         """Tell whether a bound method is a property's getter."""
-        closure = method.info[0] if isinstance(method.info, tuple) else None
-        function = closure.info[0] if isinstance(closure, Obj) and isinstance(closure.info, tuple) else None
-        return isinstance(function, ir.Function) and any(
+        function = function_of(method)
+        return function is not None and any(
             (isinstance(d, ir.Name) and d.name in ("property", "cached_property"))
             or (isinstance(d, ir.Attribute) and d.name in ("cached_property", "getter"))
             for d in function.decorators

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Set
 from dataclasses import dataclass, field
 from itertools import islice
 
@@ -13,6 +13,7 @@ from tarl_lint.valueflow.values import Branches, Nodes
 MAX_NODES = 15_000  # after which content is taken to arrive as it is, too
 MAX_EDGES = 200_000  # of data; then few of very many values that meet in one are followed
 FEW = 8
+NOTHING: Set[int] = frozenset()
 MAX_CARRIED = 500  # content times carriers; beyond that, content is taken to arrive as it is
 
 
@@ -153,10 +154,9 @@ class Graph:
         taken: set[int] = set()
         for carrier in carriers:
             if carrier not in self.carried:
-                inside = self.held.get(carrier)
-                if inside:
-                    taken |= content & inside
-                    found.update([self._carry(carrier, item) for item in content & inside])
+                passed = content & self.held.get(carrier, NOTHING)
+                taken |= passed
+                found.update([self._carry(carrier, item) for item in passed])
                 continue
             inside = self.held.get(self._first(carrier))
             for item in content & inside if inside else ():

@@ -45,10 +45,12 @@ class Iterating(Calls):
         if rows and len(rows) <= MAX_ROWS:
             return self._rows(rows, it)
         parts = [self.elements(v) for v in it.arguments[0]]
-        length = NONE
-        for value in it.arguments[0]:
-            length |= self.length(value)
+        length = self.lengths(it.arguments[0])
         return self.pairs([UNKNOWN, *parts] if it.name == "enumerate" else parts, it.frame, it.call, length)
+
+    def lengths(self, values: Sequence[Value]) -> Nodes:
+        """Return the nodes that the lengths of several values are data of."""
+        return NONE.union(*map(self.length, values))
 
     def _transposed(self, row: Value, it: Invocation) -> Value:
         """Return what `zip(*rows)` gives: a sequence for each place in a row."""
@@ -89,9 +91,7 @@ class Iterating(Calls):
         if it.name == "map" and rows and len(rows) <= MAX_ROWS:
             return self._each(function, rows, it)
         parts = [self.elements(v) for v in rest]
-        length = NONE
-        for value in rest:
-            length |= self.length(value)
+        length = self.lengths(rest)
         if it.name == "map":
             return self.listed(self.call_value(function, (parts, {}), it.frame, it.call), length, it)
         kept = join_all(parts)

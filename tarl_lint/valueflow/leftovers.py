@@ -33,15 +33,14 @@ def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]
         if owner is frame and not frame.captured:
             continue
         kept[key] = value
-        root = owner if owner.parent is None else owner.root()
+        root = owner.root()
         if root in local:
             inside.setdefault(root, []).append((key[1], value))
         else:
             pending += value.pts
     seen: set[Obj] = set()
     while pending:
-        obj = pending.pop()
-        root = obj if obj.parent is None else obj.root()
+        root = pending.pop().root()
         if root not in seen:
             seen.add(root)
             for _, value in inside.get(root, ()):
@@ -50,7 +49,7 @@ def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]
     gone = local - seen
     if not gone:
         return kept
-    return {k: v for k, v in kept.items() if (k[0] if k[0].parent is None else k[0].root()) not in gone}
+    return {k: v for k, v in kept.items() if k[0].root() not in gone}
 
 
 def together(objects: Iterable[Obj]) -> Set[Obj]:

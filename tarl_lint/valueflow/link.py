@@ -123,7 +123,6 @@ class Linker(Uncalled):
             self.pending.update(self.doubts.pop(node))
 
     def _run(self, root: Root, run: Callable[[Root], None]) -> None:
-        self.pending.pop(root, None)
         self.store = Store(self.shared, root)
         self.stack = []
         self.spent = 0

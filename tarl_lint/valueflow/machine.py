@@ -65,7 +65,6 @@ class Machine:
         self.activations: dict[ir.Function, int] = {}  # how often each function ran in this run of a root
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
         self.given: set[Obj] = set()  # objects that roots are run with
-        self.alike: dict[ir.Function, int] = {}  # how often a thread or a framework runs each function
         self.passed: dict[Hashable, list[Value]] = {}  # what each root is called with
         self.sources: dict[tuple[str, ir.Pos], SourceRecord] = {}
         self.sinks: dict[tuple[str, ir.Pos], SinkRecord] = {}

@@ -19,7 +19,7 @@ from tarl_lint.valueflow.leftovers import together
 from tarl_lint.valueflow.publishing import Sinks, type_names
 from tarl_lint.valueflow.states import LATER
 from tarl_lint.valueflow.store import Root
-from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Obj, Value, join, join_all, pointer
+from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Obj, Value, function_of, join, join_all, pointer
 
 KINDS: Final[Mapping[str, Kind]] = {"service": "service", "action": "action", "transform": "transform"}
 NOTHING: Final[Mapping[str, Value]] = {}
@@ -206,9 +206,9 @@ class Sources(Sinks):
         named: Mapping[str, Value] = NOTHING,
     ) -> None:
         """Run a function on its own with these arguments; `answer` takes what it returns."""
-        root = Root((key, target.kind, target.key), kind, target.name, kind == "thread", _function(target))
+        root = Root((key, target.kind, target.key), kind, target.name, kind == "thread", function_of(target))
         root.maker = self.store.root
-        if root.key not in self.roots and self._too_many(root, key):
+        if root.key not in self.roots and self._too_many(root):
             return
         before = self.passed.get(root.key, [])
         values = [join(a, b) for a, b in zip_longest(before, values, fillvalue=BOTTOM)]
@@ -229,16 +229,16 @@ class Sources(Sinks):
 
         self.add_root(root, run, news=news)
 
-    def _too_many(self, root: Root, key: Hashable) -> bool:
+    def _too_many(self, root: Root) -> bool:
         """Tell whether a function runs on its own often enough: for itself, or for other objects of a class."""
         if root.function is None:
             return False
         if root.generations() > MAX_GENERATIONS:
             return True
-        if root.kind != "thread" and key != "framework":
+        if not _for_each_object(root):
             return False
-        count = self.alike[root.function] = self.alike.get(root.function, 0) + 1
-        return count > MAX_ALIKE
+        alike = [r for r, _ in self.roots.values() if r.function is root.function and _for_each_object(r)]
+        return len(alike) >= MAX_ALIKE
 
     def root_frame(self, root: Root) -> Frame:
         """Return the frame that stands for ROS itself, calling."""
@@ -249,11 +249,9 @@ class Sources(Sinks):
         self.call_when("later", target, values, "callback")
 
 
-def _function(target: Obj) -> ir.Function | None:
-    """Return the function of ours that a call of an object runs, None where nothing tells."""
-    closure = target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
-    found = closure.info[0] if closure.kind == "closure" and isinstance(closure.info, tuple) else None
-    return found if isinstance(found, ir.Function) else None
+def _for_each_object(root: Root) -> bool:
+    """Tell whether a thread or a framework runs something, which it does for each object of a class."""
+    return root.kind == "thread" or (isinstance(root.key, tuple) and root.key[0] == "framework")
 
 
 def _supplied(frame: Frame, callback: Value) -> bool:

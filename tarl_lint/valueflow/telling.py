@@ -6,10 +6,10 @@ import ast
 import re
 from typing import Final
 
+from tarl_lint import catalog
 from tarl_lint.trees import walk
 
 OWN_PRINT: Final = re.compile(r"\bdef\s+print\b|\bprint\s*=|\bimport\b[^\n]*(\bprint\b|\*)")
-LEVELS: Final = frozenset(["debug", "info", "warn", "warning", "error", "fatal", "critical"])
 ROSPY: Final = frozenset(
     f"log{level}{how}"
     for level in ("debug", "info", "warn", "err", "fatal")
@@ -59,7 +59,7 @@ def _tells(function: ast.expr, prints: bool) -> bool:
     asked = (
         isinstance(base, ast.Call) and isinstance(base.func, ast.Attribute) and base.func.attr == "get_logger"
     )
-    return asked and function.attr in LEVELS
+    return asked and function.attr in catalog.LEVELS
 
 
 def _pure(node: ast.AST) -> bool:

@@ -214,6 +214,13 @@ class ClassInfo:
         return inherited or any(not _plain(e) for e in self.external)
 
 
+def function_of(target: Obj) -> ir.Function | None:
+    """Return the function of ours that a call of an object runs, None where nothing tells."""
+    closure = target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
+    found = closure.info[0] if closure.kind == "closure" and isinstance(closure.info, tuple) else None
+    return found if isinstance(found, ir.Function) else None
+
+
 def _plain(base: str) -> bool:
     """Tell whether a class of a library calls no methods that its heirs add: exceptions, containers, and the like."""
     return base in PLAIN_BASES or base.startswith("builtins.")
