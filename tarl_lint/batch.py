@@ -10,7 +10,6 @@ from typing import Final
 
 from tarl_lint.cache import Cache, Report, digest
 from tarl_lint.config import Config
-from tarl_lint.interrupts import end_silently, uninterrupted
 from tarl_lint.memory import without_collection
 from tarl_lint.progress import Tell, silent
 from tarl_lint.relevance import groups
@@ -86,31 +85,18 @@ def _processors() -> int:
 
 def _made(tasks: Sequence[Task], config: Config, workers: int, tell: Tell) -> Iterator[Report]:
     if workers > 1:
-        yield from _in_processes(tasks, config, workers, tell)
-        return
+        from tarl_lint.workers import in_processes
+
+        tell(f"Analysing in {workers} processes")
+        sizes = [task.lines for task in tasks]
+        reports = in_processes(partial(perform, config=config), tasks, sizes, workers, tell)
+        if reports is not None:
+            yield from reports
+            return
     with without_collection():
         for number, task in enumerate(tasks, 1):
             tell(f"Analysing {task.scripts[0].path} ({number} of {len(tasks)})")
             yield perform(task, config)
-
-
-def _in_processes(tasks: Sequence[Task], config: Config, workers: int, tell: Tell) -> Iterator[Report]:
-    """The largest first, so that nobody waits for a large one that came last."""
-    import multiprocessing
-    from concurrent.futures import ProcessPoolExecutor
-
-    tell(f"Analysing in {workers} processes")
-    order = sorted(range(len(tasks)), key=lambda number: -tasks[number].lines)
-    with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), end_silently) as pool:
-        chunk = 1 + len(tasks) // (workers * 16)
-        with uninterrupted():
-            done = pool.map(partial(perform, config=config), [tasks[n] for n in order], chunksize=chunk)
-        try:
-            reports = dict(zip(order, done, strict=True))
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-    yield from (reports[number] for number in range(len(tasks)))
 
 
 def perform(task: Task, config: Config) -> Report:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import TracebackType
 from typing import Final, TextIO
 
@@ -18,6 +19,20 @@ def silent(_text: str) -> None:
     """Tell nobody."""
 
 
+@contextmanager
+def paused(tell: Tell) -> Iterator[None]:
+    """Have no thread show progress meanwhile: a process with threads cannot be forked safely."""
+    owner = getattr(tell, "__self__", None)
+    if not isinstance(owner, Progress):
+        yield
+        return
+    owner.stop()
+    try:
+        yield
+    finally:
+        owner.start()
+
+
 class Progress:
     """Shows what was told last, and for how long the run has been going on."""
 
@@ -26,18 +41,27 @@ class Progress:
         self._text = ""
         self._patience = patience
         self._every = every
-        import threading  # only terminals need it
-
-        self._over = threading.Event()
-        self._thread = threading.Thread(target=self._paint, daemon=True)
+        self._begun = time.monotonic()
 
     def __enter__(self) -> Progress:
-        self._thread.start()
+        self.start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self.stop()
+
+    def start(self) -> None:
+        """Show what is told from now on."""
+        import threading  # only terminals need it
+
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._paint, daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Clear the line, and show nothing more."""
         self._over.set()
         self._thread.join()
 
@@ -46,11 +70,10 @@ class Progress:
         self._text = text
 
     def _paint(self) -> None:
-        start = time.monotonic()
-        if self._over.wait(self._patience):
+        if self._over.wait(max(0.0, self._begun + self._patience - time.monotonic())):
             return
         while True:
-            self._stream.write(f"{_CLEAR}{self._text} ({time.monotonic() - start:.0f} s)")
+            self._stream.write(f"{_CLEAR}{self._text} ({time.monotonic() - self._begun:.0f} s)")
             self._stream.flush()
             if self._over.wait(self._every):
                 break

@@ -1,0 +1,37 @@
+"""Where `tarl-lint` imports from: the standard library and what is installed, never the files that it lints.
+
+Python puts the working directory (`python -m`), the directory of a script and what `PYTHONPATH` names before its own
+library, and editable installations append source trees; a file `types.py` in any of them would run in place of ours.
+Only `sys` and `os`, which Python has loaded before, are imported here (`from __future__` imports a file, too).
+"""
+
+import os
+import sys
+
+
+def restrict() -> None:
+    """Keep of `sys.path` what belongs to the interpreter and its installed packages."""
+    trusted = {os.path.normcase(os.path.abspath(entry)) for entry in (*_standard(), *_site(), *_beside_us())}
+    sys.path[:] = [e for e in sys.path if e and os.path.normcase(os.path.abspath(e)) in trusted]
+
+
+def _standard() -> list[str]:
+    """Return the directories of the standard library (or its archive) and of its extension modules."""
+    library = os.path.dirname(os.__file__)
+    return [library, os.path.join(library, "lib-dynload"), os.path.join(sys.base_prefix, "DLLs")]
+
+
+def _site() -> list[str]:
+    """Return the directories that packages are installed in; none where Python runs without `site`."""
+    site = sys.modules.get("site")
+    if site is None:
+        return []
+    user = [site.USER_SITE] if site.ENABLE_USER_SITE and site.USER_SITE else []
+    return [*site.getsitepackages(), *user]
+
+
+def _beside_us() -> list[str]:
+    """Return the directory that this package is in, if it was installed there, as by `pip install --target`."""
+    holder = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    installed = any(n.startswith("tarl-") and n.endswith(".dist-info") for n in os.listdir(holder))
+    return [holder] if installed else []
