@@ -17,6 +17,7 @@ from pytest_tarl.learning.drift import Difference, compare, paper_region
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.looks import Look, certain, concluded, planned
 from pytest_tarl.learning.merging import aligned, merge
+from pytest_tarl.learning.packing import represented
 from pytest_tarl.learning.permutation import permutations_for, permuted_loss
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled, tiled_batch
@@ -58,7 +59,7 @@ def run_online(
     watch = _Watch(fixture.sample, designation, options, planned(count, side.looks))
     recorded = run_episodes(side.rollout, side.seeds, drift, members, progress, learner, watch)
     difference = concluded(watch.seen, options.alpha)
-    offline, online = aligned(fixture.sample, recorded.sample)
+    offline, online = aligned(fixture.sample, represented(recorded.sample))
     learned = sarsa_tables(recorded, mean_flows(fixture.sample))
     if options.learner:
         tables = _learned_tables(fixture, recorded, learned, offline.cells)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from pytest_tarl.learning.evidence import gathered
 from pytest_tarl.learning.intervals import difference_bounds
 from pytest_tarl.learning.merging import aligned
+from pytest_tarl.learning.packing import represented_chain
 from pytest_tarl.learning.permutation import PERMUTATIONS, max_statistic, permuted_loss
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.model import LossInterval, Region, Result, Verdict
@@ -54,12 +55,12 @@ def compare(
     sensors: Sequence[Sensor] = (),
     permutations: int = PERMUTATIONS,
 ) -> Difference:
-    """Judge the on-line world against the off-line one; `tolerance` is the loss per episode that nobody minds.
+    """Judge the on-line world against the off-line one; `tolerance` is the tolerated loss per episode.
 
     `sensors` tell which of them are tiled; without them utility is a table. `permutations` are more where verdicts are
-    corrected over many comparisons.
+    corrected over many comparisons. Both samples are compared as a fixture holds them, whichever was read from one.
     """
-    offline, online = aligned(offline, online)
+    offline, online = aligned(as_compared(offline), as_compared(online))
     margin = tolerated(offline, tolerance)
     p_loss = permuted_loss(offline.total, online.total, generator, permutations)
     loss = float(offline.total.mean() - online.total.mean())
@@ -69,6 +70,11 @@ def compare(
     verdict = judged(Verdict("no difference", p_drift, p_loss, loss, detectable, margin, interval), alpha)
     found = region if verdict.result != "no difference" else Region()
     return Difference(verdict, found, changes)
+
+
+def as_compared(sample: Sample) -> Sample:
+    """Return the sample with the chain as a fixture would hold it, the only part that is compared."""
+    return replace(sample, chain=represented_chain(sample.chain))
 
 
 def judged(verdict: Verdict, alpha: float) -> Verdict:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pytest_tarl.learning.residuals import fitted, in_fit, residuals
+from pytest_tarl.learning.residuals import beyond, fitted, in_fit, residuals
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.sensors import Cell, Sensor
@@ -28,12 +28,15 @@ class Evidence:
     move: Floats  # per cell, like the next two
     reward: Floats
     novel: Floats
+    move_error: Floats  # of the first two, which are 0 where they are no larger
+    reward_error: Floats
     slabs: tuple[Ints, ...]  # the cells of each slab
     totals: Floats
 
     def columns(self) -> tuple[Floats, ...]:
         """Return the blocks of columns: cells three times, slabs by move and by reward, totals."""
-        slabs = [_summed(part, self.slabs) for part in (self.move, self.reward)]
+        parts = ((self.move, self.move_error), (self.reward, self.reward_error))
+        slabs = [beyond(_summed(part, self.slabs), _summed(error, self.slabs)) for part, error in parts]
         return (self.move, self.reward, self.novel, *slabs, self.totals)
 
     def covered(self, significant: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -51,14 +54,20 @@ def gathered(offline: Sample, online: Sample, sensors: Sequence[Sensor] = ()) ->
     known = type(offline.chain)(*(column[rows] for column in vars(offline.chain).values()))
     model = fitted(known, len(offline.cells), tiled(offline.cells, sensors))
     held_out, deployed = residuals(offline, model), residuals(online, model)
-    move, reward, novel = (
+    move, reward, novel, move_error, reward_error = (
         np.concatenate((getattr(deployed, part), getattr(held_out, part)[~fit]))
-        for part in ("move", "reward", "novel")
+        for part in ("move", "reward", "novel", "move_error", "reward_error")
     )
     visited = ((novel > 0).sum(axis=0) >= NOVEL_EPISODES) & (novel.sum(axis=0) >= NOVEL_VISITS)
     totals = np.concatenate((online.total, offline.total[~fit]))[:, None]
     return Evidence(
-        move, reward, np.where(visited, np.minimum(novel, 1.0), 0.0), slabs(offline.cells), totals
+        move,
+        reward,
+        np.where(visited, np.minimum(novel, 1.0), 0.0),
+        move_error,
+        reward_error,
+        slabs(offline.cells),
+        totals,
     )
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from pytest_tarl.learning.packing import ROUNDING
 from pytest_tarl.learning.permutation import max_statistic
 from pytest_tarl.learning.tables import Floats, Sample, sum_by
 from pytest_tarl.sensors import Cell
@@ -36,7 +37,7 @@ def lost(
     if not names:
         return {}
     worlds = [np.concatenate([_by_cell(one, name) for name in names], axis=1) for one in (online, offline)]
-    p_values = max_statistic(np.concatenate(worlds), online.episodes, generator)
+    p_values = max_statistic(np.concatenate(worlds), online.episodes, generator, error=4 * ROUNDING)
     losses = worlds[1].mean(axis=0) - worlds[0].mean(axis=0)
     found = {}
     for name, loss, p_value in zip(

@@ -13,6 +13,7 @@ from pytest_tarl.learning.tables import Floats
 
 PERMUTATIONS = 999
 MOST_PERMUTATIONS = 19_999
+ARITHMETIC = 1e-12  # error of a few sums of floats, relative to the largest of them
 
 
 def permutations_for(alpha: float, comparisons: int) -> int:
@@ -32,30 +33,40 @@ def least_p_value(offline: int, online: int, permutations: int) -> float:
 def permuted_loss(
     offline: Floats, online: Floats, generator: np.random.Generator, permutations: int = PERMUTATIONS
 ) -> float:
-    """Return the one-sided permutation p-value for a lower mean on-line; inputs have shape (episodes,)."""
+    """Return the one-sided permutation p-value for a lower mean on-line; inputs have shape (episodes,).
+
+    Sums that differ by no more than rounding makes of equal totals are ties, and count against a loss.
+    """
     pooled = np.concatenate((online, offline))
+    rounding = ARITHMETIC * float(np.abs(pooled).sum())
     pooled -= pooled.mean()
     shuffled = labels(pooled.size, online.size, generator, permutations) @ pooled
-    tie = 1e-9 * float(np.abs(pooled).sum())  # sums of the same numbers in another order
+    tie = 1e-9 * float(np.abs(pooled).sum()) + rounding  # sums of the same numbers in another order
     return (1 + int(np.count_nonzero(shuffled[1:] <= shuffled[0] + tie))) / shuffled.size
 
 
 def max_statistic(
-    columns: Floats, first: int, generator: np.random.Generator, permutations: int = PERMUTATIONS
+    columns: Floats,
+    first: int,
+    generator: np.random.Generator,
+    permutations: int = PERMUTATIONS,
+    error: float = ARITHMETIC,
 ) -> Floats:
     """Return each column's p-value corrected over all columns, shape (columns,).
 
     The first `first` rows are one group, the others the other. The statistic is the difference of the groups' means in
     units of the column's standard deviation, which orders columns as the pooled t statistic does. A column is held
-    against the largest of those that do not differ more than it does (step-down).
+    against the largest of those that do not differ more than it does (step-down). A column is constant where it varies
+    by no more than `error` of its largest entry.
     """
     deviation = columns - columns.mean(axis=0)
-    scale = np.sqrt((deviation**2).mean(axis=0))
-    alive = np.flatnonzero(scale > 1e-12 * np.maximum(1.0, np.abs(columns).max(axis=0, initial=0.0)))
+    extent, largest = (np.abs(part).max(axis=0, initial=0.0) for part in (deviation, columns))
+    alive = np.flatnonzero(extent > error * largest)
     p_values = np.ones(columns.shape[1])
     if not alive.size or not 0 < first < columns.shape[0]:
         return p_values
-    standard = deviation[:, alive] / scale[alive]
+    relative = deviation[:, alive] / extent[alive]  # squares of it neither overflow nor vanish
+    standard = relative / np.sqrt((relative**2).mean(axis=0))
     statistic = np.abs(labels(columns.shape[0], first, generator, permutations) @ standard)
     order = np.argsort(statistic[0], kind="stable")
     largest = np.maximum.accumulate(statistic[:, order], axis=1)

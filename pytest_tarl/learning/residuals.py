@@ -2,6 +2,9 @@
 
 Zero in expectation where the world still is the one that the utility was fitted in, so what stands out is where it
 changed, not what lies upstream of it (performance-difference lemma, Kakade & Langford 2002).
+
+A residual below its own error is 0: where a cell's reward is constant, all that is left of it is how sums are rounded
+(packing.py) and in which order they were taken.
 """
 
 from __future__ import annotations
@@ -11,6 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pytest_tarl.learning.packing import ROUNDING
+from pytest_tarl.learning.permutation import ARITHMETIC
 from pytest_tarl.learning.tables import END, Chain, Floats, Sample, sum_by
 from pytest_tarl.learning.tiles import Tiles, expected, tiled_chain
 from pytest_tarl.learning.utility import GAMMA_STEP
@@ -18,11 +23,16 @@ from pytest_tarl.learning.utility import GAMMA_STEP
 
 @dataclass(frozen=True)
 class Residuals:
-    """Per episode and cell, shape (episodes, cells): the two parts of the Bellman residual, visits to novel cells."""
+    """Per episode and cell, shape (episodes, cells): the two parts of the Bellman residual, visits to novel cells.
+
+    The errors bound what rounding may have added to each residual; sums of residuals have the sum of them.
+    """
 
     move: Floats
     reward: Floats
     novel: Floats
+    move_error: Floats
+    reward_error: Floats
 
 
 def in_fit(seed: int) -> bool:
@@ -37,6 +47,7 @@ class Model:
     utility: Floats
     move: Floats  # mean of γU(x')-U(x) over the steps that are not the last
     reward: Floats
+    size: Floats  # mean |Σr| per step: what the error of `reward` is relative to
 
 
 def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:
@@ -46,7 +57,8 @@ def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:
     gained = _gain(chain, utility) * chain.count
     move = expected(chain.cell[inside], chain.count[inside], gained[inside], cells, tiles)
     reward = expected(chain.cell, chain.count, chain.reward, cells, tiles)
-    return Model(utility, move, reward)
+    size = expected(chain.cell, chain.count, np.abs(chain.reward), cells, tiles)
+    return Model(utility, move, reward, size)
 
 
 def residuals(compared: Sample, model: Model) -> Residuals:
@@ -60,11 +72,22 @@ def residuals(compared: Sample, model: Model) -> Residuals:
     move = (_gain(chain, model.utility) - model.move[chain.cell]) * chain.count
     move = np.where((chain.next_cell != END) & ~np.isnan(move), move, 0.0)
     reward = chain.reward - model.reward[chain.cell] * chain.count
+    rounding = ROUNDING * (np.abs(chain.reward) + np.abs(model.size[chain.cell]) * chain.count)
+    height = np.abs(model.utility).max(initial=0.0, where=known)
+    move_error = _by_episode(chain, ARITHMETIC * height * chain.count, shape)
+    reward_error = _by_episode(chain, np.where(known[chain.cell], rounding, 0.0), shape)
     return Residuals(
-        move=_by_episode(chain, move, shape),
-        reward=_by_episode(chain, np.where(known[chain.cell], reward, 0.0), shape),
+        move=beyond(_by_episode(chain, move, shape), move_error),
+        reward=beyond(_by_episode(chain, np.where(known[chain.cell], reward, 0.0), shape), reward_error),
         novel=_by_episode(chain, np.where(known[chain.cell], 0.0, chain.count), shape),
+        move_error=move_error,
+        reward_error=reward_error,
     )
+
+
+def beyond(values: Floats, error: Floats) -> Floats:
+    """Return the values, 0 where they are no larger than their error."""
+    return np.where(np.abs(values) > error, values, 0.0)
 
 
 def _gain(chain: Chain, utility: Floats) -> Floats:

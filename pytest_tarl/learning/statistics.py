@@ -27,6 +27,7 @@ from pytest_tarl.sensors import Cell
 if TYPE_CHECKING:
     from pytest_tarl.instrumentation.trace import Trace
 
+CANCELLED = 1e-13  # of the sum of sizes: a sum below it is what rounding left of values that cancel out
 DENSE = 4  # possible pairs per pair seen up to which they are counted in a table
 
 
@@ -39,7 +40,7 @@ def sample(trace: Trace, seed: int, passed: bool, lists: Sequence[Sequence[int]]
         cells=cells,
         seeds=(seed,),
         passed=np.array([passed]),
-        total=np.array([float(np.sum(trace.reward))]),
+        total=_cancelled(np.sum(trace.reward, keepdims=True), np.sum(np.abs(trace.reward))),
         steps=np.array([trace.reward.size], dtype=np.int64),
         part_names=names,
         chain=_chain(sorted_trace, names),
@@ -62,15 +63,25 @@ def _chain(trace: Trace, names: Sequence[str]) -> Chain:
     following = np.append(cell[1:], END) if cell.size else cell
     pairs, inverse, count = _unique_pairs(cell, following)
     columns = [trace.parts[name][known] for name in names]
-    summed = [sum_by(inverse, column, count.size) for column in columns]
+    summed = [_summed(inverse, column, count.size) for column in columns]
     return Chain(
         episode=np.zeros(count.size, np.int64),
         cell=pairs[0],
         next_cell=pairs[1],
         count=count,
-        reward=sum_by(inverse, trace.reward[known], count.size),
+        reward=_summed(inverse, trace.reward[known], count.size),
         parts=np.stack(summed, axis=1) if summed else np.zeros((count.size, 0)),
     )
+
+
+def _summed(index: Ints, column: Floats, size: int) -> Floats:
+    """Return the sum at each index, 0 where all of it cancels out; shape (size,)."""
+    return _cancelled(sum_by(index, column, size), sum_by(index, np.abs(column), size))
+
+
+def _cancelled(sums: Floats, sizes: Floats) -> Floats:
+    """Set to 0 what rounding left of values that cancel out, as those of `x - before` on a way back do."""
+    return np.where(np.abs(sums) > CANCELLED * sizes, sums, 0.0)
 
 
 def _list_sample(sequences: Sequence[EventSequence], width: int) -> ListSample:

@@ -1,0 +1,166 @@
+"""How often a world is told from itself, through files and command line: record, then compare with new seeds.
+
+    python benchmarks/same_world.py [--comparisons 10] [--worlds shuttle …] [--committed] [--workers 2]
+
+Thirty worlds: the tasks of benchmarks/drift, the examples, and those of benchmarks/same_worlds. Each comparison is a
+`pytest --tarl-record` and a `pytest --tarl-online` with seeds of their own; its result is read from the JSON that the
+second one writes. With `--committed` a world is recorded once and compared again and again, as in CI. Results are
+appended to a file (--found), and comparisons that it holds are not run again, so a run can be interrupted and resumed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+HERE = Path(__file__).resolve().parent
+EXAMPLES = HERE.parent / "examples"
+FOUND = HERE.parent / ".tarl-same-world.jsonl"
+BATCH = 5  # comparisons of a process
+ONLINE_SEEDS = 1_000_000  # added to the number of a comparison: seeds that no recording has
+SPARED = shutil.ignore_patterns(".tarl", "__pycache__", "answer.json")
+
+
+@dataclass(frozen=True)
+class World:
+    """A simulation test, in a folder that is copied for each run."""
+
+    folder: Path
+    test: str
+
+
+def worlds() -> dict[str, World]:
+    """Return all worlds by name."""
+    found = {}
+    for task in sorted(path.parent for path in (HERE / "drift").glob("*/test_*.py")):
+        found[task.name] = World(task, next(task.glob("test_*.py")).name)
+    for name, test in (
+        ("line_follower", "test_line_follower.py"),
+        ("quadrotor", "test_quadrotor.py"),
+        ("shuttle", "test_shuttle.py::test_delivers"),
+        ("shuttle_both_ways", "test_shuttle.py::test_shuttles"),
+        ("shuttle_swapped", "test_swapped.py"),
+    ):
+        found[name] = World(EXAMPLES / name.partition("_both")[0].partition("_swapped")[0], test)
+    text = (HERE / "same_worlds" / "test_rewards.py").read_text()
+    for test in (line[4:].partition("(")[0] for line in text.splitlines() if line.startswith("def test_")):
+        found[test.removeprefix("test_")] = World(HERE / "same_worlds", f"test_rewards.py::{test}")
+    return found
+
+
+class Undrifted:
+    """A pytest plugin that takes the drifts out of the markers, so that the on-line world is the designed one."""
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
+        """Forget the drifts of a test before its scenarios are made."""
+        marker = metafunc.definition.get_closest_marker("tarl")
+        if marker is not None and isinstance(marker.kwargs, dict):
+            marker.kwargs.pop("drifts", None)
+
+
+def compare_here(world: World, numbers: Sequence[int], committed: bool) -> Iterator[dict[str, Any]]:
+    """Record and compare in this process, yield what each comparison concluded."""
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch) / world.folder.name
+        shutil.copytree(world.folder, folder, ignore=SPARED)
+        os.chdir(folder)
+        for place, number in enumerate(numbers):
+            if not committed or place == 0:
+                ran(world, "--tarl-record", f"--tarl-seed={0 if committed else number}")
+            ran(world, "--tarl-online", f"--tarl-seed={ONLINE_SEEDS + number}")
+            (result,) = (folder / ".tarl" / "results").glob("*.json")
+            yield {"number": number, "committed": committed, **json.loads(result.read_text())["verdict"]}
+
+
+def ran(world: World, *flags: str) -> None:
+    """Run pytest. Raises RuntimeError where it came to no verdict."""
+    quiet = ("-q", "-p", "no:cacheprovider", "-p", "no:asyncio", "-c", os.devnull, "--rootdir", ".")
+    with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
+        status = pytest.main(["-W", "ignore", *quiet, world.test, *flags], [Undrifted()])
+    if status not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
+        raise RuntimeError(f"{world.test} {' '.join(flags)}: pytest ended with {status!r}.")
+
+
+def batches(
+    chosen: Iterable[str], asked: int, committed: bool, done: set[tuple[str, bool, int]]
+) -> Iterator[tuple[str, list[int]]]:
+    """Yield what is yet to be compared, all worlds a little before any of them whole."""
+    names = list(chosen)
+    for first in range(0, asked, BATCH):
+        for name in names:
+            wanted = range(first, min(first + BATCH, asked))
+            numbers = [number for number in wanted if (name, committed, number) not in done]
+            if numbers:
+                yield name, numbers
+
+
+def compared(name: str, numbers: Sequence[int], committed: bool) -> list[dict[str, Any]]:
+    """Run a batch in a process of its own; what it found before it died counts."""
+    command = [sys.executable, __file__, "--worlds", name, "--numbers", *map(str, numbers)]
+    ended = subprocess.run(
+        [*command, *(["--committed"] if committed else [])], capture_output=True, text=True, check=False
+    )
+    if ended.returncode:
+        print(f"{name}: {ended.stderr.strip().splitlines()[-1:]}", file=sys.stderr, flush=True)
+    return [{"world": name, **json.loads(line)} for line in ended.stdout.splitlines()]
+
+
+def read(path: Path) -> list[dict[str, Any]]:
+    """Return what was found until now."""
+    return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+
+
+def table(found: Sequence[dict[str, Any]], committed: bool) -> Iterator[str]:
+    """Yield a Markdown table: how often each world was called another one."""
+    yield "| world | comparisons | drifted | degraded | smallest p_drift |\n|---|---|---|---|---|"
+    chosen = [one for one in found if one["committed"] == committed]
+    for name in [*dict.fromkeys(one["world"] for one in chosen), "all"]:
+        own = [one for one in chosen if name in (one["world"], "all")]
+        said = [sum(one["result"] == what for one in own) for what in ("drifted", "degraded")]
+        yield f"| {name} | {len(own)} | {said[0]} | {said[1]} | {min(one['p_drift'] for one in own):.2g} |"
+
+
+def main() -> None:
+    """Compare what was not compared yet, and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("--comparisons", type=int, default=10, help="of each world")
+    parser.add_argument(
+        "--worlds", nargs="+", default=list(worlds()), choices=list(worlds()), metavar="WORLD"
+    )
+    parser.add_argument("--committed", action="store_true", help="record each world once")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--found", type=Path, default=FOUND, help="file that what was found is added to")
+    parser.add_argument("--numbers", nargs="+", type=int, help=argparse.SUPPRESS)
+    asked = parser.parse_args()
+    if asked.numbers:
+        for one in compare_here(worlds()[asked.worlds[0]], asked.numbers, asked.committed):
+            print(json.dumps(one), flush=True)
+        return
+    done = {(one["world"], one["committed"], one["number"]) for one in read(asked.found)}
+    with ThreadPoolExecutor(asked.workers) as threads, asked.found.open("a") as kept:
+        jobs = [
+            threads.submit(compared, name, numbers, asked.committed)
+            for name, numbers in batches(asked.worlds, asked.comparisons, asked.committed, done)
+        ]
+        for job in as_completed(jobs):
+            kept.writelines(f"{json.dumps(one)}\n" for one in job.result())
+            kept.flush()
+    print(*table(read(asked.found), asked.committed), sep="\n")
+
+
+if __name__ == "__main__":
+    main()
