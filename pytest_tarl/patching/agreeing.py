@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 
-from pytest_tarl.patching.reading import Lines, Replacement
+from pytest_tarl.patching.changes import Lines, Replacement
 
 Imports = dict[tuple[str, int] | None, dict[str, None]]  # names as they are written, by module and level
 

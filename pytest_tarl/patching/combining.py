@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.agreeing import agreed
-from pytest_tarl.patching.patch import BASE, bytes_diff, split_lines
-from pytest_tarl.patching.reading import Patch, Replacement
+from pytest_tarl.patching.changes import Replacement
+from pytest_tarl.patching.patch import BASE, SEAL, bytes_diff, split_lines
+from pytest_tarl.patching.reading import Patch
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +77,7 @@ def combined_diff(patches: Sequence[Patch], originals: Mapping[str, bytes]) -> s
     header = [f"{patches[0].title.partition(':')[0]}: {len(patches)} repairs in one, each accepted by itself"]
     for patch in patches:
         header.append(f"part {patch.name}")
-        header += [f"  {key}: {value}" for key, value in patch.facts if key != BASE]
+        header += [f"  {key}: {value}" for key, value in patch.facts if key not in (BASE, SEAL)]
     return bytes_diff(texts, patches[0].base, header)
 
 

@@ -19,6 +19,7 @@ from pytest_tarl.files import write_atomically
 Opcode = tuple[str, int, int, int, int]
 CONTEXT = 3  # unchanged lines around a change
 BASE = "paths are relative to"  # the fact of the header that says so
+SEAL = "digest of all other lines"  # the fact of the header by which an edited or damaged patch is known
 TITLE = "Repair by tarl "
 _FILE = re.compile(r"^--- a/([^\t\n]+)", re.MULTILINE)
 _NO_NEWLINE = "\\ No newline at end of file\n"
@@ -44,8 +45,14 @@ def unified_diff(
 def bytes_diff(texts: Mapping[str, tuple[bytes, bytes]], base: str, header: Sequence[str]) -> str:
     """Return the diff of files whose old and new bytes are known; `base` is what their names are relative to."""
     comments = [f"# {line}".rstrip() + "\n" for text in header for line in text.splitlines() or [""]]
-    diffs = [_file_diff(name, before, after) for name, (before, after) in texts.items()]
-    return "".join((*comments, f"# {BASE}: {base}\n", *diffs))
+    head = "".join((*comments, f"# {BASE}: {base}\n"))
+    diffs = "".join(_file_diff(name, before, after) for name, (before, after) in texts.items())
+    return f"{head}# {SEAL}: {seal((head + diffs).encode('utf-8', 'surrogateescape'))}\n{diffs}"
+
+
+def seal(content: bytes) -> str:
+    """Return the digest of a patch without the line that tells it."""
+    return hashlib.sha256(content).hexdigest()
 
 
 def readable(diff: str) -> str:

@@ -12,7 +12,9 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from pytest_tarl.patching.reading import FilePatch, Patch, Replacement
+from pytest_tarl.patching.changes import FilePatch, Replacement
+from pytest_tarl.patching.patch import BASE, SEAL
+from pytest_tarl.patching.reading import Patch
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 RULE = "TARL301"
@@ -85,11 +87,7 @@ def _message(patch: Patch) -> str:
 
 
 def _evidence(patch: Patch) -> str:
-    told = [
-        f"- {key}: {_escaped(value)}"
-        for key, value in patch.facts
-        if key not in ("fixture", "paths are relative to")
-    ]
+    told = [f"- {key}: {_escaped(value)}" for key, value in patch.facts if key not in ("fixture", BASE, SEAL)]
     return "\n".join((f"**{_escaped(patch.title)}**", "", *told))
 
 
@@ -157,9 +155,11 @@ def _encoding(patch: Patch, file: FilePatch) -> str:
     """Return the encoding of the file where it is at hand, else UTF-8."""
     path = (patch.root or Path.cwd()) / (patch.base if patch.root else "") / file.name
     try:
-        content = path.read_bytes()
+        content = path.read_bytes() if path.is_file() else b""
         if content.startswith(codecs.BOM_UTF8):
             return "utf-8"
-        return tokenize.detect_encoding(io.BytesIO(content).readline)[0]
-    except (OSError, SyntaxError):
+        encoding = tokenize.detect_encoding(io.BytesIO(content).readline)[0]
+        b"".decode(encoding)
+    except (OSError, SyntaxError, LookupError, ValueError):
         return "utf-8"
+    return encoding

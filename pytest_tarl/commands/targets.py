@@ -1,0 +1,61 @@
+"""The files that patches change: where they are, what is in them, which patch does what to each."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.changes import FilePatch, identical
+from pytest_tarl.patching.placing import located
+from pytest_tarl.patching.reading import Patch
+
+
+@dataclass(frozen=True)
+class Target:
+    """A file to be changed: where it is, what is in it, and what each patch does to it."""
+
+    path: Path
+    project: Path
+    shown: str
+    content: bytes
+    parts: tuple[tuple[Patch, FilePatch], ...]
+
+    @property
+    def as_searched(self) -> bool:
+        """Tell whether the file is the text that every patch was searched and accepted on."""
+        return all(identical(self.content, file.before) for _, file in self.parts)
+
+    @property
+    def done(self) -> bool:
+        """Tell whether the file is what its one patch makes of it."""
+        return len(self.parts) == 1 and identical(self.content, self.parts[0][1].after)
+
+
+def targets(patches: Sequence[Patch], directory: Path | None) -> list[Target]:
+    """Find the files of all patches. Raises RepairError where one is not there, RefusedError where it is outside."""
+    parts: dict[Path, list[tuple[Patch, FilePatch]]] = {}
+    projects: dict[Path, Path] = {}
+    for patch in patches:
+        project, paths = located(patch, directory)
+        for path, file in zip(paths, patch.files, strict=True):
+            parts.setdefault(path, []).append((patch, file))
+            projects[path] = project
+    return [
+        Target(path, projects[path], shown(path), _content(path), tuple(each))
+        for path, each in sorted(parts.items())
+    ]
+
+
+def shown(path: Path) -> str:
+    """Return a path as one types it here."""
+    return Path(os.path.relpath(path.resolve(), Path.cwd())).as_posix()
+
+
+def _content(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as problem:
+        raise RepairError(f"{path} cannot be read ({problem.strerror}).") from problem

@@ -1,0 +1,61 @@
+"""Where the files of a patch are: inside the project, whatever its header says and wherever links lead."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pytest_tarl.errors import RefusedError, RepairError
+from pytest_tarl.patching.reading import Patch
+
+
+def located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
+    """Return the project's folder and the files of a patch, in its order, all without links and inside of it.
+
+    The project is what the user names, else the git repository around `.tarl`, else the folder that holds `.tarl`.
+    Raises RepairError when the files are nowhere, RefusedError where they are outside.
+    """
+    try:
+        return _located(patch, directory)
+    except (OSError, ValueError) as problem:
+        raise RepairError(f"{patch.name} names files that cannot be ({problem}): make it again.") from problem
+
+
+def _located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
+    if directory is not None:
+        project = directory.resolve()
+        likely = [project]
+    elif patch.root is not None:
+        project = _project(patch.root.resolve())
+        likely = [(patch.root.resolve() / patch.base).resolve()]
+        _keep_inside(patch, patch.base, likely[0], project)
+    else:
+        here = Path.cwd().resolve()
+        project = _project(here)
+        likely = [folder for folder in (here, *here.parents) if folder.is_relative_to(project)]
+    base = next((folder for folder in likely if not _missing(patch, folder)), None)
+    if base is None:
+        raise RepairError(
+            f"{patch.name} changes {_missing(patch, likely[0])[0]}, and there is no such file in {likely[0]}: say with "
+            "--directory where its paths begin."
+        )
+    files = [(base / file.name).resolve() for file in patch.files]
+    for file, path in zip(patch.files, files, strict=True):
+        _keep_inside(patch, file.name, path, project)
+    return project, files
+
+
+def _keep_inside(patch: Patch, named: str, path: Path, project: Path) -> None:
+    if not path.is_relative_to(project) or ".git" in path.relative_to(project).parts:
+        raise RefusedError(
+            f"{patch.name} leads out of {project}: {named} is {path}. Nothing was changed; if it is meant, name the "
+            "folder with --directory."
+        )
+
+
+def _project(folder: Path) -> Path:
+    """Return the top of the git repository around a folder, else the folder."""
+    return next((each for each in (folder, *folder.parents) if (each / ".git").exists()), folder)
+
+
+def _missing(patch: Patch, folder: Path) -> list[str]:
+    return [file.name for file in patch.files if not (folder / file.name).is_file()]
