@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -204,9 +203,6 @@ ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
     **dict.fromkeys(("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"), 0),
     **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), 0),
 }  # fmt: skip
-LEARNING: Final = re.compile(
-    r"(?:set|add)(?:_|[A-Z])|(?:correct|fit|partial_fit|feed|observe|learn|train)$|[Aa]ccept_?[Ww]aveform"
-)
 METHODS_WRITING: Final = {"pack_into": 0, "readinto": 0, "recv_into": 0}  # position of what they fill
 DEVICE_WRITERS: Final = frozenset(["write", "writelines", "send", "sendall", "sendto"])
 DEVICE_READERS: Final = frozenset(
@@ -255,9 +251,10 @@ STATE_BY_CALLBACKS: Final = (
     "smach.CBState", "smach.state.CBState", "smach_ros.SimpleActionState", "smach_ros.ServiceState",
 )  # fmt: skip
 
-NODE_BASES: Final = frozenset(
+NODES: Final = frozenset(["rclpy.node.Node", "rclpy.lifecycle.Node", "rclpy.lifecycle.LifecycleNode"])
+NODE_BASES: Final = NODES | frozenset(
     [
-        "rclpy.node.Node", "rclpy.lifecycle.Node", "rclpy.lifecycle.LifecycleNode", "object", "Exception",
+        "object", "Exception",
         "enum.Enum", "enum.IntEnum", "abc.ABC", "typing.NamedTuple", "typing.Protocol", "threading.Thread",
     ]
 )  # fmt: skip

@@ -6,11 +6,19 @@ import ast
 import re
 from collections.abc import Iterator, Sequence
 
+from tarl_lint import catalog
 from tarl_lint.trees import walk
 from tarl_lint.valueflow import ir
 
-STARTS = frozenset(["init_node", "init", "create_node", "spin", "Subscriber", "create_subscription"])
-STARTING = re.compile(rf"\.\s*({'|'.join(sorted(STARTS))})\s*\(")  # without it a file starts nothing
+KINDS = frozenset(
+    ["subscribe", "receive", "filter", "service", "action"]
+)  # of calls that something comes in by
+FACTS = {**catalog.FUNCTIONS, **catalog.METHODS}
+REGISTERING = frozenset(name.rpartition(".")[2] for name, fact in FACTS.items() if fact.kind in KINDS)
+STARTS = REGISTERING | {"init_node", "init", "create_node", "spin"}
+STARTING = re.compile(
+    rf"\.\s*(?:{'|'.join(sorted(STARTS))})\s*\(|\b(?:{'|'.join(sorted(REGISTERING))})\s*\("
+)  # without it a file starts nothing
 
 
 def definitions(body: Sequence[ir.Stmt]) -> Iterator[ir.Define | ir.Class]:
@@ -31,10 +39,14 @@ def registers(statement: ir.Class) -> bool:
 
 
 def starts(function: ir.Function) -> bool:
-    """Tell whether a function calls a method that registers something or starts a node."""
+    """Tell whether a function calls something that registers or starts a node."""
     if function.starts is None:
-        function.starts = any(
-            isinstance(n, ast.Call) and isinstance(n.func, ast.Attribute) and n.func.attr in STARTS
-            for n in walk(function.node)
-        )
+        function.starts = any(isinstance(n, ast.Call) and _starts(n.func) for n in walk(function.node))
     return function.starts
+
+
+def _starts(called: ast.expr) -> bool:
+    """Tell it of what is called: a method, or what was imported by its own name."""
+    if isinstance(called, ast.Name):
+        return called.id in REGISTERING
+    return isinstance(called, ast.Attribute) and called.attr in STARTS

@@ -6,7 +6,7 @@ from tarl_lint import catalog
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.activations import ROOT_CALL
 from tarl_lint.valueflow.execute import Execution
-from tarl_lint.valueflow.starting import STARTING, definitions, registers, starts_node
+from tarl_lint.valueflow.starting import STARTING, definitions, registers, starts, starts_node
 from tarl_lint.valueflow.store import Root
 from tarl_lint.valueflow.values import ClassInfo, Obj, Value, lineage
 
@@ -18,13 +18,13 @@ class Uncalled(Execution):
         """Run functions and make nodes that are there to be started from outside (entry points)."""
         for program in list(self.programs.values()):
             module = self.module_objects[program.name]
-            starts = STARTING.search(self.modules[program.path].text) is not None
+            starting = STARTING.search(self.modules[program.path].text) is not None
             for statement in definitions(program.body):
                 if isinstance(statement, ir.Define):
-                    if starts or statement.function.name == "main":
+                    if starting or statement.function.name == "main":
                         self._main_function(statement, module)
-                elif starts:
-                    self._node_class(statement, program)
+                else:
+                    self._node_class(statement, program, starting)
 
     def _main_function(self, statement: ir.Define, module: Obj) -> None:
         function = statement.function
@@ -46,13 +46,25 @@ class Uncalled(Execution):
 
         self.add_root(root, run)
 
-    def _node_class(self, statement: ir.Class, program: ir.Program) -> None:
-        """Make an instance of a class that registers something and that nothing instantiates."""
+    def _node_class(self, statement: ir.Class, program: ir.Program, starting: bool) -> None:
+        """Make an instance of a class that registers something, or is a node, and that nothing instantiates."""
         for cls in self._values(self.module_objects[program.name], statement.name):
-            if cls.kind != "class" or cls.key in self.made or not registers(statement):
+            if cls.kind != "class" or cls.key in self.made:
                 continue
-            if not self._has_made_heir(cls):
+            wanted = (
+                not self._has_made_heir(cls) if starting and registers(statement) else self._last_node(cls)
+            )
+            if wanted:
                 self._start(cls, "node")
+                self.guests.add(cls)
+
+    def _last_node(self, cls: Obj) -> bool:
+        """Tell whether a class is a node by what it inherits, and nothing inherits from it."""
+        if not isinstance(cls.info, ClassInfo) or _external(cls.info).isdisjoint(catalog.NODES):
+            return False
+        return not any(
+            o.kind == "class" and o is not cls and cls in lineage(o) for o in self.objects.values()
+        )
 
     def _has_made_heir(self, cls: Obj) -> bool:
         return any(cls in lineage(self.objects["class", key]) for key in self.made)
@@ -69,7 +81,7 @@ class Uncalled(Execution):
     def _framework_methods(self, obj: Obj, owner: Obj, info: ClassInfo) -> None:
         cls = obj.info.info if isinstance(obj.info, Obj) else None
         external = _external(cls) if isinstance(cls, ClassInfo) else set()
-        unknown = external - catalog.NODE_BASES
+        unknown = external - catalog.NODE_BASES or (obj.info in self.guests and not _registers_itself(info))
         for statement in info.statement.body if info.statement is not None else ():
             if not isinstance(statement, ir.Define):
                 continue
@@ -87,6 +99,14 @@ class Uncalled(Execution):
         method = self.intern("bound", (closure.key, obj), closure.name)
         method.info = (closure, obj, owner)
         self.call_when("framework", method, given, "callback")
+
+
+def _registers_itself(info: ClassInfo) -> bool:
+    """Tell whether a class registers all it needs when it is made; else somebody calls a method for that."""
+    body = info.statement.body if info.statement is not None else ()
+    return any(
+        isinstance(s, ir.Define) and s.function.name == "__init__" and starts(s.function) for s in body
+    )
 
 
 def _external(info: ClassInfo) -> set[str]:
