@@ -94,7 +94,15 @@ class Calls(Activations):
             return self.call_object(method, arguments, frame, expr, base.deps)
         if callables:
             return self.call_value(Value(member.deps, callables), arguments, frame, expr)
+        if obj.kind == "instance" and (made := self.made_by_library(obj, name)).pts:
+            return self.call_value(self.arrive(made, base.deps), arguments, frame, expr)
         return self.call_method(Value(base.deps, frozenset([obj])), obj, name, arguments, frame, expr)
+
+    def made_by_library(self, obj: Obj, name: str) -> Value:
+        """Return the objects of libraries that were stored in an attribute: to be called as functions are."""
+        stored = self.store.get((obj, name))
+        pts = frozenset(o for o in stored.pts if o.kind == "lib") if stored is not None else frozenset[Obj]()
+        return Value(stored.deps if stored is not None else NONE, pts)
 
     def callable_held(self, obj: Obj) -> bool:
         """Tell whether what an attribute holds can be called: a function, or an object whose class says how."""

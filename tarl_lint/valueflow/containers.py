@@ -51,7 +51,7 @@ class Containers(Iterating):
         plain, named = arguments
         if name in FLAGGING and not plain:
             self._flag(base, name, frame, call)
-        if name in catalog.DEVICE_WRITERS and base.pts and all(map(is_device, base.pts)):
+        if name in catalog.DEVICE_WRITERS and all(map(is_device, base.pts)):
             self._transmit(base, plain, frame, call)
             return
         if name == "clear":

@@ -22,6 +22,7 @@ from tarl_lint.valueflow.values import (
 ANY = "*"  # the field that stands for all elements
 KEYS = "<keys>"  # of a mapping: what its keys are made of
 LENGTH = "<length>"  # of a container: what its length is made of
+HELD = "<callables>"  # of an object of a library: the callables that it was given
 SENT = "<sent>"  # the field of a port, file or socket that holds what was written to it
 METHODS_OF = {
     "publisher": frozenset(["publish"]),

@@ -171,6 +171,7 @@ class Function:
     raising: dict[int, dict[str, None]] = field(default_factory=dict)  # statement → what its calls raise
     generator: bool = False  # known when the body is lowered
     starts: bool | None = None  # whether it registers something or starts a node, once somebody asked
+    answers: bool | None = None  # whether it returns anything but None, once somebody asked
 
 
 @dataclass(slots=True, eq=False)

@@ -6,26 +6,25 @@ from collections.abc import Callable, Mapping
 
 from tarl_lint import catalog
 from tarl_lint.catalog import Fact
+from tarl_lint.method_effects import changes, keeps_callables
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.containers import CONTAINERS, QUEUES, is_device
-from tarl_lint.valueflow.contents import in_order
 from tarl_lint.valueflow.ends import Publisher
 from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.futures import READERS
+from tarl_lint.valueflow.handing import Handing
 from tarl_lint.valueflow.heap import ANY
 from tarl_lint.valueflow.invocation import Arguments, Invocation
-from tarl_lint.valueflow.signals import Signals
 from tarl_lint.valueflow.special import FUNCTIONS
-from tarl_lint.valueflow.states import LATER
 from tarl_lint.valueflow.texts import TEXT_METHODS
 from tarl_lint.valueflow.userdata import MACHINE_FIELD
-from tarl_lint.valueflow.values import BOTTOM, BY_CLASS, NONE, UNKNOWN, Obj, Value, lineage, pointer
+from tarl_lint.valueflow.values import BOTTOM, BY_CLASS, NONE, UNKNOWN, Nodes, Obj, Value, lineage, pointer
 from tarl_lint.wrapping import facts
 
 SIGNALLING = frozenset(["connect", "emit"])
 
 
-class Library(Signals):
+class Library(Handing):
     """Performs calls of functions, classes and methods that are not analysed."""
 
     def call_library(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
@@ -73,8 +72,11 @@ class Library(Signals):
         name = qualified.rpartition(".")[2]
         shaped = name in catalog.SHAPED and qualified not in self.config.named
         deps = self.all_used((arguments[0][1:], arguments[1]) if shaped else arguments)
+        held = self.answering(arguments) if qualified not in catalog.KEEPERS else []
         if qualified not in catalog.KEEPERS:
             self.call_back(arguments, frame, call)
+        if held and not keeps_callables(name):
+            deps |= self.returned(held, arguments, BOTTOM, frame, call)
         written = catalog.written(qualified)
         if written is not None and written < len(arguments[0]):
             news = self.through_statement(Value(deps), frame, call)
@@ -87,6 +89,7 @@ class Library(Signals):
             same = qualified == "builtins.float" and len(arguments[0]) == 1
             return Value(deps, arguments[0][0].pts if same else frozenset())
         made = self.new_object(arguments, deps, frame, call, fields=name[:1].isupper())
+        self.hold(made.pts, held)
         if qualified.startswith("io.") or (self.config.named and name[:1].isupper()):
             for obj in made.pts:
                 obj.name = qualified  # settings may speak of its methods; from io.* comes what was written
@@ -113,21 +116,6 @@ class Library(Signals):
         if deps:
             self.store.put((obj, ANY), Value(deps))
         return where
-
-    def call_back(self, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-        """Functions handed to a library may be called by it at any time, with the arguments that follow them."""
-        plain, named = arguments
-        for number, value in enumerate(plain):
-            for target in in_order(value.pts):
-                if target.kind == "method":
-                    self.call_object(target, (plain[number + 1 :], {}), frame, call)
-                elif target.kind in LATER:
-                    passed = self.pass_arguments((plain[number + 1 :], {}), frame, call)[0]
-                    self.call_later(target, passed)
-        for value in named.values():
-            for target in in_order(value.pts):
-                if target.kind in LATER:
-                    self.call_later(target, ())
 
     # --- methods ------------------------------------------------------------------------------------------
 
@@ -183,8 +171,15 @@ class Library(Signals):
         self.call_back(arguments, frame, call)
         if name in SIGNALLING:
             self.signal(base, name, arguments, frame, call)
-        if catalog.LEARNING.match(name) and base.pts and all(o.kind == "lib" for o in base.pts):
-            self._insert(base, [Value(self.all_used(arguments))], frame, call)
+        given = self._given(base, name, arguments, frame, call)
+        learnt = self.all_used(arguments) | given
+        if (
+            learnt
+            and base.pts
+            and all(map(changeable, base.pts))
+            and changes(name, dropped=dropped(frame, call))
+        ):
+            self._insert(base, [Value(learnt)], frame, call)
         written = catalog.METHODS_WRITING.get(name)
         if written is not None and written < len(arguments[0]):
             news = self.through_statement(Value(self.use(base) | self.all_used(arguments)), frame, call)
@@ -196,10 +191,18 @@ class Library(Signals):
         if name in catalog.DEVICE_READERS and base.pts and all(map(is_device, base.pts)):
             deps = self.received(base, arguments)
         else:
-            deps = self.use(base) | self.all_used(arguments)
+            deps = self.use(base) | self.all_used(arguments) | given
         if not deps and not base.pts:
             return UNKNOWN
         return self.new_object(arguments, deps, frame, call, fields=False)
+
+    def _given(self, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Nodes:
+        """Return the data of what callables say that an object of a library has: it may call them when it is called."""
+        new = self.answering(arguments) if name not in SIGNALLING else []
+        if keeps_callables(name):
+            self.hold(base.pts, new)
+            return NONE
+        return self.returned([*self.held_by(base), *new], arguments, base, frame, call)
 
     # --- builtins -----------------------------------------------------------------------------------------
 
@@ -261,6 +264,16 @@ class Library(Signals):
         if obj.kind == "parameter":
             return self.store.get((obj, "value")) or UNKNOWN if name in catalog.PARAMETER_VALUES else UNKNOWN
         return super().default(obj, name)
+
+
+def changeable(obj: Obj) -> bool:
+    """Tell whether an object of a library may be changed by its methods: a node's own methods are ROS's."""
+    return obj.kind == "lib" and not (isinstance(obj.key, tuple) and obj.key[:1] == ("inherited",))
+
+
+def dropped(frame: Frame, call: ir.Call) -> bool:
+    """Tell whether a call's result is not used: then it is there for what it does."""
+    return isinstance(frame.statement, ir.Evaluate) and frame.statement.value is call
 
 
 BUILTIN: Mapping[str, Callable[..., Value]] = {
