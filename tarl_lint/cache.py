@@ -28,7 +28,7 @@ except ImportError:
 
 T = TypeVar("T")
 
-FORMAT: Final = 2
+FORMAT: Final = 3
 PLACE: Final = (".tarl", "cache", "lint")
 AFTERWARDS: Final = frozenset(
     ["root", "exclude", "baseline", "fail_on", "per_file_ignores", "file", "origins"]
@@ -165,6 +165,7 @@ PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "span": lambda packed: Span(*packed),
     "site": lambda packed: SiteId(*packed),
     "topics": tuple,
+    "chain": tuple,
     "registered": _spans,
     "via": _spans,
     "source": lambda packed: _unpacked(Source, packed),

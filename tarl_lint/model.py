@@ -87,12 +87,17 @@ class Sink:
 
 @dataclass(frozen=True, slots=True)
 class Flow:
-    """One (subscription, publish call) pair with its taint list: `steps` in topological order from the source."""
+    """One (subscription, publish call) pair with its taint list: `steps` in topological order from the source.
+
+    `chain` holds the places in `steps` of the shortest path from the message's arrival to the publish call: of data
+    for an explicit flow, of data and decisions for an implicit one. It is empty where no single path was found.
+    """
 
     kind: Kind
     source: Source
     sink: Sink
     steps: tuple[Step, ...]
+    chain: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 from tarl_lint.model import Dependence, Flow, Role, Sink, Source, Span, Step
 from tarl_lint.order import before_loops, in_order
+from tarl_lint.shortest_path import shortest_path
 from tarl_lint.valueflow.context import Surroundings
 from tarl_lint.valueflow.ends import SinkRecord, SourceRecord
 from tarl_lint.valueflow.entrances import entrances
@@ -94,8 +95,21 @@ class Tracer:
         on_data = self.made_from(record.nodes & reach.data, reach)
         on_any = closure(ends, [graph.data, graph.control], reach.any)
         on_any |= on_data | self.made_there(on_any)
-        steps = self.steps(origin, on_data, on_any, record)
-        return Flow("explicit" if explicit else "implicit", source, sink, steps)
+        steps, statement_of, keys = self.steps(origin, on_data, on_any, record)
+        formers = self.data_formers(reach) if explicit else self.formers
+        inside = reach.data if explicit else reach.any
+        path = shortest_path(
+            sorted(ends & inside),
+            origin.nodes,
+            lambda n: (f for f in formers(n) if f in inside),
+            statement_of,
+        )
+        chain = ending_in_publish_call([keys[key] for key in path], steps)
+        return Flow("explicit" if explicit else "implicit", source, sink, steps, chain)
+
+    def data_formers(self, reach: Reach) -> Callable[[int], list[int]]:
+        """Return what tells the data that a node is made from, the elements that a count is made from included."""
+        return lambda node: sorted(self.graph.data[node] | reach.counted.get(node, set()))
 
     def made_from(self, ends: set[int], reach: Reach) -> set[int]:
         """Return the data of a source that its ends are made from."""
@@ -134,8 +148,11 @@ class Tracer:
 
     def steps(
         self, origin: SourceRecord, on_data: set[int], on_any: set[int], record: SinkRecord
-    ) -> tuple[Step, ...]:
-        """Return the taint list: data and control steps of the nodes, and what is around them."""
+    ) -> tuple[tuple[Step, ...], dict[int, int], dict[int, int]]:
+        """Return the taint list: data and control steps of the nodes, and what is around them.
+
+        With it come node → statement, and statement → place in the list.
+        """
         dependence: dict[int, Dependence] = {}
         written: dict[int, Written] = {}
         statement_of: dict[int, int] = {}
@@ -152,8 +169,8 @@ class Tracer:
                 dependence.setdefault(key, "control")
         edges = self.edges(on_any, statement_of, written)
         edges += self.entered(on_any, statement_of, written, dependence)
-        steps = {(self.graph.places[n].frame, k): written[k] for n, k in statement_of.items()}
-        context, outer = self.surroundings.context(origin, [(f, w) for (f, _), w in steps.items()])
+        inside = {(self.graph.places[n].frame, k): written[k] for n, k in statement_of.items()}
+        context, outer = self.surroundings.context(origin, [(f, w) for (f, _), w in inside.items()])
         for item in context:
             if id(item) not in written:
                 written[id(item)] = item
@@ -168,7 +185,8 @@ class Tracer:
         roles: dict[int, Role] = {**({id(registration): "register"} if registration is not None else {})}
         roles |= dict.fromkeys(arrivals, "receive")
         roles |= dict.fromkeys(sinks, "publish")
-        return tuple(self.step(written[k], spans[k], dependence[k], roles.get(k)) for k in order)
+        steps = tuple(self.step(written[k], spans[k], dependence[k], roles.get(k)) for k in order)
+        return steps, statement_of, {key: place for place, key in enumerate(order)}
 
     def entered(
         self,
@@ -294,6 +312,12 @@ class Tracer:
 
     def _spans(self, places: set[tuple[str, tuple[int, int, int, int]]]) -> tuple[Span, ...]:
         return tuple(sorted(self._span(*p) for p in places))
+
+
+def ending_in_publish_call(path: Sequence[int], steps: Sequence[Step]) -> tuple[int, ...]:
+    """Return a path with its publish call last: the call is on the way before what its arguments call."""
+    calls = [place for place in path if steps[place].role == "publish"]
+    return (*(place for place in path if place not in calls), *calls[-1:])
 
 
 def _kin(record: SinkRecord) -> tuple[str, str, set[str]]:

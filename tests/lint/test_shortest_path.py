@@ -1,0 +1,61 @@
+"""The shortest path of a flow: as short as there is one, from a message's arrival to the publish call."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import pairwise, product
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tarl_lint.api import analyse
+from tarl_lint.shortest_path import shortest_path
+
+CASES = sorted((Path(__file__).parent.parent / "cases").glob("*.py"))
+
+
+@st.composite
+def graphs(draw: st.DrawFn) -> tuple[list[list[int]], dict[int, int]]:
+    """Draw what each node is made from, and the statements of some of the nodes."""
+    size = draw(st.integers(2, 7))
+    nodes = st.integers(0, size - 1)
+    formers = draw(st.lists(st.lists(nodes, max_size=3, unique=True), min_size=size, max_size=size))
+    statements = draw(st.dictionaries(nodes, st.integers(100, 103), max_size=size))
+    return formers, statements
+
+
+def cheapest(formers: list[list[int]], statements: Mapping[int, int], start: int, end: int) -> float:
+    """Return the least number of changes to another statement, by relaxing all edges again and again."""
+    cost = [float("inf")] * len(formers)
+    cost[end] = 0
+    for _, node in product(formers, range(len(formers))):
+        for former in formers[node]:
+            step = former in statements and statements[former] != statements.get(node)
+            cost[former] = min(cost[former], cost[node] + step)
+    return cost[start]
+
+
+@given(graphs())
+def test_no_path_is_shorter(graph: tuple[list[list[int]], dict[int, int]]) -> None:
+    formers, statements = graph
+    path = shortest_path([0], {1}, formers.__getitem__, statements)
+    least = cheapest(formers, statements, 1, 0)
+    assert len(path) <= (least + 1 if least < float("inf") else 0)
+    assert set(path) <= set(statements.values())
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.stem)
+def test_every_flow_has_a_path_from_arrival_to_publish_call(case: Path) -> None:
+    flows = analyse([case]).flows
+    assert flows
+    for flow in flows:
+        path = [flow.steps[place] for place in flow.chain]
+        assert path, flow
+        assert path[-1].role == "publish"
+        assert path[0].role == "receive" or not any(step.role == "receive" for step in flow.steps)
+        assert len(set(flow.chain)) == len(flow.chain)
+        if flow.kind == "explicit":
+            assert {step.dependence for step in path} == {"data"}
+        assert all(a != b for a, b in pairwise(path))
