@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from gate_pools import Mode, Pool
 
+from pytest_tarl import Drift
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.recording import run_episodes
 from pytest_tarl.repeating import NOTHING, ItemRollout, designated, finish
@@ -46,7 +47,7 @@ class Recording:
         marked = designated(item)
         assert marked is not None
         ((name, full),) = marked.drifts.items()
-        weaker = replace(marked, drifts={name: 1.0 - self.size * (1.0 - full)})
+        weaker = replace(marked, drifts={name: Drift(1.0 - self.size * (1.0 - full.value))})
         rollout = ItemRollout(item, weaker, NOTHING)
         chosen = episode_seeds(0, f"gate/{self.size}", self.episodes)
         self.found.append(run_episodes(rollout, chosen, name if self.size else None, (), _quiet).sample)

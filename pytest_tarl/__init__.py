@@ -4,14 +4,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from pytest_tarl.drifts import Drift
     from pytest_tarl.episode import Tarl
     from pytest_tarl.searching.asking import Constant, Optimiser
     from pytest_tarl.sensors import Sensor
 
-__all__ = ["Constant", "Optimiser", "Sensor", "Tarl"]
+__all__ = ["Constant", "Drift", "Optimiser", "Sensor", "Tarl"]
 
 _HOMES = {
     "Constant": "pytest_tarl.searching.asking",
+    "Drift": "pytest_tarl.drifts",
     "Optimiser": "pytest_tarl.searching.asking",
     "Sensor": "pytest_tarl.sensors",
     "Tarl": "pytest_tarl.episode",

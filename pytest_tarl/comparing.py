@@ -91,6 +91,7 @@ def run_online(
         parts=parts.means(offline, online),
         lost=parts.lost(offline, online, options.alpha, seeds.generator(options.seed, "parts")),
         changes=difference.changes,
+        permanent=drift is not None and designation.drifts[drift].permanent,
     )
     return Online(comparison, recorded, learned)
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from pytest_tarl.drifts import Drift, drift
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.options import number_within
 from pytest_tarl.sensors import Sensor
@@ -21,7 +22,7 @@ class Designation:
 
     nodes: tuple[str, ...]
     sensors: tuple[Sensor, ...]
-    drifts: Mapping[str, Any] = field(default_factory=dict)
+    drifts: Mapping[str, Drift] = field(default_factory=dict)
     episodes: int = 200
     min_success: float = 1.0
     tolerance: float | None = None
@@ -99,13 +100,13 @@ def _sensors(where: str, sensors: Any) -> tuple[Sensor, ...]:
     return tuple(sensors)
 
 
-def _drifts(where: str, drifts: Any) -> Mapping[str, Any]:
+def _drifts(where: str, drifts: Any) -> Mapping[str, Drift]:
     if not isinstance(drifts, Mapping) or not all(isinstance(name, str) and name for name in drifts):
         raise SettingsError(
             f"{where}: drifts maps names to values of the fixture tarl_drift, for instance "
             'drifts={"mud": 0.15}.'
         )
-    return dict(drifts)
+    return {name: drift(where, name, value) for name, value in drifts.items()}
 
 
 def _tolerance(where: str, value: Any) -> float | None:

@@ -34,7 +34,12 @@ FLAGS = (
     Flag("--tarl-record", "run the episodes off-line and record the utility fixture", asks=True),
     Flag("--tarl-online", "run the drift scenarios and compare with the fixture", asks=True),
     Flag("--tarl-repair", "with --tarl-online: search a repair and write a patch", asks=True),
-    Flag("--tarl-drift", "with --tarl-online: only this drift scenario", asks=True, metavar="NAME"),
+    Flag(
+        "--tarl-drift",
+        "with --tarl-online: only this drift scenario; with --tarl-record: make one that is for good the design",
+        asks=True,
+        metavar="NAME",
+    ),
     Flag("--tarl-seed", "the one seed that decides everything (default 0)", metavar="N", type=int, default=0),
     Flag(
         "--tarl-episodes",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -11,9 +10,10 @@ from pathlib import Path
 
 from pytest_tarl.comparing import Online, run_online
 from pytest_tarl.correcting import corrected
+from pytest_tarl.design import AS_WRITTEN, fixture_path, replaced
 from pytest_tarl.designation import Designation
-from pytest_tarl.errors import AnalysisError, FixtureError, TarlError
-from pytest_tarl.files import write_atomically
+from pytest_tarl.errors import AnalysisError, FixtureError, SettingsError, TarlError
+from pytest_tarl.files import slug, write_atomically
 from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.binning import learned_edges
@@ -21,7 +21,6 @@ from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison, Repair
 from pytest_tarl.options import Options
-from pytest_tarl.patching import patch
 from pytest_tarl.recording import Progress, read_values, record
 from pytest_tarl.repairing.order import Neighbour, Order
 from pytest_tarl.repairing.repair import repair
@@ -97,8 +96,7 @@ class Mission:
     @property
     def fixture_path(self) -> Path:
         """Return where the utility fixture of the test is."""
-        digest = hashlib.sha256(self.test.encode()).hexdigest()[:8]
-        return self.tarl / "utility" / f"{patch.slug(self.test)}-{digest}.npz"
+        return fixture_path(self.root, self.test)
 
     @property
     def target(self) -> str:
@@ -137,16 +135,63 @@ class Mission:
             return with_edges(asked, {one.name: one.edges for one in fixture.sensors if one.learned})
         if not any(sensor.to_learn for sensor in asked):
             return asked
-        read = read_values(rollout_with(Instruments(), asked), self.options.seed, self.progress)
+        read = read_values(
+            rollout_with(Instruments(), asked), self.options.seed, self.progress, self._recorded_drift
+        )
         return with_edges(asked, learned_edges(asked, read))
 
+    @property
+    def _recorded_drift(self) -> str | None:
+        """Return the drift to record under. Raises SettingsError where the marker does not say that it is for good."""
+        name = self.options.drift if self.options.mode == "record" else None
+        if name is None or (name == AS_WRITTEN and name not in self.designation.drifts):
+            return name
+        declared = self.designation.drifts[name]
+        if not declared.permanent:
+            raise SettingsError(
+                f"--tarl-record makes what it records the design, and the drift {name!r} is not for good: if it is, "
+                f'say so in the marker, drifts={{"{name}": Drift({declared.value!r}, permanent=True)}}, with `from '
+                "pytest_tarl import Drift`."
+            )
+        return name
+
     def _record(self, rollout: Rollout, sites: Plan) -> Account:
+        drift = self._recorded_drift
         result = record(
-            rollout, self.test, self.designation, self.options, sites, self.fixture_path, self.progress
+            rollout,
+            self.test,
+            self.designation,
+            self.options,
+            sites,
+            self.fixture_path,
+            self.progress,
+            drift,
         )
+        if result.problem:
+            return Account(tuple(f"  {note}" for note in result.notes), result.problem)
         written = self.fixture_path.relative_to(self.root)
-        lines = [f"{self.test}: {result.line}", f"  wrote {written}"] if not result.problem else []
-        return Account((*lines, *(f"  {note}" for note in result.notes)), result.problem)
+        lines = [f"{self.test}: {result.line}", f"  wrote {written}", *self._adopted(sites)]
+        return Account((*lines, *(f"  {note}" for note in result.notes)))
+
+    def _adopted(self, sites: Plan) -> Iterator[str]:
+        """Say what the design is now, and which other tests of the node still have the old one."""
+        design = fixtures.load(self.fixture_path).design
+        if not design:
+            return
+        named = " and ".join(repr(name) for name in design)
+        yield f"  the design now has the drift {named}: runs without flags get it as tarl_drift, too"
+        nodes = {place.path for place in sites.places}
+        run = {other.test for other in self.others if {*design} <= other.designation.drifts.keys()}
+        for path in sorted((self.tarl / "utility").glob("*.npz")):
+            with suppress(FixtureError):
+                other = fixtures.load(path)
+                paths = {site.path for one in other.lists for site in one.sites}
+                told = other.test == self.test or other.test in run  # recorded in this run, before or after
+                if not told and paths & nodes and not {*design} <= {*other.design}:
+                    yield (
+                        f"  {other.test} is recorded on the same node in the world as it was: declare {named} there, "
+                        f"too, and record it under it"
+                    )
 
     def _online(self, rollout: Rollout, sites: Plan, analysis: Analysis, fixture: Fixture) -> Compared:
         online = run_online(
@@ -172,22 +217,33 @@ class Mission:
             comparison = repaired.comparison
             episodes |= repaired.episodes
             interrupted = repaired.interrupted
-        notes = (*comparison.notes, *self._not_run(comparison.repair))
+        notes = (*comparison.notes, *self._not_run(comparison.repair), *self._design_lost(fixture))
         told = replace(comparison, target=self.target, flags=self.options.flags, notes=notes)
         return Compared(self, told, online, episodes, interrupted)
+
+    def _design_lost(self, fixture: Fixture) -> Iterator[str]:
+        """Tell that a scenario and the design do not go together."""
+        lost = replaced(self.designation.drifts, fixture.design, self.drift)
+        if lost:
+            yield (
+                f"the design has the drift {lost!r}, and tarl_drift was that of {self.drift!r} alone: let both be "
+                "dictionaries, then a scenario changes the design"
+            )
 
     def _neighbours(self) -> list[Neighbour]:
         """Return the other tests of the run that have a recorded utility which can be read."""
         found = []
         for other in self.others:
             with suppress(FixtureError):
-                path = replace(self, test=other.test).fixture_path
+                path = fixture_path(self.root, other.test)
                 if not path.exists():
                     continue
                 fixture = fixtures.load(path)
                 nodes = tuple((other.folder / node).resolve() for node in other.designation.nodes)
                 margin = tolerated(fixture.sample, other.designation.tolerance)
-                found.append(Neighbour(other.test, nodes, other.rollout, fixture, margin))
+                declared = other.designation.drifts.get(self.drift or "")
+                drift = self.drift if declared is not None and declared.permanent else None
+                found.append(Neighbour(other.test, nodes, other.rollout, fixture, margin, drift))
         return found
 
     def _not_run(self, found: Repair | None) -> Iterator[str]:
@@ -239,7 +295,7 @@ class Compared:
     def told(self) -> Account:
         """Write result, recording and page, and say what they hold."""
         mission, comparison = self.mission, self.comparison
-        name = f"{patch.slug(mission.test)}-{patch.slug(mission.drift or 'online')}"
+        name = f"{slug(mission.test)}-{slug(mission.drift or 'online')}"
         json_result.write(comparison, mission.tarl / "results" / f"{name}.json", self.episodes)
         fixtures.save(as_fixture(comparison, self.online), mission.tarl / "online" / f"{name}.npz")
         page = mission.tarl / "report" / f"{name}.html"

@@ -224,3 +224,4 @@ class Comparison:
     target: str = ""  # the test as it is typed where pytest was started
     flags: tuple[str, ...] = ()  # options of the run that are not the default ones
     changes: Mapping[Cell, float] = field(default_factory=dict)  # how far on-line differs, by cell
+    permanent: bool = False  # whether the drift is for good, so that the designed world is the old one

@@ -143,8 +143,11 @@ def _check_modes(given: Mapping[str, Any]) -> None:
             "--tarl-holm and --tarl-repair are two runs: a verdict is corrected when all tests have run, a repair is "
             "searched for while its test runs. Compare with --tarl-holm first, then repair the tests that are degraded."
         )
-    if given["drift"] and not given["online"]:
-        raise SettingsError("--tarl-drift goes with --tarl-online: it chooses one of the marker's drifts.")
+    if given["drift"] and not (given["online"] or given["record"]):
+        raise SettingsError(
+            "--tarl-drift goes with --tarl-online, where it chooses one of the marker's drifts, or with --tarl-record, "
+            "where it makes one that is for good the design."
+        )
 
 
 def _budget(text: str) -> tuple[int, float | None]:

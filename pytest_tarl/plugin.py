@@ -46,7 +46,7 @@ def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
 
 @pytest.fixture
 def tarl_drift(request: pytest.FixtureRequest) -> Any:
-    """The value of the drift scenario that this episode runs under; None off-line."""
+    """The value of the drift scenario that this episode runs under; off-line None, or a change that is the design."""
     from pytest_tarl.repeating import drift_value
 
     return drift_value(request.node)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from pytest_tarl.design import adopted, adopting
 from pytest_tarl.designation import Designation
 from pytest_tarl.errors import FixtureError, RecordingError
 from pytest_tarl.instrumentation.sites import Plan
@@ -74,8 +75,12 @@ def record(
     plan: Plan,
     path: Path,
     progress: Progress,
+    drift: str | None = None,
 ) -> RecordResult:
-    """Run the off-line episodes and write the fixture, unless too many of them fail."""
+    """Run the off-line episodes and write the fixture, unless too many of them fail.
+
+    With a `drift`, which must be one for good, its world is the design from now on.
+    """
     seeds = episode_seeds(options.seed, "offline", options.episodes or designation.episodes)
     bearable = int(len(seeds) * (1 - designation.min_success) + 1e-9)
 
@@ -83,8 +88,8 @@ def record(
         return sum(not one.passed.all() for one in samples) >= max(bearable + 1, ENOUGH_FAILURES)
 
     learner = options.learner or "sarsa"
-    recorded = run_episodes(rollout, seeds, None, plan.members, progress, learner, settled)
-    again = rollout(EpisodePlan(seeds[0], record=True))
+    recorded = run_episodes(rollout, seeds, drift, plan.members, progress, learner, settled)
+    again = rollout(EpisodePlan(seeds[0], drift, record=True))
     notes = [*recorded.notes, *([] if identical(recorded.first, again.trace) else [NOT_REPRODUCIBLE])]
     if len(recorded.failures) > bearable:
         return RecordResult("", _unfinished(recorded, designation, len(seeds)), tuple(notes))
@@ -99,15 +104,18 @@ def record(
         sample=recorded.sample,
         sarsa=sarsa_tables(recorded, mean_flows(recorded.sample)),
         learner=recorded.learner,
+        design=adopting(adopted(path), drift, designation.drifts),
     )
     fixtures.save(new, path)
     return RecordResult(_summary(new.sample, old), "", tuple(notes))
 
 
-def read_values(rollout: Rollout, seed: int, progress: Progress) -> dict[str, list[float]]:
+def read_values(
+    rollout: Rollout, seed: int, progress: Progress, drift: str | None = None
+) -> dict[str, list[float]]:
     """Return what the sensors read whose bins are to be learned, from episodes that nothing else is learned from."""
     read: dict[str, list[float]] = {}
-    plans = [EpisodePlan(each) for each in episode_seeds(seed, "bins", PILOTS)]
+    plans = [EpisodePlan(each, drift) for each in episode_seeds(seed, "bins", PILOTS)]
     for done, episode in enumerate(in_order(rollout, plans)):
         progress(done, PILOTS, "bins")
         for name, values in sound(episode.result()).values.items():

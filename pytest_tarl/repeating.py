@@ -21,6 +21,7 @@ from _pytest.runner import runtestprotocol
 from pytest_tarl.designation import Designation, designation
 from pytest_tarl.errors import NodeError, SettingsError, StuckNodeError, TarlError
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
+from pytest_tarl.scenarios import without_drift
 from pytest_tarl.seeds import episode_seed
 
 if TYPE_CHECKING:
@@ -123,9 +124,13 @@ def _replay(episode: Episode) -> Replay | None:
 
 
 def drift_value(item: pytest.Item) -> Any:
-    """Return the value of the scenario that the item's episode runs under; None off-line."""
+    """Return the value of the scenario that the item's episode runs under; off-line that of the design, or None."""
+    from pytest_tarl import design
+
     episode = _episode(item)
-    return None if episode.plan.drift is None else episode.designation.drifts[episode.plan.drift]
+    path = design.fixture_path(item.config.rootpath, without_drift(item))
+    drifts, plan = episode.designation.drifts, episode.plan
+    return design.value(drifts, design.adopted(path) if drifts else (), plan.drift, plan.seed)
 
 
 def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestReport) -> None:

@@ -26,5 +26,10 @@ def generator(seed: int, name: str) -> np.random.Generator:
     return np.random.Generator(np.random.Philox(key=_hashed(f"{seed}/{name}", 16)))
 
 
+def uniform(seed: int, name: str) -> float:
+    """Return one number from 0 to 1 that (seed, name) decides; needs no numpy."""
+    return _hashed(f"{seed}/{name}", 8) / 2**64
+
+
 def _hashed(text: str, size: int) -> int:
     return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=size).digest(), "little")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import pytest
 
+from pytest_tarl.design import AS_WRITTEN
 from pytest_tarl.errors import FixtureError, SettingsError, TarlError
 from pytest_tarl.options import Options
 from pytest_tarl.repeating import (
@@ -22,6 +23,7 @@ from pytest_tarl.repeating import (
     designated,
     finish,
 )
+from pytest_tarl.scenarios import scenario, without_drift
 from pytest_tarl.sensors import Sensor
 from pytest_tarl.summary import Summary, attach
 
@@ -85,11 +87,14 @@ class TarlSession:
     def _chosen(self, item: pytest.Item) -> bool:
         """Tell whether an item is of the scenario asked for, or would be if it took the fixture."""
         declared = self.options.drift in _drift_names(item)
+        if self.options.mode == "record":
+            return declared or self.options.drift == AS_WRITTEN
         return scenario(item) == self.options.drift or (declared and not _takes_drift(item))
 
     def _check_drift(self, marked: Sequence[pytest.Item]) -> None:
         known = sorted({name for item in marked for name in _drift_names(item)})
-        if marked and self.options.drift not in known:
+        backwards = self.options.mode == "record" and self.options.drift == AS_WRITTEN
+        if marked and self.options.drift not in known and not backwards:
             names = ", ".join(known) or "none is declared"
             raise pytest.UsageError(
                 f"No test declares the drift {self.options.drift!r}; known are: {names}. Declare it "
@@ -161,13 +166,14 @@ class TarlSession:
         marked = designated(item)
         if marked is None:
             raise SettingsError(f"{item.nodeid} has no marker.")
-        if marked.drifts and self.options.mode != "record" and not _takes_drift(item):
+        drifted = self.options.mode != "record" or self.options.drift is not None
+        if marked.drifts and drifted and not _takes_drift(item):
             raise SettingsError(
                 "the marker declares drifts, but the test does not take the fixture `tarl_drift`, so they would change "
                 "nothing: take it as an argument and build the world with it."
             )
         mission = Mission(
-            test=_without_drift(item),
+            test=without_drift(item),
             folder=item.path.parent,
             root=self.config.rootpath,
             started=self.config.invocation_params.dir,
@@ -200,9 +206,10 @@ class TarlSession:
         from pytest_tarl.missions import Other
 
         found: dict[str, Other] = {}
-        for other in self._designated if self.options.mode == "repair" else ():
-            marked, name = designated(other), _without_drift(other)
-            if marked is not None and isinstance(other, pytest.Function) and name != _without_drift(item):
+        needed = self.options.mode == "repair" or (self.options.mode == "record" and self.options.drift)
+        for other in self._designated if needed else ():
+            marked, name = designated(other), without_drift(other)
+            if marked is not None and isinstance(other, pytest.Function) and name != without_drift(item):
                 rollout = BesideRollout(other, marked, NOTHING, item)
                 found.setdefault(name, Other(name, other.path.parent, marked, rollout))
         return tuple(found.values())
@@ -270,26 +277,6 @@ class _Ended:
 
 def _started(item: pytest.Item) -> None:
     item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
-
-
-def scenario(item: pytest.Item) -> str | None:
-    """Return the name of the drift scenario that the item's id stands for."""
-    callspec = getattr(item, "callspec", None)
-    name: str | None = callspec.params.get("tarl_drift") if callspec is not None else None
-    return name
-
-
-def _without_drift(item: pytest.Item) -> str:
-    """Return the node id as it is off-line, so that all scenarios of a test share its fixture."""
-    callspec = getattr(item, "callspec", None)
-    if callspec is None or "tarl_drift" not in callspec.params:
-        return item.nodeid
-    drift, ids = scenario(item) or "online", callspec.id
-    base = item.nodeid.removesuffix(f"[{ids}]")
-    if ids == drift:
-        return base
-    rest = ids.removeprefix(f"{drift}-") if ids.startswith(f"{drift}-") else ids.removesuffix(f"-{drift}")
-    return f"{base}[{rest}]"
 
 
 def _drift_names(item: pytest.Item) -> list[str]:

@@ -31,7 +31,7 @@ def apply(paths: Sequence[Path], directory: Path | None, *, force: bool) -> list
     notes += [f"note:  {shown(path)} had been changed already, before applying was ended" for path in halfway]
     done = [f"applied to {target.shown}: {_titles(target)}" for target in targets]
     undo = f"undo:  {shlex.join(['tarl', 'revert', *map(shown, paths)])}"
-    return [*done, *notes, *_again(patches), undo]
+    return [*done, *notes, *_recording(patches, targets), *_again(patches), undo]
 
 
 def revert(paths: Sequence[Path], directory: Path | None) -> list[str]:
@@ -165,9 +165,25 @@ def _write(targets: Sequence[Target], contents: Mapping[Path, bytes]) -> None:
 def _again(patches: Sequence[Patch]) -> list[str]:
     """Return the commands that run the tests against their drifts again."""
     commands = dict.fromkeys(command for patch in patches for command in patch.told("again"))
+    return [f"again: {_move(patches)}{command}" for command in commands]
+
+
+def _move(patches: Sequence[Patch]) -> str:
+    """Return how to get to the folder that commands are run in."""
     root = patches[0].root
-    move = f"cd {shlex.quote(shown(root))} && " if root is not None and root != Path.cwd() else ""
-    return [f"again: {move}{command}" for command in commands]
+    return f"cd {shlex.quote(shown(root))} && " if root is not None and root != Path.cwd() else ""
+
+
+def _recording(patches: Sequence[Patch], targets: Sequence[Target]) -> list[str]:
+    """Return what makes a drift for good the design: the recording, and what belongs in one commit with the patch."""
+    commands = dict.fromkeys(command for patch in patches for command in patch.told("record"))
+    if not commands:
+        return []
+    files = " and ".join([*(target.shown for target in targets), ".tarl/utility"])
+    return [
+        *(f"then:  {_move(patches)}{command}" for command in commands),
+        f"then:  commit {files} together: the drift is the design from now on",
+    ]
 
 
 def _titles(target: Target) -> str:

@@ -22,6 +22,8 @@ def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = Fa
     """
     sample = fixture.sample
     yield f"{fixture.test}, seed {fixture.seed}"
+    if fixture.design:
+        yield f"  design     with the drift {' and '.join(fixture.design)}, for good"
     yield f"  episodes   {sample.episodes}, {int(sample.steps.sum())} steps, success {sample.passed.mean():.1%}"
     lists = "list" if len(sizes) == 1 else "lists"
     yield f"  size       {_kilobytes(size)}, of which {_kilobytes(sum(sizes))} for {len(sizes)} taint {lists}"

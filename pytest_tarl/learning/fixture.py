@@ -54,6 +54,7 @@ class Fixture:
     sample: Sample
     sarsa: tuple[Floats, ...]
     learner: str = "sarsa"  # what learned it, a key of sarsa.LEARNERS
+    design: tuple[str, ...] = ()  # drifts that are the design: changes for good
 
 
 def save(fixture: Fixture, path: Path) -> None:
@@ -70,6 +71,8 @@ def save(fixture: Fixture, path: Path) -> None:
         "seeds": [str(seed) for seed in fixture.sample.seeds],
         "parts": list(fixture.sample.part_names),
     }
+    if fixture.design:
+        header["design"] = list(fixture.design)
     header["digest"] = _digest(header, columns)
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
@@ -177,6 +180,7 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
         test=header["test"],
         seed=header["seed"],
         learner=header["learner"],
+        design=tuple(header.get("design", ())),
         sensors=sensors,
         lists=lists,
         topics=header["topics"],

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.files import write_atomically
+from pytest_tarl.files import slug, write_atomically
 
 Opcode = tuple[str, int, int, int, int]
 CONTEXT = 3  # unchanged lines around a change
@@ -102,11 +102,6 @@ def blob_id(content: bytes) -> str:
 def split_lines(content: bytes) -> list[bytes]:
     """Split where git does: behind line feeds only."""
     return re.findall(rb"[^\n]*\n|[^\n]+", content)
-
-
-def slug(text: str) -> str:
-    """Return a text as part of a file name."""
-    return re.sub(r"[^A-Za-z0-9]+", "-", text.replace(".py", "")).strip("-")[:60]
 
 
 def _base(files: Sequence[Path], root: Path) -> Path:

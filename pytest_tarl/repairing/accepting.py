@@ -18,6 +18,7 @@ from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 QUICK = 3  # seeds on which a guard is looked at before it is tested on fresh ones
 CLOSE = 0.01  # share of the loss within which two gains on the same seeds are equal
 HELD: tuple[Reason, ...] = ("nominal gets worse", "another test gets worse")  # in one world, in both of them
+OLD_WORLD = 8  # episodes that show what a repair for good earns in the old world
 MOST = 5  # candidates that are tested on fresh seeds
 
 
@@ -105,12 +106,21 @@ class Examiner:
         reason = self._named(found.reason, totals)
         self.tried.append(Tried(candidate, reason, totals, fresh=True))
         if found.accepted:
-            return Accepted(candidate, found, others)
+            return Accepted(candidate, self._with_old_world(found, candidate), others)
         if found.reason == "gain too small":
             close = CLOSE * (self.order.goal.enough - self.order.goal.online)
             self.bar = max(self.bar, trials.gain(candidate, self.order.goal.pairs[:QUICK]) - close)
         self._refuse(Refused(candidate, reason, fmean(totals), len(totals)))
         return found.reason
+
+    def _with_old_world(self, found: Acceptance, candidate: Candidate) -> Acceptance:
+        """Add what a repair earns in the world that is gone, to be shown; it decides nothing."""
+        if not self.order.permanent:
+            return found
+        fresh = seeds.episode_seeds(self.order.options.seed, "old world", OLD_WORLD)
+        self.mutants.foresee([(candidate, seed) for seed in fresh], None)
+        self.spent += len(fresh)
+        return replace(found, nominal=tuple(self.mutants.run(candidate, seed, None) for seed in fresh))
 
     def _named(self, reason: Reason, totals: Sequence[float]) -> Reason:
         """Tell what gained too little from what made the drifted world worse than it is without a repair."""
@@ -158,7 +168,9 @@ class Examiner:
         )
 
     def _firing(self, candidate: Candidate) -> tuple[int, ...]:
-        """Return the off-line episodes in which the guard holds."""
+        """Return the off-line episodes in which the guard holds; none count where the change is for good."""
+        if self.order.permanent:
+            return ()
         return candidates.firing_episodes(
             candidate.guard, self.order.fixture.sample, self.order.comparison.sensors
         )

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from math import nan
 from pathlib import Path
 from statistics import fmean
 
 from pytest_tarl.files import write_atomically
-from pytest_tarl.model import Attempt, Edit, Repair
+from pytest_tarl.model import Attempt, Comparison, Edit, Repair
 from pytest_tarl.patching import patch
 from pytest_tarl.patching.mutate import Mutation, guard_text
 from pytest_tarl.patching.reading import read
@@ -109,14 +109,22 @@ def _evidence(order: Order, accepted: Accepted, guard: str, search: int, accepta
         f"designed: {words.average(totals['offline'])}",
         f"drifted: {words.average(totals['online'])}",
         f"drifted and repaired: {words.average(repaired)}, of seeds that nothing was chosen by",
-        f"designed and repaired: {words.average(nominal)}, of seeds that nothing was chosen by"
-        if nominal
-        else "designed and repaired: as designed, since the condition never holds there",
+        _designed_and_repaired(order, nominal),
         *(f"other test: {words.one_line(told)}" for told in accepted.beside.held),
         f"episodes spent: search {search}, acceptance {acceptance}",
         *_recorded(order),
+        *([f"record: {words.recording(_in_root(order))}"] if order.permanent else []),
         f"again: {_again(order)}",
     ]
+
+
+def _designed_and_repaired(order: Order, nominal: Sequence[float]) -> str:
+    """Tell what the repair earns in the designed world."""
+    if order.permanent:
+        return f"old world and repaired: {words.average(nominal)}; not asked, since the drift is for good"
+    if nominal:
+        return f"designed and repaired: {words.average(nominal)}, of seeds that nothing was chosen by"
+    return "designed and repaired: as designed, since the condition never holds there"
 
 
 def _recorded(order: Order) -> list[str]:
@@ -131,5 +139,9 @@ def _recorded(order: Order) -> list[str]:
 
 def _again(order: Order) -> str:
     """Return the command that compares again, to be run in the root."""
-    test = order.fixture.test.partition("[")[0]
-    return words.command(replace(order.comparison, target=test, flags=order.options.flags))
+    return words.command(replace(_in_root(order), flags=order.options.flags))
+
+
+def _in_root(order: Order) -> Comparison:
+    """Return the comparison with its test as it is typed in the root."""
+    return replace(order.comparison, target=order.fixture.test.partition("[")[0])

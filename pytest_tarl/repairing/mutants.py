@@ -48,9 +48,14 @@ class Mutants:
         plan = EpisodePlan(seed, drift, self.source(candidate))
         return _outcome(lambda: self._ahead((candidate, seed, drift), plan), self.order.worst)
 
-    def run_at(self, rollout: Rollout, worst: float, candidate: Candidate, seed: int) -> Outcome:
-        """Run one episode of another test, off-line; `worst` is what it earns that breaks that test."""
-        plan = EpisodePlan(seed, None, self.source(candidate))
+    def run_at(
+        self, rollout: Rollout, worst: float, candidate: Candidate | None, seed: int, drift: str | None = None
+    ) -> Outcome:
+        """Run one episode of another test, of the node as it is without a candidate.
+
+        `worst` is what a candidate earns that breaks that test.
+        """
+        plan = EpisodePlan(seed, drift, self.source(candidate) if candidate else {})
         return _outcome(lambda: rollout(plan), worst)
 
     def _foreseen(

@@ -9,6 +9,7 @@ from statistics import fmean
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Neighbour
 from pytest_tarl.searching import candidates
+from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate
 
 MOST = 5  # tests that are run
@@ -62,16 +63,32 @@ def _compared(
     if not chosen:
         return False, f"{neighbour.test}: as recorded, since the condition never holds there"
     sample = neighbour.fixture.sample
-    recorded = [float(sample.total[at]) for at in chosen]
-    outcomes = [
-        mutants.run_at(neighbour.rollout, float(sample.total.min()), candidate, sample.seeds[at])
-        for at in chosen
-    ]
-    failed = sum(
-        not outcome.passed and bool(sample.passed[at]) for outcome, at in zip(outcomes, chosen, strict=True)
-    )
-    now = fmean(outcome.total for outcome in outcomes)
-    told = f"{neighbour.test}: {now:.4g} an episode where {fmean(recorded):.4g} was recorded, {len(chosen)} episodes"
+    outcomes = _run(mutants, neighbour, candidate, chosen)
+    if neighbour.drift is not None:
+        before, what = (
+            _run(mutants, neighbour, None, chosen),
+            "it earns without the repair under the same drift",
+        )
+    else:
+        before = [Outcome(float(sample.total[at]), bool(sample.passed[at])) for at in chosen]
+        what = "was recorded"
+    failed = sum(not outcome.passed and usual.passed for outcome, usual in zip(outcomes, before, strict=True))
+    now, usually = (fmean(outcome.total for outcome in world) for world in (outcomes, before))
+    told = f"{neighbour.test}: {now:.4g} an episode where {usually:.4g} {what}, {len(chosen)} episodes"
     if failed:
         told += f", {failed} of them fail now"
-    return failed > 0 or now < fmean(recorded) - neighbour.margin, told
+    if mutants.order.permanent and neighbour.drift is None:
+        return False, f"{told}; it does not declare the drift, so this is its old world, which is not asked"
+    return failed > 0 or now < usually - neighbour.margin, told
+
+
+def _run(
+    mutants: Mutants, neighbour: Neighbour, candidate: Candidate | None, chosen: Sequence[int]
+) -> list[Outcome]:
+    """Run some of the recorded episodes of another test again."""
+    sample = neighbour.fixture.sample
+    worst = float(sample.total.min())
+    return [
+        mutants.run_at(neighbour.rollout, worst, candidate, sample.seeds[at], neighbour.drift)
+        for at in chosen
+    ]

@@ -28,6 +28,7 @@ class Neighbour:
     rollout: Rollout
     fixture: Fixture
     margin: float
+    drift: str | None = None  # the one that is repaired, where it is for good and this test declares it, too
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,11 @@ class Order:
     def drift(self) -> str | None:
         """Return the drift scenario that the repair is for."""
         return self.comparison.drift
+
+    @property
+    def permanent(self) -> bool:
+        """Tell whether the world has changed for good: then the designed one is the old one, and no longer asked."""
+        return self.comparison.permanent
 
     @cached_property
     def reference(self) -> Reference:

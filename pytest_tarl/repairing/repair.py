@@ -51,7 +51,7 @@ def repair(order: Order) -> Repaired:
     """Run the searches asked for; the first candidate that is accepted counts."""
     mutants = Mutants(order)
     hints = strategies.evidence(order)
-    guards = candidates.candidate_guards(hints)
+    guards = (candidates.ALWAYS,) if order.permanent else candidates.candidate_guards(hints)
     searched = candidates.telling(guards, hints, strategies.MOST_GUARDS)
     examiner = Examiner(mutants, guards)
     watch = Watch(order)

@@ -12,7 +12,7 @@ import numpy as np
 
 from pytest_tarl.model import Comparison, ListComparison
 from pytest_tarl.report.regions import Vocabulary, runs
-from pytest_tarl.report.words import running_mean
+from pytest_tarl.report.words import designed_world, running_mean
 from pytest_tarl.sensors import Cell, Sensor
 
 if TYPE_CHECKING:
@@ -168,7 +168,11 @@ def reward_curves(comparison: Comparison) -> list[dict[str, Any]]:
     curves += [_curve(f"search: {s.method}", "search", s.totals, s.labels) for s in comparison.searches]
     curves += [
         _curve("repaired", "repaired", comparison.totals.get("repaired", ())),
-        _curve("repaired, designed world", "nominal", comparison.totals.get("nominal_repaired", ())),
+        _curve(
+            f"repaired, {designed_world(comparison)}",
+            "nominal",
+            comparison.totals.get("nominal_repaired", ()),
+        ),
     ]
     return [curve for curve in curves if curve["mean"]]
 

@@ -145,6 +145,8 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
         if comparison.repair
         else [],
         "refusal": words.refusal(comparison.repair) if comparison.repair else "",
+        "ways_out": words.ways_out(comparison),
+        "designed_world": words.designed_world(comparison),
         "command": words.repeat(comparison),
         "next_steps": list(words.next_steps(comparison)),
         "lost": lambda part: words.lost_words(comparison, part),

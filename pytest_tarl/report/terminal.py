@@ -64,7 +64,7 @@ def _rewards(comparison: Comparison) -> str:
         "offline": "off-line",
         "online": "on-line",
         "repaired": "repaired",
-        "nominal_repaired": "designed world repaired",
+        "nominal_repaired": f"{words.designed_world(comparison)} repaired",
     }
     figures = [
         f"{name} {words.amount(words.atr(comparison, world))}"
@@ -127,6 +127,8 @@ def _repair(comparison: Comparison) -> Iterator[str]:
         yield f"none accepted: {words.refusal(repair)}"
         if repair.edits:
             yield f"best so far: {words.best_words(repair)}"
+    if ways_out := words.ways_out(comparison):
+        yield ways_out
     dropped = [one for one in repair.history if one.reason]
     if dropped and repair.accepted:
         yield f"{len(dropped)} tried before, the last: {words.attempt_words(dropped[-1])}"

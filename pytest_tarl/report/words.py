@@ -93,6 +93,11 @@ def world_name(comparison: Comparison) -> str:
     return f"the drift scenario {comparison.drift!r}" if comparison.drift else "the on-line world"
 
 
+def designed_world(comparison: Comparison) -> str:
+    """Name the world that the recording was made in."""
+    return "old world" if comparison.permanent else "designed world"
+
+
 def verdict_sentence(comparison: Comparison) -> str:
     """Say in one sentence what the comparison concludes."""
     verdict, world = comparison.verdict, world_name(comparison)
@@ -224,6 +229,29 @@ def command(comparison: Comparison, *flags: str) -> str:
     return shlex.join(["pytest", comparison.target or comparison.test, "--tarl-online", *options])
 
 
+def recording(comparison: Comparison) -> str:
+    """Return the command that makes a drift for good the design, once its repair is applied."""
+    drift = ["--tarl-drift", comparison.drift] if comparison.drift else []
+    return shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record", *drift])
+
+
+def ways_out(comparison: Comparison) -> str:
+    """Say what to do about a repair that only the designed world was against; empty where there is none."""
+    repair = comparison.repair
+    if repair is None or repair.accepted or comparison.permanent:
+        return ""
+    against = [one.what for one in repair.history if one.reason == "nominal gets worse"]
+    if repair.reason != "nominal gets worse" and not against:
+        return ""
+    what = against[-1] if against else repair_words(repair)
+    name = comparison.drift or "worn"
+    return (
+        f"{what} brings the reward back in {world_name(comparison)} and is too much for the designed one only. Declare "
+        "a sensor that tells the two worlds apart, so that a condition can; or, if the change is for good, say so: "
+        f'drifts={{"{name}": Drift(…, permanent=True)}}'
+    )
+
+
 def repeat(comparison: Comparison) -> str:
     """Return the command that repeats all that was done, searches included."""
     methods = [search.method for search in comparison.searches if search.method != "ranking"]
@@ -240,6 +268,8 @@ def next_steps(comparison: Comparison) -> Iterator[str]:
         yield shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record"])
     elif comparison.repair and comparison.repair.accepted and comparison.repair.patch:
         yield shlex.join(["git", "apply", comparison.repair.patch])
+        if comparison.permanent:
+            yield recording(comparison)
     elif comparison.verdict.result == "degraded" and comparison.repair is None and not _happened(comparison):
         yield command(comparison, "--tarl-repair")
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from pytest_tarl import Sensor
+from pytest_tarl import Drift, Sensor
 from pytest_tarl.designation import designation
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.options import options
@@ -38,7 +38,7 @@ FLAGS: dict[str, Any] = {
 def test_a_good_marker_has_its_defaults() -> None:
     marked = designation("t.py::test", (), GOOD | {"drifts": {"mud": 0.15}})
     assert (marked.episodes, marked.min_success, marked.tolerance) == (200, 1.0, None)
-    assert marked.drifts == {"mud": 0.15}
+    assert marked.drifts == {"mud": Drift(0.15)}
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_flags_choose_the_mode(change: dict[str, Any], mode: str) -> None:
     [
         ({"record": True}, "two runs"),
         ({"online": False, "repair": True}, "goes with --tarl-online"),
-        ({"online": False, "record": True, "drift": "mud"}, "goes with --tarl-online"),
+        ({"online": False, "drift": "mud"}, "goes with --tarl-online"),
         ({"search": ["sweeep"]}, "did you mean 'sweep'"),
         ({"utility": "q"}, "batch or sarsa"),
         ({"alpha": 0.0}, "--tarl-alpha"),

@@ -91,6 +91,7 @@ class Field:
             reference=Reference(totals.tolist(), 1.0, 0.5),
             options=SimpleNamespace(seed=0, alpha=0.05),
             drift="mud",
+            permanent=False,
             neighbours=tuple,
         )
 
