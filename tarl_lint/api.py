@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
 from tarl_lint import discover, engine
 from tarl_lint.config import Config
+from tarl_lint.discover import SourceFile
 from tarl_lint.model import Flow, Operand, SiteId, Step
 from tarl_lint.probe import Prober
 from tarl_lint.source import Module, SourceError, parse
@@ -59,7 +60,7 @@ def analyse(paths: Sequence[Path], *, root: Path | None = None) -> Analysis:
     """
     config = Config(root=root)
     files = discover.find(paths, config).files
-    parsed = [_read(file.path, file.shown, file.name) for file in files]
+    parsed = [_read(file) for file in files]
     modules = [p for p in parsed if isinstance(p, Module)]
     machine, flows = engine.trace(modules, config)
     return Analysis(
@@ -70,9 +71,10 @@ def analyse(paths: Sequence[Path], *, root: Path | None = None) -> Analysis:
     )
 
 
-def _read(path: Path, shown: str, name: str) -> Module | SourceError:
+def _read(file: SourceFile) -> Module | SourceError:
     try:
-        data = path.read_bytes()
+        data = file.path.read_bytes()
     except OSError as error:
-        return SourceError(shown, 1, f"The file cannot be read: {error.strerror or error}.")
-    return parse(shown, data, name)
+        return SourceError(file.shown, 1, f"The file cannot be read: {error.strerror or error}.")
+    found = parse(file.shown, data, file.name)
+    return replace(found, started=file.started) if isinstance(found, Module) and file.started else found

@@ -35,7 +35,7 @@ def examine(
     scripts: Sequence[Script], config: Config, cache: Cache, jobs: int | None = 1, tell: Tell = silent
 ) -> Report:
     """Return what is found in the files, whatever the number of processes (None: as many as pay)."""
-    digests = {s.path: digest([s.path, s.name, str(s.is_package), s.text]) for s in scripts}
+    digests = {s.path: digest([s.path, s.name, str(s.is_package), *s.started, s.text]) for s in scripts}
     whole = digest(digests.values())
     known = cache.plan(whole)
     if known:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from tarl_lint import gitignore
 from tarl_lint.config import Config, Stdin, repository_root
+from tarl_lint.declared import Declarations
 from tarl_lint.errors import UsageError
 from tarl_lint.files import shown
 from tarl_lint.gitignore import Ignore
@@ -34,12 +35,16 @@ _ENOUGH = 200_000  # bytes read of a file that only is to be counted
 
 
 class SourceFile(NamedTuple):
-    """A file to analyse: where it is, its path for people, its dotted name, whether it is `__init__.py`."""
+    """A file to analyse: where it is, its path for people, its dotted name, whether it is `__init__.py`.
+
+    `started` are the names in it that its package has others start.
+    """
 
     path: Path
     shown: str
     name: str
     is_package: bool
+    started: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -114,7 +119,12 @@ class _Walk:
     def discovery(self) -> Discovery:
         """Return what was found."""
         layout, here = Layout(), _absolute(Path()).rstrip("/") + "/"
-        files = [SourceFile(Path(p), p.removeprefix(here), *layout.module(p)) for p in self._files.values()]
+        declared = Declarations()
+        files = []
+        for path in self._files.values():
+            name, is_package = layout.module(path)
+            started = declared.of(path, name)
+            files.append(SourceFile(Path(path), path.removeprefix(here), name, is_package, started))
         notes = Notes(self._cpp, self._launch, self._duplicates, tuple(sorted(self._unreadable)))
         return Discovery(tuple(sorted(files, key=lambda f: f.shown)), notes)
 

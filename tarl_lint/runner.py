@@ -150,8 +150,8 @@ def _read(file: SourceFile, stdin: Stdin | None) -> Script | SourceError:
     if isinstance(data, SourceError):
         return data
     found = source.read(file.shown, data, file.name)
-    if isinstance(found, Script) and found.is_package != file.is_package:
-        return replace(found, is_package=file.is_package)
+    if isinstance(found, Script) and (found.is_package, found.started) != (file.is_package, file.started):
+        return replace(found, is_package=file.is_package, started=file.started)
     return found
 
 

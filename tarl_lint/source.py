@@ -25,6 +25,7 @@ class Module:
     text: str
     tree: ast.Module
     is_package: bool = False
+    started: tuple[str, ...] = ()  # names that others start, as the package says
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ class Script:
     name: str
     text: str
     is_package: bool = False
+    started: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,7 @@ def parsed(script: Script) -> Module | SourceError:
         return SourceError(path, 1, TOO_DEEP.format("parsed"))
     except ValueError as error:
         return SourceError(path, 1, f"The file cannot be parsed ({error}): mend it, or exclude it.")
-    return Module(path, script.name, script.text, tree, script.is_package)
+    return Module(path, script.name, script.text, tree, script.is_package, script.started)
 
 
 def _decode(path: str, data: bytes) -> str | SourceError:

@@ -70,9 +70,8 @@ class Machine:
         self.sinks: dict[tuple[str, ir.Pos], SinkRecord] = {}
         self.called: set[tuple[str, int]] = set()  # functions that something calls: module, line
         self.made: set[Hashable] = set()  # classes that something instantiates
-        self.guests: set[object] = (
-            set()
-        )  # classes that only others instantiate: plugins, nodes of launch files
+        self.guests: set[object] = set()  # classes that only others instantiate
+        self.plugins: set[object] = set()  # those that a package names for others
         self.probe: Probe | None = None
         self.watch: Callable[[Frame, ir.Stmt], None] | None = None
 

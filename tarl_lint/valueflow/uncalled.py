@@ -19,16 +19,22 @@ class Uncalled(Execution):
         for program in list(self.programs.values()):
             module = self.module_objects[program.name]
             starting = STARTING.search(self.modules[program.path].text) is not None
+            named = self.modules[program.path].started
             for statement in definitions(program.body):
                 if isinstance(statement, ir.Define):
-                    if starting or statement.function.name == "main":
+                    function = statement.function
+                    if function.name in named or (
+                        (starting or function.name == "main") and starts_node(function)
+                    ):
                         self._main_function(statement, module)
+                elif statement.name in named:
+                    self._plugin(statement, module)
                 else:
                     self._node_class(statement, program, starting)
 
     def _main_function(self, statement: ir.Define, module: Obj) -> None:
         function = statement.function
-        if (function.module, function.pos[0]) in self.called or not starts_node(function):
+        if (function.module, function.pos[0]) in self.called:
             return
         for obj in self._values(module, function.name):
             if obj.kind == "closure":
@@ -45,6 +51,13 @@ class Uncalled(Execution):
             self.call_object(target, ([], {}), self.root_frame(root), ROOT_CALL)
 
         self.add_root(root, run)
+
+    def _plugin(self, statement: ir.Class, module: Obj) -> None:
+        """Make an instance of a class that a package names for others to make."""
+        for cls in self._values(module, statement.name):
+            if cls.kind == "class" and (cls in self.plugins or cls.key not in self.made):
+                self._start(cls, "node")
+                self.plugins.add(cls)
 
     def _node_class(self, statement: ir.Class, program: ir.Program, starting: bool) -> None:
         """Make an instance of a class that registers something, or is a node, and that nothing instantiates."""
@@ -81,7 +94,7 @@ class Uncalled(Execution):
     def _framework_methods(self, obj: Obj, owner: Obj, info: ClassInfo) -> None:
         cls = obj.info.info if isinstance(obj.info, Obj) else None
         external = _external(cls) if isinstance(cls, ClassInfo) else set()
-        unknown = external - catalog.NODE_BASES or (obj.info in self.guests and not _registers_itself(info))
+        unknown = external - catalog.NODE_BASES or self._called_by_others(obj, info)
         for statement in info.statement.body if info.statement is not None else ():
             if not isinstance(statement, ir.Define):
                 continue
@@ -94,6 +107,10 @@ class Uncalled(Execution):
                 if closure.kind == "closure":
                     state = name == catalog.RUNS_STATE and any(e.startswith(catalog.STATES) for e in external)
                     self._start_method(closure, obj, owner, [self.userdata(obj)] if state else [])
+
+    def _called_by_others(self, obj: Obj, info: ClassInfo) -> bool:
+        """Tell whether whoever made an object calls its methods: of plugins, and where nothing else registers."""
+        return obj.info in self.plugins or (obj.info in self.guests and not _registers_itself(info))
 
     def _start_method(self, closure: Obj, obj: Obj, owner: Obj, given: list[Value]) -> None:
         method = self.intern("bound", (closure.key, obj), closure.name)
