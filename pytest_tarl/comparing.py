@@ -19,6 +19,7 @@ from pytest_tarl.learning.looks import Look, certain, concluded, planned
 from pytest_tarl.learning.merging import aligned, merge
 from pytest_tarl.learning.packing import represented
 from pytest_tarl.learning.permutation import permutations_for, permuted_loss
+from pytest_tarl.learning.sarsa import LEARNERS
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled, tiled_batch
 from pytest_tarl.logged import read_log
@@ -122,6 +123,11 @@ def _side(
 
 def _learner(fixture: Fixture, options: Options) -> str:
     """Return the rule by which tables are learned, that of the fixture. Raises FixtureError when asked for another."""
+    if fixture.learner not in LEARNERS:
+        raise FixtureError(
+            f"The utility fixture of {fixture.test} holds a table learned by {fixture.learner!r}, which this version "
+            "of tarl does not know: record it again with `pytest --tarl-record`."
+        )
     if options.learner not in ("", fixture.learner):
         raise FixtureError(
             f"The utility fixture of {fixture.test} holds a table learned by {fixture.learner}, not by "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import reprlib
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from pytest_tarl.instrumentation.importhook import NodeImports
     from pytest_tarl.instrumentation.recorder import Recorder
     from pytest_tarl.ros import Bus, Ros
+
+LARGEST = 1e100  # size of a reward; that of a flow value is bounded by the same number
 
 
 class Tarl:
@@ -163,7 +166,7 @@ class Tarl:
                 "tarl.reward needs a number, or parts such as tarl.reward(progress=0.2, clearance=-1)."
             )
         given = {name: _reward(value) for name, value in parts.items()}
-        amount = sum(given.values()) if total is None else _reward(total)
+        amount = _reward(sum(given.values()) if total is None else total)
         self._recorder.reward(amount, given)
         self._rewards += 1
 
@@ -252,7 +255,12 @@ def same_topic(first: str, second: str) -> bool:
 def _reward(value: Any) -> float:
     number = as_number(value)
     if number is None or not abs(number) < math.inf:
-        raise SettingsError(f"tarl.reward got {value!r}: rewards must be finite numbers.")
+        raise SettingsError(f"tarl.reward got {reprlib.repr(value)}: rewards must be finite numbers.")
+    if abs(number) > LARGEST:
+        raise SettingsError(
+            f"tarl.reward got {reprlib.repr(value)}: rewards are at most {LARGEST:g} in size, else sums of their "
+            "squares overflow. Scale the monitor's judgement."
+        )
     return number
 
 

@@ -12,7 +12,11 @@ class SettingsError(TarlError):
 
 
 class FixtureError(TarlError):
-    """A utility fixture is missing, damaged, foreign or of another format."""
+    """A utility fixture is missing, damaged, foreign or of another format; `what` leaves the advice out."""
+
+    def __init__(self, what: str, advice: str = "") -> None:
+        super().__init__(f"{what} {advice}".rstrip())
+        self.what = what
 
 
 class AnalysisError(TarlError):

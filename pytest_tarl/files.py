@@ -2,10 +2,33 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import tempfile
 from pathlib import Path
+
+FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))  # Windows has no quota error
+DIFFERENT = (errno.EROFS, errno.EACCES, errno.EPERM)
+
+
+def advice_on(problem: OSError) -> str:
+    """Return what to do where a file cannot be written."""
+    if problem.errno in FULL:
+        return "the disk is full, or your quota of it: free some space and run it again."
+    if problem.errno in DIFFERENT:
+        return "give yourself the right to write there, or run in a copy."
+    return "something else is in its place, or the disk fails: look there and run it again."
+
+
+def make_room(path: Path) -> None:
+    """Make the folders above a file that is to be written. Raises OSError where that or the file cannot be."""
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    os.close(handle)
+    Path(name).unlink()
 
 
 def slug(text: str) -> str:

@@ -21,7 +21,7 @@ from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison, Repair
 from pytest_tarl.options import Options
-from pytest_tarl.recording import Progress, read_values, record
+from pytest_tarl.recording import Progress, Tell, read_values, record
 from pytest_tarl.repairing.order import Neighbour, Order
 from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repeating import Instruments
@@ -73,6 +73,7 @@ class Mission:
     drift: str | None
     width: int
     progress: Progress
+    tell: Tell  # says a sentence at once, where there is a terminal
     others: tuple[Other, ...] = ()
 
     def run(self, rollout_with: RolloutWith) -> Account | Compared:
@@ -165,6 +166,7 @@ class Mission:
             sites,
             self.fixture_path,
             self.progress,
+            self.tell,
             drift,
         )
         if result.problem:
@@ -252,11 +254,14 @@ class Mission:
             return
         run, edited = {self.test, *(other.test for other in self.others)}, {edit.path for edit in found.edits}
         for path in sorted((self.tarl / "utility").glob("*.npz")):
-            with suppress(FixtureError):
+            try:
                 fixture = fixtures.load(path)
-                sites = {site.path for one in fixture.lists for site in one.sites}
-                if fixture.test not in run and sites & edited:
-                    yield f"{fixture.test} is recorded on the same node and was not in this run: run it, too"
+            except FixtureError as problem:
+                yield f"{problem.what} If its test is of the same node, the repair was not held against it"
+                continue
+            sites = {site.path for one in fixture.lists for site in one.sites}
+            if fixture.test not in run and sites & edited:
+                yield f"{fixture.test} is recorded on the same node and was not in this run: run it, too"
 
     def _fixture(self) -> Fixture:
         if not self.fixture_path.exists():

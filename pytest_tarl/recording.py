@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -26,6 +27,7 @@ from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import stored
 
 Progress = Callable[[int, int, str], None]
+Tell = Callable[[str], None]
 Members = Sequence[Sequence[int]]
 
 ENOUGH_FAILURES = 5  # that settle a recording whose min_success can no longer be reached
@@ -75,12 +77,18 @@ def record(
     plan: Plan,
     path: Path,
     progress: Progress,
+    tell: Tell,
     drift: str | None = None,
 ) -> RecordResult:
     """Run the off-line episodes and write the fixture, unless too many of them fail.
 
-    With a `drift`, which must be one for good, its world is the design from now on.
+    With a `drift`, which must be one for good, its world is the design from now on. What is wrong with the fixture of
+    before is told first. Raises FixtureError, before any episode, where nothing can be written.
     """
+    old, broken = _previous(path)
+    for note in broken:
+        tell(note)
+    fixtures.prepare(path)
     seeds = episode_seeds(options.seed, "offline", options.episodes or designation.episodes)
     bearable = int(len(seeds) * (1 - designation.min_success) + 1e-9)
 
@@ -90,11 +98,14 @@ def record(
     learner = options.learner or "sarsa"
     recorded = run_episodes(rollout, seeds, drift, plan.members, progress, learner, settled)
     again = rollout(EpisodePlan(seeds[0], drift, record=True))
-    notes = [*recorded.notes, *([] if identical(recorded.first, again.trace) else [NOT_REPRODUCIBLE])]
+    notes = [
+        *broken,
+        *recorded.notes,
+        *([] if identical(recorded.first, again.trace) else [NOT_REPRODUCIBLE]),
+    ]
     if len(recorded.failures) > bearable:
         return RecordResult("", _unfinished(recorded, designation, len(seeds)), tuple(notes))
     notes += _silent_lists(recorded.sample, plan)
-    old = _previous(path)
     new = Fixture(
         test=test,
         seed=options.seed,
@@ -219,11 +230,12 @@ def _silent_lists(recorded: Sample, plan: Plan) -> list[str]:
     return [f"no step of {name} was executed: does the test drive that part of the node?" for name in silent]
 
 
-def _previous(path: Path) -> Sample | None:
+def _previous(path: Path) -> tuple[Sample | None, tuple[str, ...]]:
+    """Return what was recorded before, and why it cannot be read where something is there."""
     try:
-        return fixtures.load(path).sample if path.exists() else None
-    except FixtureError:
-        return None
+        return (fixtures.load(path).sample if os.path.lexists(path) else None), ()
+    except FixtureError as problem:
+        return None, (f"{problem.what} What is recorded now replaces it.",)
 
 
 def _summary(new: Sample, old: Sample | None) -> str:

@@ -182,6 +182,7 @@ class TarlSession:
             drift=scenario(item),
             width=self._width(),
             progress=self._progress(item),
+            tell=self._say,
             others=self._others(item),
         )
         try:
@@ -219,6 +220,13 @@ class TarlSession:
 
     def _has_terminal(self) -> bool:
         return self.config.pluginmanager.has_plugin("terminalreporter")
+
+    def _say(self, sentence: str) -> None:
+        """Say something before the episodes; in a worker of xdist there is no terminal, and it is told at the end."""
+        reporter = self.config.pluginmanager.get_plugin("terminalreporter")
+        if reporter is not None:
+            reporter.ensure_newline()
+            reporter.write_line(sentence)
 
     def _progress(self, item: pytest.Function) -> Progress:
         reporter = self.config.pluginmanager.get_plugin("terminalreporter")

@@ -13,17 +13,17 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import zlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
-from zipfile import BadZipFile, ZipFile
+from zipfile import ZipFile
 
 import numpy as np
 
 from pytest_tarl.errors import FixtureError
-from pytest_tarl.files import write_atomically
+from pytest_tarl.files import advice_on, make_room, write_atomically
+from pytest_tarl.learning.archive import DamagedError, numbers, read_arrays
 from pytest_tarl.learning.packing import (
     narrowed,
     packed_chain,
@@ -33,6 +33,7 @@ from pytest_tarl.learning.packing import (
     unpacked_list,
     unpacked_table,
 )
+from pytest_tarl.learning.soundness import check
 from pytest_tarl.learning.tables import Floats, Sample
 from pytest_tarl.model import SitePlace, TaintList
 from pytest_tarl.sensors import Sensor
@@ -80,55 +81,72 @@ def save(fixture: Fixture, path: Path) -> None:
     try:
         write_atomically(path, buffer.getvalue())
     except OSError as problem:
-        raise FixtureError(
-            f"{path} cannot be written ({problem.strerror}): give yourself the right to write there, or run in a copy."
-        ) from problem
+        raise _unwritable(path, problem) from problem
+
+
+def prepare(path: Path) -> None:
+    """Raise FixtureError unless a fixture can be written, before the episodes are run that would be lost."""
+    try:
+        make_room(path)
+    except OSError as problem:
+        raise _unwritable(path, problem) from problem
+
+
+def _unwritable(path: Path, problem: OSError) -> FixtureError:
+    return FixtureError(f"{path} cannot be written ({problem.strerror}):", advice_on(problem))
 
 
 def load(path: Path) -> Fixture:
     """Read a fixture. Raises FixtureError when it is missing, damaged, foreign or of another format."""
     advice = "Record it again with `pytest --tarl-record`."
     try:
-        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as archive:
-            columns = {name: archive[name] for name in archive.files}
-        header = json.loads(columns.pop(HEADER).tobytes().decode())
-        found = header["format"]
+        content = path.read_bytes()
     except FileNotFoundError:
-        raise FixtureError(f"There is no utility fixture {path}. {advice}") from None
+        raise FixtureError(f"There is no utility fixture {path}.", advice) from None
     except OSError as problem:
         raise FixtureError(
-            f"The utility fixture {path} cannot be read: {problem.strerror}. {advice}"
+            f"The utility fixture {path} cannot be read: {problem.strerror}.", advice
         ) from problem
-    except (
-        ValueError,
-        LookupError,
-        EOFError,
-        TypeError,
-        AttributeError,
-        zlib.error,
-        BadZipFile,
-    ) as problem:
+    try:
+        columns = read_arrays(content)
+        header = json.loads(numbers(columns, HEADER, None).tobytes().decode())
+        del columns[HEADER]
+        found = header["format"]
+    except Exception as problem:  # zip, npy and JSON can be damaged in more ways than they list
         raise FixtureError(
-            f"The utility fixture {path} is damaged or is not one. Restore it from version control, or "
-            "record it again with `pytest --tarl-record`."
+            f"The utility fixture {path} is damaged or is not one{_why(problem)}.",
+            "Restore it from version control, or record it again with `pytest --tarl-record`.",
         ) from problem
     if found != FORMAT_VERSION:
         newer = isinstance(found, int) and found > FORMAT_VERSION
         what = "Take the version of tarl that it was recorded with, or record" if newer else "Record"
         raise FixtureError(
             f"The utility fixture {path} has format {str(found)[:20]}, this version of tarl reads "
-            f"{FORMAT_VERSION}. {what} it again with `pytest --tarl-record`."
-        )
-    if header.pop("digest", None) != _digest(header, columns):
-        raise FixtureError(
-            f"The utility fixture {path} is damaged: its digest does not fit its content. {advice}"
+            f"{FORMAT_VERSION}.",
+            f"{what} it again with `pytest --tarl-record`.",
         )
     try:
-        return _fixture(header, columns)
-    except (LookupError, TypeError, ValueError, AttributeError) as problem:
+        if header.pop("digest", None) != _digest(header, columns):
+            raise FixtureError(
+                f"The utility fixture {path} is damaged: its digest does not fit its content.", advice
+            )
+        with np.errstate(all="ignore"):
+            fixture = _fixture(header, columns)
+            check(fixture.sample, len(fixture.sensors), fixture.sarsa)
+    except FixtureError:
+        raise
+    except Exception as problem:  # whoever makes a digest that fits can have written anything
         raise FixtureError(
-            f"The utility fixture {path} does not hold what one of format {FORMAT_VERSION} does. {advice}"
+            f"The utility fixture {path} does not hold what one of format {FORMAT_VERSION} does{_why(problem)}.",
+            advice,
         ) from problem
+    return fixture
+
+
+def _why(problem: Exception) -> str:
+    if isinstance(problem, MemoryError):
+        return " (or there is not the memory to read it)"
+    return f" ({problem})" if isinstance(problem, DamagedError) else ""
 
 
 def sizes(path: Path, lists: int) -> tuple[int, ...]:
@@ -169,6 +187,7 @@ def _digest(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, Any
 
 
 def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, Any]]) -> Fixture:
+    _check_header(header)
     lists = tuple(
         TaintList(one["source"], one["sink"], tuple(SitePlace(**site) for site in one["sites"]))
         for one in header["lists"]
@@ -196,3 +215,24 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
         ),
         sarsa=tuple(unpacked_table(f"sarsa{i}", columns) for i in range(len(lists))),
     )
+
+
+def _check_header(header: Mapping[str, Any]) -> None:
+    """Raise DamagedError where the header tells something else than texts and numbers where they belong."""
+    plain = [
+        header["test"],
+        header["learner"],
+        *header["topics"],
+        *header["topics"].values(),
+        *header["parts"],
+    ]
+    plain += [text for one in header["lists"] for text in (one["source"], one["sink"])]
+    plain += [
+        site[name]
+        for one in header["lists"]
+        for site in one["sites"]
+        for name in ("id", "path", "code", "dependence", "role", "qualname")
+    ]
+    lines = [header["seed"], *(site["line"] for one in header["lists"] for site in one["sites"])]
+    if not all(type(text) is str for text in plain) or not all(type(line) is int for line in lines):
+        raise DamagedError("its header does not tell what was recorded")

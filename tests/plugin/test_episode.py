@@ -83,6 +83,8 @@ MISTAKES: dict[str, Any] = {
     "a list as reward": (lambda t: t.reward([1.0]), r"tarl.reward got \[1.0\]"),
     "an array as reward": (lambda t: t.reward(np.array([1.0])), "tarl.reward got array"),
     "infinity as reward": (lambda t: t.reward(float("-inf")), "tarl.reward got -inf"),
+    "a reward whose square overflows": (lambda t: t.reward(-1e101), "at most 1e[+]100 in size"),
+    "parts that are too much together": (lambda t: t.reward(a=9e99, b=9e99), "at most 1e[+]100 in size"),
     "a huge whole number as reward": (lambda t: t.reward(10**400), "finite numbers"),
     "nothing as reward": (lambda t: t.reward(None), "needs a number, or parts"),
     "a text as time": (lambda t: t.step("0.1"), "tarl.step got '0.1': time advances by"),

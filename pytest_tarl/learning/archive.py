@@ -1,0 +1,62 @@
+"""Arrays of an `.npz` file that nobody vouches for: read within bounds, numbers only, never a pickle."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Mapping
+from typing import Any
+from zipfile import ZipFile, ZipInfo
+
+import numpy as np
+from numpy.lib import format as npy
+from numpy.typing import NDArray
+
+FREE = 256_000_000  # bytes that any file may unpack to
+RATIO = 100  # bytes more for each byte of the file; recordings take 2 to 20
+KINDS = "biuf"  # booleans and numbers
+ENDING = ".npy"
+
+
+class DamagedError(ValueError):
+    """An archive is not what a recording writes; the argument is a half-sentence that says why."""
+
+
+def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
+    """Return the arrays by name. Raises DamagedError, and whatever else zip and npy headers can be damaged to."""
+    with ZipFile(io.BytesIO(content)) as archive:
+        members = archive.infolist()
+        unpacked = sum(one.file_size for one in members)
+        if unpacked > FREE + RATIO * len(content):
+            raise DamagedError(
+                f"its {len(content):,} bytes would unpack to {unpacked:,}, which no recording does"
+            )
+        names = [one.filename for one in members]
+        if len({*names}) < len(names):
+            raise DamagedError("it holds one name twice")
+        return {one.filename.removesuffix(ENDING): _array(archive, one) for one in members}
+
+
+def numbers(arrays: Mapping[str, NDArray[Any]], name: str, *shape: int | None) -> NDArray[Any]:
+    """Return an array. Raises DamagedError where it is not there or of another shape; None stands for any length."""
+    found = arrays.get(name)
+    if found is None:
+        raise DamagedError(f"it has no column {name!r}")
+    fits = zip(found.shape, shape, strict=False)
+    if found.ndim != len(shape) or any(wanted not in (None, size) for size, wanted in fits):
+        raise DamagedError(f"its column {name!r} has the shape {found.shape}")
+    return found
+
+
+def _array(archive: ZipFile, member: ZipInfo) -> NDArray[Any]:
+    if not member.filename.endswith(ENDING):
+        raise DamagedError(f"its member {member.filename[:40]!r} is no array")
+    stream = io.BytesIO(archive.read(member))
+    if npy.read_magic(stream) != (1, 0):
+        raise DamagedError(f"its member {member.filename[:40]!r} has an unknown header")
+    shape, by_columns, dtype = npy.read_array_header_1_0(stream)
+    body = stream.read()
+    whole = dtype.kind in KINDS and all(size >= 0 for size in shape)
+    if not whole or math.prod(shape) * dtype.itemsize != len(body):
+        raise DamagedError(f"its member {member.filename[:40]!r} is not as long as its shape says")
+    return np.frombuffer(body, dtype).reshape(shape, order="F" if by_columns else "C").copy()
