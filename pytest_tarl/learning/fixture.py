@@ -225,6 +225,7 @@ def _check_header(header: Mapping[str, Any]) -> None:
         *header["topics"],
         *header["topics"].values(),
         *header["parts"],
+        *header.get("design", []),
     ]
     plain += [text for one in header["lists"] for text in (one["source"], one["sink"])]
     plain += [
@@ -234,5 +235,10 @@ def _check_header(header: Mapping[str, Any]) -> None:
         for name in ("id", "path", "code", "dependence", "role", "qualname")
     ]
     lines = [header["seed"], *(site["line"] for one in header["lists"] for site in one["sites"])]
-    if not all(type(text) is str for text in plain) or not all(type(line) is int for line in lines):
+    listed = isinstance(header["parts"], list) and isinstance(header.get("design", []), list)
+    if (
+        not listed
+        or not all(type(text) is str for text in plain)
+        or not all(type(line) is int for line in lines)
+    ):
         raise DamagedError("its header does not tell what was recorded")
