@@ -17,6 +17,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from pytest_tarl.commands import diff, show
+from pytest_tarl.design import adopted
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.fixture import load, save, sizes
@@ -66,6 +67,7 @@ def survived(content: bytes) -> bool:
         path = Path(folder, "a.npz")
         path.write_bytes(content)
         found = loaded(path)
+        assert all(isinstance(name, str) for name in adopted(path))
         if isinstance(found, FixtureError):
             assert "--tarl-record" in str(found)
             assert "\n" not in str(found)
