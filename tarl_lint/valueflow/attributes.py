@@ -40,7 +40,7 @@ class Attributes(Texts):
 
     def getter(self, it: Invocation) -> Value:
         """Return the function that `attrgetter(...)` or `itemgetter(...)` makes."""
-        obj = self.intern("partial", (it.frame.id, it.statement, it.call.slot), it.name)
+        obj = self.intern("partial", (it.frame.id, it.statement, it.call.slot, *it.frame.turn), it.name)
         obj.info = (self.external(f"{it.name}.<made>"), it.arguments[0], {})
         return pointer(obj)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.bounds import MAX_STATEMENTS
 from tarl_lint.valueflow.frames import Attempt, Frame
@@ -9,6 +11,7 @@ from tarl_lint.valueflow.raising import Raising
 from tarl_lint.valueflow.store import Delta
 from tarl_lint.valueflow.values import BOTTOM, UNKNOWN, Value
 
+MAX_TURNS = 4  # elements of a loop that are told apart
 MAX_PASSES = 12  # over a loop's body; a safety net, since the values that can arise are finite
 
 
@@ -45,6 +48,8 @@ class Branches(Raising):
     def loop(self, s: ir.Loop, frame: Frame) -> bool:
         """Repeat the body until the state at its head changes no more."""
         source = self.evaluate(s.source, frame) if s.target is not None else BOTTOM
+        if s.target is not None and (elements := self._told_apart(source)):
+            return self._turns(s, s.target, source, elements, frame)
         depth = len(self.store.layers)
         head: Delta = {}
         for _ in range(MAX_PASSES):
@@ -65,6 +70,39 @@ class Branches(Raising):
                 break  # loops in loops in loops take as many passes as all of theirs multiplied
             head = again
         return self._loop_end(s, done, table["break"], frame)
+
+    def _told_apart(self, source: Value) -> list[Value]:
+        """Return the elements that a loop goes over one by one: a few, known, with data in them."""
+        elements = self.unpacked(source) or []
+        if not 1 < len(elements) <= MAX_TURNS:
+            return []
+        laden = any(v.deps or any(o.laden or o.kind == "message" for o in v.pts) for v in elements)
+        return elements if laden else []
+
+    def _turns(
+        self, s: ir.Loop, target: ir.Expr, source: Value, elements: Sequence[Value], frame: Frame
+    ) -> bool:
+        """Execute the body once for each element."""
+        depth, before = len(self.store.layers), frame.turn
+        broken: list[Delta] = []
+        self._length(source, self.condition(frame, s))
+        done: Delta | None = {}
+        for number, element in enumerate(elements):
+            self.store.push(done)
+            table: dict[str, list[Delta]] = {"break": broken, "continue": []}
+            frame.jumps.append((depth, table))
+            frame.turn = (*before, -1 - s.id, number)
+            frame.statement = s
+            self.bind_target(target, element, frame, "element", s.source)
+            ends = [self.store.since(depth)] if self.block(s.body, frame) else []
+            ends += table["continue"]
+            frame.jumps.pop()
+            self.store.cut(depth)
+            done = self.joined(ends) if ends else None
+            if done is None:
+                break
+        frame.turn = before
+        return self._loop_end(s, [done] if done is not None else [], broken, frame)
 
     def _loop_head(self, s: ir.Loop, source: Value, frame: Frame) -> tuple[bool, bool]:
         """Evaluate the condition or bind the next element; tell whether the body and the end are reached."""

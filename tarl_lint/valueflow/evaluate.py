@@ -211,7 +211,8 @@ class Evaluation(Displays):
     def closure(self, function: ir.Function, frame: Frame, slot: object) -> Value:
         """Return a function object that remembers where it was made."""
         outer = frame.outer if frame.owner_class() else frame
-        obj = self.intern("closure", (function.module, frame.id, function.pos, slot), function.name)
+        key = (function.module, frame.id, function.pos, slot, *frame.turn)
+        obj = self.intern("closure", key, function.name)
         obj.info = (function, outer, frame.program, frame.owner_class())
         if outer is not None:
             around: Frame | None = outer

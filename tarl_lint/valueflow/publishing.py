@@ -15,7 +15,7 @@ class Sinks(Library):
     """Records sinks."""
 
     def _publisher(self, it: Invocation) -> Value:
-        obj = self.intern("publisher", (it.frame.id, it.statement, it.call.slot))
+        obj = self.intern("publisher", (it.frame.id, it.statement, it.call.slot, *it.frame.turn))
         info = obj.info
         if not isinstance(info, Publisher):
             info = Publisher(api=it.fact.api, path=it.frame.program.path, pos=it.call.pos)

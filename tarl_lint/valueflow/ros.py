@@ -41,7 +41,7 @@ class Ros(Serving):
     # --- values -------------------------------------------------------------------------------------------
 
     def _partial(self, it: Invocation) -> Value:
-        obj = self.intern("partial", (it.frame.id, it.statement, it.call.slot))
+        obj = self.intern("partial", (it.frame.id, it.statement, it.call.slot, *it.frame.turn))
         plain, named = it.arguments
         if not plain:
             return UNKNOWN

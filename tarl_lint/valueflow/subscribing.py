@@ -156,7 +156,7 @@ class Sources(Sinks):
     def synchronizer(self, it: Invocation) -> Value:
         """Return a synchroniser of several subscribers."""
         given = it.argument(it.fact.topic)
-        obj = self.intern("synchronizer", (it.frame.id, it.statement, it.call.slot))
+        obj = self.intern("synchronizer", (it.frame.id, it.statement, it.call.slot, *it.frame.turn))
         parts = self.unpacked(given)
         several = parts is None and all(o.kind == "sequence" for o in given.pts)
         if parts is None:
