@@ -8,6 +8,7 @@ import os
 import sys
 from argparse import Namespace
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -98,7 +99,13 @@ def _lint(chosen: Options, config: Config) -> Result:
 def _check(config: Config) -> None:
     """Refuse codes that no rule has and wrappers of what ROS does not have, wherever they come from."""
     per_file = tuple(code for _, codes in config.per_file_ignores for code in codes)
-    for key, codes in (("select", config.select), ("ignore", config.ignore), ("per-file-ignores", per_file)):
+    chosen = (
+        ("select", config.select),
+        ("extend-select", config.extend_select),
+        ("ignore", config.ignore),
+        ("per-file-ignores", per_file),
+    )
+    for key, codes in chosen:
         if codes:
             from tarl_lint.explain import check_codes
 
@@ -112,16 +119,17 @@ def _check(config: Config) -> None:
 
 def _show(typed: Namespace, result: Result) -> None:
     """Print the report, or write it to a file; what a document has no place for goes to the error stream."""
+    wanted = View(
+        show_paths=typed.show_paths or typed.all_steps,
+        all_steps=typed.all_steps,
+        most_flows=typed.max_paths,
+        statistics=typed.statistics,
+    )
     if typed.output_file:
-        view = View(show_paths=typed.show_paths, statistics=typed.statistics)
+        view = wanted
         _write_file(typed.output_file, report.render(typed.format, result, view))
     else:
-        view = View(
-            show_paths=typed.show_paths,
-            statistics=typed.statistics,
-            width=paint.width_of(sys.stdout),
-            glyphs=paint.glyphs_for(sys.stdout),
-        )
+        view = replace(wanted, width=paint.width_of(sys.stdout), glyphs=paint.glyphs_for(sys.stdout))
         _print(report.render(typed.format, result, view))
     if typed.format not in report.FOR_PEOPLE:
         for line in (*summary.vanished(result, view), *summary.unused(result)):

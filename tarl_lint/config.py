@@ -14,6 +14,7 @@ from typing import Any, Final, cast
 from tarl_lint.errors import ConfigError
 from tarl_lint.files import shown
 from tarl_lint.keys import BASELINE_NAME, KEYS, FailOn, Wrapper
+from tarl_lint.model import OFF_BY_DEFAULT
 
 TABLE: Final = "tarl-lint"
 _MENTIONS: Final = (TABLE.encode(), b"tool.tarl")  # also of a table whose name is mistyped
@@ -35,6 +36,7 @@ class Options:
     config: Path | None = None
     select: tuple[str, ...] | None = None
     ignore: tuple[str, ...] | None = None
+    extend_select: tuple[str, ...] = ()
     exclude: tuple[str, ...] | None = None
     extend_exclude: tuple[str, ...] = ()
     baseline: Path | None = None
@@ -51,7 +53,8 @@ class Options:
 class Config:
     """Settings of one run. `Config()` is valid: every rule, nothing excluded, no baseline.
 
-    `select` and `ignore` hold rule codes or their beginnings (`TARL1`); an empty `select` means all rules.
+    `select`, `extend_select` and `ignore` hold rule codes or their beginnings (`TARL1`); an empty `select` means all
+    rules. A rule that is off by default is wanted only where its whole code is selected.
     `exclude` holds patterns as in .gitignore; they and a named baseline are relative to `root`.
     `per_file_ignores` holds such patterns with the codes that are not wanted in the files they match.
     `sources`, `sinks` and `sanitizers` are qualified names (`robot.bus.listen`); what a sanitizer returns is clean.
@@ -63,6 +66,7 @@ class Config:
 
     root: Path | None = None
     select: tuple[str, ...] = ()
+    extend_select: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
     exclude: tuple[str, ...] = ()
     baseline: Path | None = None
@@ -90,8 +94,11 @@ class Config:
 
     def enabled(self, code: str) -> bool:
         """Tell whether findings of a rule are wanted."""
-        chosen = not self.select or code.startswith(self.select)
-        return chosen and not (self.ignore and code.startswith(self.ignore))
+        if code.startswith(self.ignore):
+            return False
+        if code in OFF_BY_DEFAULT:
+            return code in (*self.select, *self.extend_select)
+        return not self.select or code.startswith((*self.select, *self.extend_select))
 
 
 def resolve(options: Options) -> Config:
@@ -110,17 +117,20 @@ def resolve(options: Options) -> Config:
         origins[key] = origin
         return typed if typed is not None else table.get(key, default)
 
-    excluded = choose("exclude", options.exclude, ())
-    if options.extend_exclude:
-        before = origins["exclude"]
-        origins["exclude"] = (
-            f"{before} and command line" if file and before == shown(file) else "command line"
-        )
+    def extended(key: str, added: tuple[str, ...], typed: Any = None) -> Any:
+        """Return what `choose` does, with what an --extend option adds to it."""
+        chosen = choose(key, typed, ())
+        if added:
+            before = origins[key]
+            origins[key] = f"{before} and command line" if file and before == shown(file) else "command line"
+        return (*chosen, *added)
+
     return Config(
         root=root,
         select=choose("select", options.select, ()),
+        extend_select=extended("extend-select", options.extend_select),
         ignore=choose("ignore", options.ignore, ()),
-        exclude=(*excluded, *options.extend_exclude),
+        exclude=extended("exclude", options.extend_exclude, options.exclude),
         baseline=_baseline(options, root, choose("baseline", options.baseline, None)),
         fail_on=choose("fail-on", options.fail_on, "explicit"),
         sources=choose("sources", None, ()),

@@ -13,7 +13,7 @@ from tarl_lint.memory import without_collection
 from tarl_lint.model import Finding, Flow
 from tarl_lint.onesided import one_sided
 from tarl_lint.relevance import groups, relevant
-from tarl_lint.rules import tarl101, tarl102, tarl201, tarl202, tarl203, tarl204
+from tarl_lint.rules import tarl101, tarl102, tarl103, tarl201, tarl202, tarl203, tarl204
 from tarl_lint.source import Module
 from tarl_lint.taint import Tracer
 from tarl_lint.valueflow.link import Linker
@@ -66,9 +66,13 @@ def trace(
 
 def findings(flows: Sequence[Flow]) -> tuple[Finding, ...]:
     """Return one finding per flow, at the publish call."""
-    return tuple(
-        tarl101.finding(flow) if flow.kind == "explicit" else tarl102.finding(flow) for flow in flows
-    )
+    return tuple(_finding(flow) for flow in flows)
+
+
+def _finding(flow: Flow) -> Finding:
+    if tarl103.own_response(flow):
+        return tarl103.finding(flow)
+    return tarl101.finding(flow) if flow.kind == "explicit" else tarl102.finding(flow)
 
 
 def hazards(tracer: Tracer, flows: Sequence[Flow], config: Config) -> tuple[Finding, ...]:

@@ -120,6 +120,7 @@ def _fail_on(value: Any) -> str | None:
 
 KEYS: Final[Mapping[str, tuple[Callable[[Any], Any], str]]] = {
     "select": (_codes, 'a list of rule codes such as ["TARL1"]'),
+    "extend-select": (_codes, 'a list of rule codes such as ["TARL103"]'),
     "ignore": (_codes, 'a list of rule codes such as ["TARL102"]'),
     "exclude": (_patterns, 'a list of patterns as in .gitignore, such as ["vendor/"]'),
     "baseline": (_text, f'the name of a file, such as "{BASELINE_NAME}"'),

@@ -9,7 +9,8 @@ from typing import Final, Literal
 Dependence = Literal["data", "control", "context"]
 Kind = Literal["explicit", "implicit"]
 CODES: Final[Mapping[Kind, str]] = {"explicit": "TARL101", "implicit": "TARL102"}
-RULES: Final = ("TARL001", *CODES.values(), "TARL201", "TARL202", "TARL203", "TARL204")
+OFF_BY_DEFAULT: Final = frozenset({"TARL103"})  # wanted only where they are named in full
+RULES: Final = ("TARL001", *CODES.values(), "TARL103", "TARL201", "TARL202", "TARL203", "TARL204")
 Role = Literal["register", "receive", "assign", "call", "return", "condition", "publish"]
 
 
@@ -102,10 +103,11 @@ class Flow:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One diagnostic: a flow (TARL101, TARL102) or a hazard (TARL2xx).
+    """One diagnostic: a flow (TARL101 to TARL103) or a hazard (TARL2xx).
 
-    Of a hazard, `about` is what it speaks of and `place` the qualified name of the function it is in: neither
-    lines nor local names, so that it is known again in an edited file.
+    `package` is the ROS package, else Python's, else the script, that a finding begins in. Of a hazard, `about` is
+    what it speaks of and `place` the qualified name of the function it is in: neither lines nor local names, so that it
+    is known again in an edited file.
     """
 
     code: str
@@ -116,6 +118,7 @@ class Finding:
     status: Literal["new", "accepted"] = "new"
     about: str = ""
     place: str = ""
+    package: str = ""
 
 
 @dataclass(frozen=True, slots=True)

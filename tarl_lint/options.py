@@ -27,6 +27,7 @@ _EPILOG: Final = (
     "the baseline cannot be used, 130 interrupted. Settings are read from [tool.tarl-lint] in pyproject.toml."
 )
 _DASH: Final = Path("-")
+MOST_SHOWN: Final = 100  # flows one by one in a report for people, some ten screens
 
 
 class _Help(argparse.HelpFormatter):
@@ -128,7 +129,19 @@ def _add_output(group: argparse._ArgumentGroup) -> None:
         metavar="FORMAT",
         help=f"one of {', '.join(FORMATS)} (default: text)",
     )
-    group.add_argument("--show-paths", action="store_true", help="list the statements of every flow")
+    group.add_argument(
+        "--show-paths", action="store_true", help="list the shortest chain of statements of every flow"
+    )
+    group.add_argument(
+        "--all-steps", action="store_true", help="list all statements of the flows, also those that decide"
+    )
+    group.add_argument(
+        "--max-paths",
+        type=_number,
+        default=MOST_SHOWN,
+        metavar="N",
+        help=f"show at most N flows one by one, and count the rest; 0 shows all (default: {MOST_SHOWN})",
+    )
     group.add_argument("--statistics", action="store_true", help="count what was found")
     group.add_argument(
         "--output-file", type=Path, metavar="FILE", help="write the report there, not to the screen"
@@ -136,7 +149,11 @@ def _add_output(group: argparse._ArgumentGroup) -> None:
 
 
 def _add_choice(group: argparse._ArgumentGroup) -> None:
-    for option, meaning in (("select", "only these rules: TARL101,TARL2 …"), ("ignore", "not these rules")):
+    for option, meaning in (
+        ("select", "only these rules: TARL101,TARL2 …"),
+        ("extend-select", "these rules too, also those that are off by default: TARL103"),
+        ("ignore", "not these rules"),
+    ):
         group.add_argument(f"--{option}", action="extend", type=_codes, metavar="CODES", help=meaning)
     group.add_argument(
         "--exclude",
@@ -195,6 +212,12 @@ def _add_speed(group: argparse._ArgumentGroup) -> None:
     )
 
 
+def _number(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number: write 0 or more")
+    return int(text)
+
+
 def _jobs(text: str) -> int | None:
     if text == "auto":
         return None
@@ -215,6 +238,7 @@ def options(typed: argparse.Namespace) -> Options:
         stdin=stdin,
         config=typed.config,
         select=_given(typed.select),
+        extend_select=tuple(typed.extend_select or ()),
         ignore=_given(typed.ignore),
         exclude=_given(typed.exclude),
         extend_exclude=tuple(typed.extend_exclude or ()),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
@@ -18,7 +18,7 @@ from tarl_lint.discover import Notes, SourceFile
 from tarl_lint.errors import AnalysisBug, UsageError
 from tarl_lint.fingerprints import Fingerprint, of_finding
 from tarl_lint.layout import Layout
-from tarl_lint.model import CODES, RULES, Finding, Kind
+from tarl_lint.model import CODES, OFF_BY_DEFAULT, RULES, Finding, Kind
 from tarl_lint.perfile import FileIgnores
 from tarl_lint.progress import Tell, silent
 from tarl_lint.source import Script, SourceError
@@ -44,9 +44,9 @@ class Result:
     `findings` are sorted by place and carry fingerprint and status; `silenced` are those that comments speak
     of. `found` are the findings as a baseline holds them, `vanished` and `kept` what the baseline holds beyond
     that. `texts` are the analysed files.
-    `left_out` counts what `per-file-ignores` speaks of. Without `names_errors` files that cannot be read are counted
-    but not listed for people; only flows of the `kinds` were asked for, hazards with `reports_hazards`. New findings
-    of the codes in `failing` make the run fail.
+    `left_out` counts what `per-file-ignores` speaks of, `off_by_default` what rules found that nobody asked for.
+    Without `names_errors` files that cannot be read are counted but not listed for people; only flows of the `kinds`
+    were asked for, hazards with `reports_hazards`. New findings of the codes in `failing` make the run fail.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -61,6 +61,7 @@ class Result:
     baseline: Path | None = None
     names_errors: bool = True
     left_out: int = 0
+    off_by_default: int = 0
     kinds: tuple[Kind, ...] = ("explicit", "implicit")
     reports_hazards: bool = True
     failing: frozenset[str] = frozenset()
@@ -89,12 +90,14 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
     broken = {error.path for error in errors if not error.bug} - found_in
     texts = {script.path: script.text for script in scripts if script.path not in broken}
     identities = _Identities(discovery.files, config)
-    wanted = tuple(identities.mark(f) for f in report.findings if config.enabled(f.code))
+    marked = tuple(identities.mark(f) for f in report.findings)
+    wanted = tuple(f for f in marked if config.enabled(f.code))
     heard, silenced, unused = suppress.apply(wanted, texts)
     elsewhere = FileIgnores(config.root or Path.cwd(), config.per_file_ignores)
     reported = [f for f in heard if not elsewhere.silences(f)]
     findings = baseline.subtract(reported, known.counts())
-    judged = _judge(discovery.files, errors, config)
+    unasked = {f.fingerprint for f in marked if f.code in OFF_BY_DEFAULT and not config.enabled(f.code)}
+    judged = _judge(discovery.files, errors, config, unasked)
     vanished, kept = baseline.missing(known, Counter(f.fingerprint for f in wanted), judged)
     lines = sum(text.count("\n") for text in texts.values())
     return Result(
@@ -104,16 +107,23 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
         found=identities.entries(findings),
         vanished=vanished,
         kept=kept,
-        unused=tuple(s for s in unused if all(map(config.enabled, s.rules))),
+        unused=tuple(s for s in unused if _in_vain(s, config)),
         texts=texts,
         statistics=Statistics(len(texts), lines, discovery.notes, report.hurried),
         baseline=config.baseline if known.entries else None,
         names_errors=config.enabled(UNREADABLE),
         left_out=len(heard) - len(reported),
+        off_by_default=sum(f.fingerprint in unasked for f in marked),
         kinds=tuple(kind for kind, code in CODES.items() if config.enabled(code)),
         reports_hazards=any(config.enabled(rule) for rule in RULES if rule.startswith("TARL2")),
         failing=failing(findings, config),
     )
+
+
+def _in_vain(comment: Suppression, config: Config) -> bool:
+    """Tell whether all rules were looked for that a comment may silence; one without a code means the usual rules."""
+    rules = comment.rules if comment.code else [r for r in comment.rules if r not in OFF_BY_DEFAULT]
+    return all(map(config.enabled, rules))
 
 
 def exceeds(result: Result, config: Config) -> bool:
@@ -129,7 +139,7 @@ def failing(findings: Sequence[Finding], config: Config) -> frozenset[str]:
         "never": set[str](),
         "hazard": hazards,
         "explicit": hazards | (codes & {CODES["explicit"]}),
-        "implicit": hazards | (codes & set(CODES.values())),
+        "implicit": hazards | (codes & {*CODES.values(), *OFF_BY_DEFAULT}),
     }
     return frozenset(levels[config.fail_on])
 
@@ -197,7 +207,7 @@ class _Identities:
         fingerprint = of_finding(finding, package, file.name if file else "")
         digest = fingerprint.digest()
         self._by_digest[digest] = fingerprint
-        return replace(finding, fingerprint=digest)
+        return replace(finding, fingerprint=digest, package=fingerprint.package)
 
     def entries(self, findings: Sequence[Finding]) -> tuple[Accepted, ...]:
         """Return the findings as a baseline holds them."""
@@ -219,9 +229,12 @@ def _home(config: Config) -> Path:
 
 
 def _judge(
-    files: Sequence[SourceFile], errors: Sequence[SourceError], config: Config
+    files: Sequence[SourceFile], errors: Sequence[SourceError], config: Config, unasked: Set[str]
 ) -> Callable[[Accepted], bool]:
-    """Return the test whether this run can know that an accepted flow is gone."""
+    """Return the test whether this run can know that an accepted flow is gone.
+
+    `unasked` are the fingerprints that rules found which are off by default: baselines of before these rules hold them.
+    """
     home = _home(config)
 
     @lru_cache(maxsize=1)  # only baselines with entries ask
@@ -234,7 +247,8 @@ def _judge(
         return os.path.realpath(place) in analysed() or not place.exists()
 
     def judged(entry: Accepted) -> bool:
-        return config.enabled(entry.fingerprint.code) and all(map(settled, entry.files))
+        asked = config.enabled(entry.fingerprint.code) and entry.fingerprint.digest() not in unasked
+        return asked and all(map(settled, entry.files))
 
     return judged
 

@@ -13,6 +13,7 @@ FORMATS: Final[Mapping[str, str]] = {
     "text": "tarl_lint.report.text:report",
     "concise": "tarl_lint.report.text:concise",
     "json": "tarl_lint.report.json:report",
+    "json2": "tarl_lint.report.json2:report",
     "sarif": "tarl_lint.report.sarif:report",
     "github": "tarl_lint.report.github:report",
     "gitlab": "tarl_lint.report.gitlab:report",

@@ -10,6 +10,7 @@ from tarl_lint.model import Dependence, Finding, Flow, Sink, Step
 from tarl_lint.report.frame import frame
 from tarl_lint.report.line import Glyphs, Line, Style, View, columns, crop, location, one_line, tabs
 
+_LONG: Final = 12  # steps; a shorter list is shown whole
 _WIDE: Final = 140  # columns of a statement where no terminal sets a limit
 _STYLES: Final[Mapping[Dependence, Style]] = {"data": "data", "control": "control", "context": "quiet"}
 
@@ -79,18 +80,33 @@ def subscription(flow: Flow) -> str:
 
 
 def taint_list(flow: Flow, view: View) -> Iterator[Line]:
-    """Yield the steps of a flow: where, what the step does, how it depends on the source, code."""
+    """Yield the steps of a flow: where, what the step does, how it depends on the source, code.
+
+    Of a long list only the shortest chain is shown, unless all steps are wanted.
+    """
+    steps = shown_steps(flow, view)
     beside = flow.sink.span.path
-    places = [_where(step, beside) for step in flow.steps]
+    places = [_where(step, beside) for step in steps]
     margin = max(map(columns, places), default=0)
-    roles = max((len(step.role) for step in flow.steps), default=0)
-    for place, step in zip(places, flow.steps, strict=True):
+    roles = max((len(step.role) for step in steps), default=0)
+    for place, step in zip(places, steps, strict=True):
         start = f"      {' ' * (margin - columns(place))}{place}  {step.role:<{roles}}  "
         style = _STYLES[step.dependence]
         room = (view.width or _WIDE) - columns(start) - 2
         text: Style = "quiet" if step.dependence == "context" else ""
         code = crop(_one_line(step.code), room, view.glyphs.dots)
         yield ((start, "quiet"), (_mark(step.dependence, view.glyphs), style), (" ", ""), (code, text))
+    if left := len(flow.steps) - len(steps):
+        words = f"{view.glyphs.dots} the shortest way; {left} more statements take part (--all-steps)"
+        yield ((f"      {words}", "quiet"),)
+
+
+def shown_steps(flow: Flow, view: View) -> Sequence[Step]:
+    """Return the steps to show: the registration and the shortest chain of a long list, else all."""
+    if view.all_steps or len(flow.steps) <= _LONG or not flow.chain:
+        return flow.steps
+    registration = [step for step in flow.steps if step.role == "register"]
+    return (*registration, *(flow.steps[place] for place in flow.chain))
 
 
 def _where(step: Step, beside: str) -> str:

@@ -30,9 +30,15 @@ ASCII: Final = Glyphs(bar="|", data="*", control="?", context=".", arrow="->", d
 
 @dataclass(frozen=True)
 class View:
-    """How a report is shown. `width` is in columns; 0 means that long lines stay whole."""
+    """How a report is shown. `width` is in columns; 0 means that long lines stay whole.
+
+    With `show_paths` each flow has its shortest chain of statements, with `all_steps` all of them. At most `most_flows`
+    flows are shown one by one; 0 means all.
+    """
 
     show_paths: bool = False
+    all_steps: bool = False
+    most_flows: int = 0
     statistics: bool = False
     width: int = 0
     glyphs: Glyphs = Glyphs()

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from pathlib import Path
 from typing import Any, Final
 from urllib.parse import quote
 
 from tarl_lint import __version__, explain
 from tarl_lint.files import shown
-from tarl_lint.model import Dependence, Finding, Flow, Sink, Source, Span, Step
+from tarl_lint.model import OFF_BY_DEFAULT, Dependence, Finding, Flow, Sink, Source, Span, Step
 from tarl_lint.report import summary
-from tarl_lint.report.grading import of_error, own_level, told_apart
+from tarl_lint.report.grading import level, of_error, own_level, told_apart
 from tarl_lint.report.line import Line, View, plain
+from tarl_lint.report.upload_limits import EVERYTHING, Cut, cuts, taken
 from tarl_lint.runner import UNREADABLE, Result
 from tarl_lint.source import SourceError
 
@@ -27,28 +28,72 @@ _IMPORTANCE: Final[Mapping[Dependence, str]] = {
 
 
 def report(result: Result, _view: View) -> Iterator[Line]:
-    """Yield the document in one line of ASCII: long taint lists make it large, and servers limit its size."""
-    yield ((json.dumps(document(result), separators=(",", ":")), ""),)
+    """Yield the document in one line of ASCII, as large as servers take it."""
+    text = ""
+    for cut in cuts(len(result.errors) + len(result.findings) + len(result.silenced)):
+        text = json.dumps(document(result, cut), separators=(",", ":"))
+        if taken(text):
+            break
+    yield ((text, ""),)
 
 
-def document(result: Result) -> dict[str, Any]:
+def document(result: Result, cut: Cut = EVERYTHING) -> dict[str, Any]:
     """Return the log of one run; paths are relative to the working directory."""
     codes = list(explain.known_rules())
     errors = [_unreadable(error, codes) for error in result.errors if result.names_errors]
     silenced = set(result.silenced)
+    named = list(told_apart((*result.findings, *result.silenced)))
+    gravest = sorted(range(len(named)), key=lambda number: _gravity(named[number][0], result, silenced))
+    chosen = [named[number] for number in sorted(gravest[: max(0, cut.results - len(errors))])]
     found = [
-        _result(finding, identity, codes, result, silenced=finding in silenced)
-        for finding, identity in told_apart((*result.findings, *result.silenced))
+        _result(finding, identity, codes, result, cut.steps, silenced=finding in silenced)
+        for finding, identity in chosen
     ]
     driver = {"name": "tarl-lint", "version": __version__, "rules": [_rule(code) for code in codes]}
+    left_out = [*_left_out(len(named) - len(chosen)), *_shortened([pair[0] for pair in chosen], cut.steps)]
     run = {
         "tool": {"driver": driver},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {ROOT: {"description": {"text": "The directory that tarl-lint ran in."}}},
-        "invocations": [{"executionSuccessful": True, "toolExecutionNotifications": _notifications(result)}],
-        "results": errors + found,
+        "invocations": [
+            {"executionSuccessful": True, "toolExecutionNotifications": [*_notifications(result), *left_out]}
+        ],
+        "results": errors[: cut.results] + found,
     }
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
+
+
+def _gravity(finding: Finding, result: Result, silenced: Set[Finding]) -> tuple[bool, int]:
+    """Sort what is new before what is known, and grave findings before light ones."""
+    known = finding.status == "accepted" or finding in silenced
+    return known, ("error", "warning", "note").index(level(finding.code, result))
+
+
+def _left_out(count: int) -> list[dict[str, Any]]:
+    if not count:
+        return []
+    return [
+        _notification(
+            "left-out", f"{summary.many(count, 'finding')} left out: servers limit the size of a report."
+        )
+    ]
+
+
+def _shortened(findings: Sequence[Finding], most: int) -> list[dict[str, Any]]:
+    count = sum(_is_cut(f.flow, most) for f in findings if f.flow)
+    if not count:
+        return []
+    shown = summary.many(count, "flow")
+    text = f"{shown} shown by the shortest chain of statements: servers limit the size of a report."
+    return [_notification("shortened", text)]
+
+
+def _is_cut(flow: Flow, most: int) -> bool:
+    return len(flow.steps) > max(most, len(flow.chain)) and bool(flow.chain)
+
+
+def _notification(name: str, text: str) -> dict[str, Any]:
+    return {"level": "note", "message": {"text": text}, "descriptor": {"id": name}}
 
 
 def _rule(code: str) -> dict[str, Any]:
@@ -63,7 +108,7 @@ def _rule(code: str) -> dict[str, Any]:
         "shortDescription": {"text": title.partition(": ")[2] or title},
         "fullDescription": {"text": description},
         "help": {"text": text, "markdown": page},
-        "defaultConfiguration": {"level": grade},
+        "defaultConfiguration": {"level": grade} | ({"enabled": False} if code in OFF_BY_DEFAULT else {}),
         "properties": {
             "tags": ["ros", "dataflow"],
             "precision": "high",
@@ -73,10 +118,7 @@ def _rule(code: str) -> dict[str, Any]:
 
 
 def _notifications(result: Result) -> list[dict[str, Any]]:
-    return [
-        {"level": "note", "message": {"text": plain(line)}, "descriptor": {"id": "not-analysed"}}
-        for line in summary.not_analysed(result)
-    ]
+    return [_notification("not-analysed", plain(line)) for line in summary.not_analysed(result)]
 
 
 def _unreadable(error: SourceError, codes: Sequence[str]) -> dict[str, Any]:
@@ -92,7 +134,7 @@ def _unreadable(error: SourceError, codes: Sequence[str]) -> dict[str, Any]:
 
 
 def _result(
-    finding: Finding, identity: str, codes: Sequence[str], result: Result, *, silenced: bool
+    finding: Finding, identity: str, codes: Sequence[str], result: Result, most: int, *, silenced: bool
 ) -> dict[str, Any]:
     flow = finding.flow
     made: dict[str, Any] = {
@@ -104,7 +146,7 @@ def _result(
         "partialFingerprints": _fingerprints(finding, identity),
     }
     if flow:
-        made |= _of_flow(flow)
+        made |= _of_flow(flow, most)
     if result.baseline and not silenced:
         made["baselineState"] = "unchanged" if finding.status == "accepted" else "new"
     if silenced:
@@ -124,14 +166,15 @@ def _fingerprints(finding: Finding, identity: str) -> dict[str, str]:
     return {"primaryLocationLineHash": identity, **own}
 
 
-def _of_flow(flow: Flow) -> dict[str, Any]:
+def _of_flow(flow: Flow, most: int) -> dict[str, Any]:
     source = _location(flow.source.span, flow.source)
+    steps = [flow.steps[place] for place in flow.chain] if _is_cut(flow, most) else flow.steps
     related = [{"id": 1, "message": {"text": "subscription"}, **source}]
     for number, span in enumerate(flow.source.via, 2):
         related.append({"id": number, "message": {"text": "through this call"}, **_location(span)})
     return {
         "relatedLocations": related,
-        "codeFlows": [{"threadFlows": [{"locations": [_step(step) for step in flow.steps]}]}],
+        "codeFlows": [{"threadFlows": [{"locations": [_step(step) for step in steps]}]}],
         "properties": {
             "kind": flow.kind,
             "sourceTopics": list(flow.source.topics),

@@ -26,6 +26,7 @@ def settings(config: Config) -> Iterator[Line]:
 def _values(config: Config) -> Mapping[str, Any]:
     return {
         "select": list(config.select),
+        "extend-select": list(config.extend_select),
         "ignore": list(config.ignore),
         "exclude": list(config.exclude),
         "per-file-ignores": {pattern: list(codes) for pattern, codes in config.per_file_ignores},

@@ -30,9 +30,17 @@ def hints(result: Result, view: View) -> Iterator[Line]:
     """Yield what to do next, where something was found that nobody has accepted yet."""
     if not result.new or result.baseline:
         return
-    if sum(f.flow is not None for f in result.new) > 1 and not view.show_paths:
+    flows = [f.flow for f in result.new if f.flow]
+    if len(flows) > 1 and not view.show_paths:
         yield (("--show-paths lists the statements on the way of each flow.", "quiet"),)
+    if 0 < view.most_flows < len(flows):
+        yield ((f"--max-paths 0 shows all {len(flows)} flows one by one.", "quiet"),)
     yield (("--write-baseline accepts all this: from then on only what is new is reported.", "quiet"),)
+
+
+def is_single(result: Result) -> bool:
+    """Tell whether there is one new flow only, which has room for its statements."""
+    return sum(f.flow is not None for f in result.new) == 1
 
 
 def not_analysed(result: Result) -> Iterator[Line]:
@@ -48,6 +56,9 @@ def _silenced(result: Result) -> Iterator[Line]:
     parts = [f"{count} by {what}" for count, what in counts if count]
     if parts:
         yield ((f"Silenced: {', '.join(parts)}.", "quiet"),)
+    if result.off_by_default:
+        what = many(result.off_by_default, "flow")
+        yield ((f"Not shown: {what} from a request to its own response (--extend-select TARL103).", "quiet"),)
 
 
 def _count_files(result: Result) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from tarl_lint.model import Finding
 from tarl_lint.report import summary
@@ -11,18 +11,15 @@ from tarl_lint.runner import UNREADABLE, Result
 
 
 def report(result: Result, view: View) -> Iterator[Line]:
-    """Yield unreadable files, flows by publish call, hazards, and the closing words."""
+    """Yield unreadable files, what reaches what, the findings by package, and the closing words."""
     yield from _errors(result)
     if result.errors and result.names_errors:
         yield ()
-    yield from _flows(result, view)
-    for finding in result.new:
-        if finding.flow is None:
-            yield from _hazard(finding, result, view)
     if flows := [f.flow for f in result.new if f.flow]:
-        from tarl_lint.report.overview import overview
+        from tarl_lint.report.overview import overview  # clean files need not wait for it
 
         yield from overview(flows, view)
+    yield from _findings(result, view)
     yield from summary.vanished(result, view)
     yield from summary.unused(result)
     if view.statistics:
@@ -53,21 +50,49 @@ def _errors(result: Result) -> Iterator[Line]:
         )
 
 
-def _flows(result: Result, view: View) -> Iterator[Line]:
-    """Yield every publish call; a flow that is the only one is shown with its taint list."""
-    flows = [f for f in result.new if f.flow]
-    if not flows:
+def _findings(result: Result, view: View) -> Iterator[Line]:
+    """Yield the findings of each package; of many flows only the first, and how many are left."""
+    if not result.new:
         return
-    from tarl_lint.report.flows import legend, publish_call, publish_calls  # clean files need not wait for it
+    from tarl_lint.report.packages import grouped
+
+    groups = grouped(result.new)
+    room = view.most_flows or len(result.new)
+    explained = not (view.show_paths or summary.is_single(result))
+    for group in groups:
+        if len(groups) > 1:
+            yield ((group.name, "strong"), (f": {group.counted}", ""))
+            yield ()
+        flows = [f for f in group.findings if f.flow]
+        yield from _flows(flows[:room], result, view)
+        if left := len(flows[room:]):
+            yield ((f"    and {summary.many(left, 'further flow')}", "quiet"),)
+            yield ()
+        room = max(0, room - len(flows))
+        if flows and not explained:
+            yield from _legend(view)
+            explained = True
+        for finding in group.findings:
+            if finding.flow is None:
+                yield from _hazard(finding, result, view)
+
+
+def _legend(view: View) -> Iterator[Line]:
+    from tarl_lint.report.flows import legend
+
+    yield legend(view)
+    yield ()
+
+
+def _flows(flows: Sequence[Finding], result: Result, view: View) -> Iterator[Line]:
+    """Yield every publish call; a flow that is the only one is shown with its chain of statements."""
+    from tarl_lint.report.flows import publish_call, publish_calls
     from tarl_lint.report.frame import lines_of
 
-    paths = view.show_paths or len(flows) == 1
+    paths = view.show_paths or summary.is_single(result)
     for group in publish_calls(flows):
         source = lines_of(result.texts.get(group[0][1].sink.span.path, ""))
         yield from publish_call(group, source, view, paths=paths)
-    if paths:
-        yield legend(view)
-        yield ()
 
 
 def _hazard(finding: Finding, result: Result, view: View) -> Iterator[Line]:

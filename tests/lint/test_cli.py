@@ -103,7 +103,7 @@ def test_unreadable_files_are_said_when_the_baseline_is_written(node, capsys):
         (["--show-path"], "There is no option --show-path: did you mean '--show-paths'?"),
         (
             ["--format", "jsno"],
-            "--format cannot be 'jsno': did you mean 'json'? It can be text, concise, json, sarif, ",
+            "--format cannot be 'jsno': did you mean 'json'? It can be text, concise, json, json2, sarif, ",
         ),
         (["--fail-on", "all"], "--fail-on cannot be 'all'. It can be never, hazard, explicit, implicit."),
         (["--baseline"], "--baseline needs a value."),
@@ -119,7 +119,7 @@ def test_unreadable_files_are_said_when_the_baseline_is_written(node, capsys):
         (["--no-baseline", "--write-baseline"], "--no-baseline and --write-baseline contradict each other"),
         (["--select", "TARL9"], "--select names 'TARL9', which is no rule"),
         (["--ignore", "E501"], "--ignore names 'E501', which is no rule"),
-        (["--explain", "TARL10"], "TARL10 stands for TARL101, TARL102: name one of them."),
+        (["--explain", "TARL10"], "TARL10 stands for TARL101, TARL102, TARL103: name one of them."),
         (["--explain", "TARL1O1"], "There is no rule 'TARL1O1': did you mean 'TARL101'?"),
         (["--jobs", "0"], "--jobs: '0' is not a number of processes: write 1 or more, or auto."),
         (["--exclude", "src\\gen"], "--exclude: 'src\\\\gen' has backslashes: patterns are written as in"),

@@ -1,0 +1,44 @@
+"""Findings by package: code that runs on the robot first, tests and examples in a group of their own."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from tarl_lint.model import Finding
+from tarl_lint.report import summary
+
+TESTS_AND_EXAMPLES: Final = "Tests and examples"
+_ASIDE: Final = re.compile(
+    r"(?:^|/)(?:tests?|examples?|demos?|tutorials?|samples?)/|(?:^|/)(?:test_[^/]*|[^/]*_test)\.py$"
+)
+
+
+@dataclass(frozen=True)
+class Group:
+    """Findings that are shown together, in the order of the report."""
+
+    name: str
+    findings: tuple[Finding, ...]
+
+    @property
+    def counted(self) -> str:
+        """Return how much is in it: `12 flows, 1 hazard`."""
+        flows = sum(f.flow is not None for f in self.findings)
+        counts = ((flows, "flow"), (len(self.findings) - flows, "hazard"))
+        return ", ".join(summary.many(count, noun) for count, noun in counts if count)
+
+
+def grouped(findings: Sequence[Finding]) -> tuple[Group, ...]:
+    """Return the findings by package, packages by name; what is not run on the robot comes last."""
+    aside = tuple(f for f in findings if _ASIDE.search(f.span.path))
+    if len(aside) == len(findings):
+        aside = ()  # whoever lints nothing but examples wants to see their packages
+    by_package: dict[str, list[Finding]] = {}
+    for finding in findings:
+        if finding not in aside:
+            by_package.setdefault(finding.package, []).append(finding)
+    groups = [Group(name, tuple(by_package[name])) for name in sorted(by_package)]
+    return (*groups, Group(TESTS_AND_EXAMPLES, aside)) if aside else tuple(groups)
