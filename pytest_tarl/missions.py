@@ -12,9 +12,10 @@ from pytest_tarl.comparing import Online, run_online
 from pytest_tarl.correcting import corrected
 from pytest_tarl.design import AS_WRITTEN, fixture_path, replaced
 from pytest_tarl.designation import Designation
-from pytest_tarl.errors import AnalysisError, FixtureError, SettingsError, TarlError
+from pytest_tarl.errors import AnalysisError, FixtureError, SettingsError
 from pytest_tarl.files import slug, write_atomically
 from pytest_tarl.instrumentation.sites import Plan, plan
+from pytest_tarl.keeping import by_hand, keep
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.binning import learned_edges
 from pytest_tarl.learning.drift import tolerated
@@ -25,7 +26,7 @@ from pytest_tarl.recording import Progress, Tell, read_values, record
 from pytest_tarl.repairing.order import Neighbour, Order
 from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repeating import Instruments
-from pytest_tarl.report import ci, json_result, table, terminal, words
+from pytest_tarl.report import ci, table, terminal, words
 from pytest_tarl.report.table import Row
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.sensors import Sensor, declared, with_edges
@@ -278,13 +279,8 @@ class Mission:
     def _ignore(self) -> None:
         ignore = self.tarl / ".gitignore"
         if not ignore.exists():
-            try:
+            with suppress(OSError):  # whatever else is to be written tells it
                 write_atomically(ignore, IGNORED.encode())
-            except OSError as problem:
-                raise TarlError(
-                    f"{self.tarl} cannot be written ({problem.strerror}): give yourself the right to write there, "
-                    "or run in a copy."
-                ) from problem
 
 
 @dataclass(frozen=True)
@@ -301,25 +297,19 @@ class Compared:
         """Write result, recording and page, and say what they hold."""
         mission, comparison = self.mission, self.comparison
         name = f"{slug(mission.test)}-{slug(mission.drift or 'online')}"
-        json_result.write(comparison, mission.tarl / "results" / f"{name}.json", self.episodes)
-        fixtures.save(as_fixture(comparison, self.online), mission.tarl / "online" / f"{name}.npz")
-        page = mission.tarl / "report" / f"{name}.html"
-        notes = []
-        try:
-            from pytest_tarl.report import html
-
-            html.write(comparison, page)
-        except TarlError as missing:
-            notes = [f"  no report page: {missing}"]
-        shown = None if notes else page
-        lines = terminal.lines(comparison, width=mission.width, root=mission.root, page=shown)
+        kept = keep(comparison, self.online, self.episodes, mission.root, name)
+        lines = terminal.lines(comparison, width=mission.width, root=mission.root, page=kept.page)
+        notes = [*kept.missing, *kept.unwritten, *by_hand(comparison.repair)]
         degraded = comparison.verdict.result == "degraded"
         written = comparison.repair.patch if comparison.repair else ""
         return Account(
             lines=(*lines, *notes),
             problem=f"degraded: {words.verdict_sentence(comparison)}" if degraded else "",
             patch=mission.root / written if written else None,
-            properties=ci.properties(comparison),
+            properties=(
+                *ci.properties(comparison),
+                *(("tarl_unwritten", one.strip()) for one in kept.unwritten),
+            ),
             annotation=ci.annotation(comparison, mission.root),
             row=table.row(comparison),
             interrupted=self.interrupted,
@@ -344,17 +334,3 @@ def _working_in(folder: Path) -> Iterator[None]:
 
 class NoFixtureError(FixtureError):
     """Nothing was recorded yet: the test is skipped, or fails under `--tarl-strict`."""
-
-
-def as_fixture(comparison: Comparison, online: Online) -> Fixture:
-    """Return the on-line recording in the form of a fixture, so that it can be looked at later."""
-    return Fixture(
-        test=comparison.test,
-        seed=comparison.seed,
-        sensors=comparison.sensors,
-        lists=tuple(one.taint_list for one in comparison.lists),
-        topics=online.recorded.topics,
-        sample=online.recorded.sample,
-        sarsa=online.sarsa,
-        learner=online.recorded.learner,
-    )

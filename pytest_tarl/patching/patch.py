@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.files import slug, write_atomically
+from pytest_tarl.files import advice_on, slug, write_atomically
 
 Opcode = tuple[str, int, int, int, int]
 CONTEXT = 3  # unchanged lines around a change
@@ -70,7 +70,7 @@ def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
         write_atomically(path, content)
     except OSError as problem:
         raise RepairError(
-            f"The patch {path} cannot be written ({problem.strerror}): give yourself the right to write there."
+            f"The patch {path} cannot be written ({problem.strerror}): {advice_on(problem)}"
         ) from problem
     for older in folder.glob(f"{name}-????????.patch"):
         if older != path:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from math import nan
 from pathlib import Path
 from statistics import fmean
 
+from pytest_tarl.errors import RepairError
 from pytest_tarl.files import write_atomically
 from pytest_tarl.model import Attempt, Comparison, Edit, Repair
 from pytest_tarl.patching import patch
@@ -35,10 +37,22 @@ def delivered(
     originals = {path: path.read_bytes() for path in changed}
     header = _evidence(order, accepted, guard, search, acceptance)
     diff = patch.unified_diff(originals, changed, order.root, header)
-    written = patch.write(diff, order.patches, order.fixture.test, order.drift)
-    write_atomically(written.with_suffix(".sarif"), sarif(read(written)).encode())
-    place = written.relative_to(order.root).as_posix()
+    place = _written(order, diff)
     return Repair(True, guard, _edits(candidate), patch.readable(diff), place, history=history)
+
+
+def _written(order: Order, diff: str) -> str:
+    """Write patch and SARIF and return the patch's path below the root; empty where that cannot be done.
+
+    What was found must not be lost with it: the whole patch is told in its place.
+    """
+    try:
+        written = patch.write(diff, order.patches, order.fixture.test, order.drift)
+    except RepairError:
+        return ""
+    with suppress(OSError):
+        write_atomically(written.with_suffix(".sarif"), sarif(read(written)).encode())
+    return written.relative_to(order.root).as_posix()
 
 
 def _verify(order: Order, candidate: Candidate, changed: Mapping[Path, str]) -> None:

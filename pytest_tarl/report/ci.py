@@ -50,7 +50,8 @@ def _message(comparison: Comparison) -> str:
     lines = [words.verdict_sentence(comparison), f"Where: {region}." if region else ""]
     lines.append(f"{words.one_line(culprit.site.code)} is {blamed}.")
     if repair and repair.accepted:
-        lines.append(f"Accepted repair: {words.repair_words(repair)} ({repair.patch}).")
+        where = f" ({repair.patch})" if repair.patch else ""
+        lines.append(f"Accepted repair: {words.repair_words(repair)}{where}.")
     return "\n".join(line for line in lines if line)
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import TarlError
-from pytest_tarl.files import write_atomically
+from pytest_tarl.files import advice_on, write_atomically
 from pytest_tarl.model import Comparison, ListComparison
 from pytest_tarl.report import words
 from pytest_tarl.report.figures import MOST_ROWS, plane, reward_curves, utility_figure
@@ -37,8 +37,7 @@ def write(comparison: Comparison, path: Path, *, title: str | None = None) -> No
         write_atomically(path, text.encode())
     except OSError as error:
         raise TarlError(
-            f"The report {path} cannot be written: {error.strerror or error}. "
-            "Make the directory writable, or free some space."
+            f"The report {path} cannot be written ({error.strerror or error}): {advice_on(error)}"
         ) from error
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import TarlError
-from pytest_tarl.files import write_atomically
+from pytest_tarl.files import advice_on, write_atomically
 from pytest_tarl.model import Comparison, Culprit, Repair, SitePlace, Slice
 from pytest_tarl.report.regions import boxes
 from pytest_tarl.report.words import atr, expected
@@ -32,8 +32,7 @@ def write(comparison: Comparison, path: Path, episodes: Mapping[str, int]) -> No
         write_atomically(path, f"{text}\n".encode())
     except OSError as error:
         raise TarlError(
-            f"The result {path} cannot be written: {error.strerror or error}. "
-            "Make the directory writable, or free some space."
+            f"The result {path} cannot be written ({error.strerror or error}): {advice_on(error)}"
         ) from error
 
 

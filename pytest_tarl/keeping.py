@@ -1,0 +1,95 @@
+"""What an on-line run leaves on disk: result, recording, page; and what is told where the disk takes nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from pytest_tarl.comparing import Online
+from pytest_tarl.errors import TarlError
+from pytest_tarl.files import advice_on
+from pytest_tarl.learning import fixture as fixtures
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.model import Comparison, Repair
+from pytest_tarl.report import json_result
+
+
+@dataclass(frozen=True)
+class Kept:
+    """The page where there is one, and lines about what is not installed and what could not be written."""
+
+    page: Path | None
+    missing: tuple[str, ...]
+    unwritten: tuple[str, ...]
+
+
+def keep(comparison: Comparison, online: Online, episodes: Mapping[str, int], root: Path, name: str) -> Kept:
+    """Write all files of a run below `root`; the verdict needs none of them, so that a full disk never hides it."""
+    folder = root / ".tarl"
+    result, recording, page = (
+        folder / where / f"{name}{ending}"
+        for where, ending in (("results", ".json"), ("online", ".npz"), ("report", ".html"))
+    )
+
+    def write_page() -> None:
+        from pytest_tarl.report import html
+
+        html.write(comparison, page)
+
+    problems = {
+        result: _problem(lambda: json_result.write(comparison, result, episodes)),
+        recording: _problem(lambda: fixtures.save(as_fixture(comparison, online), recording)),
+        page: _problem(write_page),
+    }
+    failed = {
+        path: one.__cause__
+        for path, one in problems.items()
+        if one is not None and isinstance(one.__cause__, OSError)
+    }
+    missing = tuple(
+        f"  no report page: {one}" for path, one in problems.items() if one and path not in failed
+    )
+    return Kept(None if problems[page] else page, missing, tuple(_unwritten(failed, root)))
+
+
+def _problem(write: Callable[[], None]) -> TarlError | None:
+    try:
+        write()
+    except TarlError as problem:
+        return problem
+    return None
+
+
+def _unwritten(failed: Mapping[Path, OSError], root: Path) -> list[str]:
+    """Return one line for each reason why files were not written, with what to do."""
+    reasons: dict[tuple[str, str], list[str]] = {}
+    for path, problem in failed.items():
+        shown = path.relative_to(root).as_posix()
+        reasons.setdefault((problem.strerror or str(problem), advice_on(problem)), []).append(shown)
+    return [
+        f"  not written: {', '.join(paths)} ({why}): {advice} The verdict above stands."
+        for (why, advice), paths in reasons.items()
+    ]
+
+
+def by_hand(repair: Repair | None) -> list[str]:
+    """Return an accepted patch that is in no file, line by line."""
+    if repair is None or not repair.accepted or repair.patch:
+        return []
+    told = "  The patch could not be written below .tarl/patches. Save what follows as a file and `tarl apply` it:"
+    return [told, *repair.diff.splitlines()]
+
+
+def as_fixture(comparison: Comparison, online: Online) -> Fixture:
+    """Return the on-line recording in the form of a fixture, so that it can be looked at later."""
+    return Fixture(
+        test=comparison.test,
+        seed=comparison.seed,
+        sensors=comparison.sensors,
+        lists=tuple(one.taint_list for one in comparison.lists),
+        topics=online.recorded.topics,
+        sample=online.recorded.sample,
+        sarsa=online.sarsa,
+        learner=online.recorded.learner,
+    )

@@ -1,0 +1,177 @@
+"""A full disk and a read-only tree never hide the verdict: it is told on the terminal and in JUnit, with advice."""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from pytest_tarl import files
+from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
+
+ADVICE = {
+    errno.ENOSPC: "the disk is full, or your quota of it: free some space and run it again.",
+    errno.EROFS: "give yourself the right to write there, or run in a copy.",
+    errno.EIO: "something else is in its place, or the disk fails: look there and run it again.",
+}
+
+
+@pytest.fixture
+def recorded(tank: pytest.Pytester) -> pytest.Pytester:
+    """The tank with a recorded utility, a drift that breaks it and one that does nothing."""
+    changed(tank, "test_tank", '{"clogged": 0.25}', '{"clogged": 0.25, "same": 1.0}')
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    return tank
+
+
+def deny(monkeypatch: pytest.MonkeyPatch, number: int, *kept: str) -> None:
+    """Let nothing be written below `.tarl` but what is in the kept folders."""
+    make = tempfile.mkstemp
+
+    def full(**more: Any) -> tuple[int, str]:
+        if ".tarl" in more["dir"].parts and more["dir"].name not in kept:
+            raise OSError(number, os.strerror(number), str(more["dir"]))
+        return make(**more)
+
+    monkeypatch.setattr(files.tempfile, "mkstemp", full)
+
+
+def cases(path: Path) -> dict[str, ElementTree.Element]:
+    return {one.attrib["name"]: one for one in ElementTree.parse(path).iter("testcase")}
+
+
+def properties(case: ElementTree.Element) -> dict[str, str]:
+    return {one.attrib["name"]: one.attrib["value"] for one in case.iter("property")}
+
+
+@pytest.mark.parametrize("number", ADVICE)
+def test_the_verdict_is_told_whatever_cannot_be_written(
+    recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, number: int
+) -> None:
+    deny(monkeypatch, number)
+    told = recorded.runpytest(*ONLINE, "--junitxml=junit.xml")
+    told.assert_outcomes(passed=1, failed=1, deselected=1)
+    text = told.stdout.str()
+    assert "test_fills[clogged]: degraded" in text
+    assert "test_fills[same]: no difference" in text
+    assert text.count(ADVICE[number]) == 2  # one sentence a test, not one a file
+    assert "not written: .tarl/results/" in text
+    assert ".tarl/online/" in text
+    assert ".tarl/report/" in text
+    assert "Traceback" not in text
+    junit = cases(recorded.path / "junit.xml")
+    worse, same = junit["test_fills[clogged]"], junit["test_fills[same]"]
+    assert worse.find("failure") is not None
+    assert same.find("failure") is None
+    assert properties(worse)["tarl_verdict"] == "degraded"
+    assert properties(same)["tarl_verdict"] == "no difference"
+    assert ADVICE[number] in properties(same)["tarl_unwritten"]
+
+
+def test_a_patch_that_cannot_be_written_is_told_whole_and_can_be_applied(
+    recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as limits:
+        deny(limits, errno.ENOSPC)
+        text = recorded.runpytest(*ONLINE, "--tarl-repair", "--tarl-drift=clogged").stdout.str()
+    assert "repair   accepted" in text
+    head, _, rest = text.partition("The patch could not be written below .tarl/patches.")
+    assert head
+    lines = rest.splitlines()[1:]
+    last = next(at for at, line in enumerate(lines) if at and line and line[0] not in "# +-@di\\")
+    by_hand = recorded.path / ".tarl" / "patches" / "by-hand.patch"
+    by_hand.parent.mkdir(exist_ok=True)
+    by_hand.write_text("\n".join(lines[:last]).rstrip("\n") + "\n")
+    applied = recorded.run(sys.executable, "-m", "pytest_tarl", "apply", by_hand)
+    assert applied.ret == 0, applied.stderr.str()
+    assert "applied to keeper.py" in applied.stdout.str()
+
+
+def test_recording_says_before_its_first_episode_that_nothing_can_be_written(
+    recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    deny(monkeypatch, errno.ENOSPC)
+    changed(
+        recorded,
+        "test_tank",
+        "def test_fills(tarl, tarl_drift):",
+        "def test_fills(tarl, tarl_drift):\n    1 / 0",
+    )
+    told = recorded.runpytest(*RECORD)
+    told.stdout.fnmatch_lines([f"*cannot be written*: {ADVICE[errno.ENOSPC]}"])
+    assert "ZeroDivisionError" not in told.stdout.str()
+
+
+def test_a_disk_that_fills_up_while_recording_leaves_the_old_fixture(
+    recorded: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = fixture_file(recorded).read_bytes()
+
+    class Full:
+        def __init__(self, handle: int, mode: str) -> None:
+            self.handle = handle
+
+        def __enter__(self) -> Full:
+            return self
+
+        def __exit__(self, *_: object) -> None:
+            os.close(self.handle)
+
+        def write(self, content: bytes) -> None:
+            os.write(self.handle, content[: len(content) // 2])
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(files.os, "fdopen", Full)
+    told = recorded.runpytest(*RECORD)
+    monkeypatch.undo()
+    told.assert_outcomes(failed=1, deselected=1)
+    told.stdout.fnmatch_lines([f"*cannot be written*: {ADVICE[errno.ENOSPC]}"])
+    assert fixture_file(recorded).read_bytes() == before
+    assert [path.name for path in fixture_file(recorded).parent.iterdir()] == [fixture_file(recorded).name]
+
+
+def mounting() -> bool:
+    """Tell whether this user may mount file systems of their own."""
+    tool = shutil.which("unshare")
+    if tool is None:
+        return False
+    asked = subprocess.run(
+        [tool, "-rm", "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True, check=False
+    )
+    return asked.returncode == 0
+
+
+FULL = """
+cp -a .tarl saved && mount -t tmpfs -o size=128k none .tarl && cp -a saved/utility .tarl/ || exit 99
+cat /dev/zero > .tarl/ballast 2>/dev/null
+"""
+READ_ONLY = "mount --bind . . && mount -o remount,bind,ro . && cd . || exit 99\n"
+
+
+@pytest.mark.skipif(not mounting(), reason="this user cannot mount a file system: unshare -rm is not allowed")
+@pytest.mark.parametrize(("script", "number"), [(FULL, errno.ENOSPC), (READ_ONLY, errno.EROFS)])
+def test_on_a_real_full_disk_and_a_real_read_only_tree(
+    recorded: pytest.Pytester, tmp_path_factory: pytest.TempPathFactory, script: str, number: int
+) -> None:
+    junit = tmp_path_factory.mktemp("outside") / "junit.xml"
+    command = (
+        f"cd {recorded.path}\n{script}cd {recorded.path}\nexec {sys.executable} -m pytest -p no:cacheprovider"
+    )
+    command = f"{command} {' '.join(ONLINE)} --junitxml={junit}"
+    told = subprocess.run(
+        ["unshare", "-rm", "sh", "-c", command], capture_output=True, text=True, check=False
+    )
+    assert told.returncode == 1, told.stdout + told.stderr
+    assert "test_fills[clogged]: degraded" in told.stdout
+    assert "test_fills[same]: no difference" in told.stdout
+    assert told.stdout.count(ADVICE[number]) == 2
+    assert properties(cases(junit)["test_fills[clogged]"])["tarl_verdict"] == "degraded"
+    assert properties(cases(junit)["test_fills[same]"])["tarl_verdict"] == "no difference"
