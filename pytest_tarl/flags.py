@@ -75,6 +75,13 @@ FLAGS = (
         default="300",
     ),
     Flag(
+        "--tarl-edit",
+        "where an unconditional repair of a named constant is written: auto (default; where it is defined, if that "
+        "holds, too), definition, or use",
+        metavar="WHERE",
+        default="auto",
+    ),
+    Flag(
         "--tarl-utility",
         "batch (default); sarsa, as in the paper; expected-sarsa or td-lambda",
         metavar="KIND",

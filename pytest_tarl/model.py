@@ -27,6 +27,7 @@ Reason = Literal[
     "not confirmed",
     "worse than unrepaired",
     "another test gets worse",
+    "not at its definition",
 ]
 
 

@@ -14,6 +14,7 @@ from pytest_tarl.errors import SettingsError
 
 Mode = Literal["plain", "record", "online", "repair"]
 SEARCHES = ("sweep", "halving", "epsilon-greedy")
+EDITS = ("auto", "use", "definition")
 RANKINGS = ("repair", "full")
 UTILITIES = ("batch", "sarsa", "expected-sarsa", "td-lambda")
 ROS_KINDS = ("embedded", "real", "auto")
@@ -33,6 +34,7 @@ class Options:
     localize: str = "repair"  # what ends the search: an accepted repair, or the ranking of all sites
     budget: int = 300  # episodes that a search may spend
     seconds: float | None = None  # that a search may take instead
+    edit: str = "auto"  # where a repair of a named constant without a condition is written
     strict: bool = False
     utility: str = "batch"
     workers: int = 1  # episodes at a time, each in a process of its own when more than one
@@ -69,6 +71,7 @@ class Options:
             "--tarl-alpha": (self.alpha, 0.05),
             "--tarl-looks": (self.looks, None),
             "--tarl-budget": (self.budget if self.seconds is None else f"{self.seconds:g}s", 300),
+            "--tarl-edit": (self.edit, "auto"),
             "--tarl-utility": (self.utility, "batch"),
             "--tarl-ros": (self.ros, "embedded"),
             "--tarl-log": (self.log, None),
@@ -95,6 +98,7 @@ def options(given: Mapping[str, Any]) -> Options:
             "--tarl-localize goes with --tarl-repair: sites are ranked by what a search finds."
         )
     _known("--tarl-utility", given["utility"], UTILITIES)
+    _known("--tarl-edit", given["edit"], EDITS)
     _known("--tarl-ros", given["ros"], ROS_KINDS)
     if given["episodes"] is not None:
         number_within("--tarl-episodes", "it", given["episodes"], int, 2, 10**6)
@@ -112,6 +116,7 @@ def options(given: Mapping[str, Any]) -> Options:
         localize=localize,
         budget=budget[0],
         seconds=budget[1],
+        edit=given["edit"],
         strict=given["strict"],
         utility=given["utility"],
         workers=_workers(given["workers"]),

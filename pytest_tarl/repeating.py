@@ -73,6 +73,7 @@ def designated(item: pytest.Item) -> Designation | None:
 def opened(item: pytest.Item) -> Iterator[Tarl]:
     """Open the item's episode, close it afterwards and keep its trace."""
     from pytest_tarl.episode import Tarl
+    from pytest_tarl.instrumentation.datafiles import is_data, reading
     from pytest_tarl.instrumentation.importhook import NodeImports
     from pytest_tarl.instrumentation.recorder import Recorder
     from pytest_tarl.realros.choice import check_kind
@@ -83,7 +84,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         item.config.rootpath,
         episode.instruments.positions,
         recorder.hook,
-        episode.plan.overlay,
+        {path: text for path, text in episode.plan.overlay.items() if not is_data(path)},
         publishes=episode.instruments.publishes,
         bind=recorder.bind,
     )
@@ -99,8 +100,10 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         nodes=episode.designation.nodes,
         replay=replay,
     )
+    data = {path: text for path, text in episode.plan.overlay.items() if is_data(path)}
     try:
-        yield tarl
+        with reading(data):
+            yield tarl
     finally:
         try:
             episode.trace = recorder.finish()

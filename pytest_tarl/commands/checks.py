@@ -74,7 +74,9 @@ def _there(path: Path, root: Path) -> bool:
 
 
 def compiles(target: Target, content: bytes) -> None:
-    """Raise RefusedError where what a patch makes is no program."""
+    """Raise RefusedError where what a patch makes of a Python file is no program."""
+    if target.path.suffix in (".yaml", ".yml", ".xml", ".launch"):
+        return
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

@@ -199,19 +199,22 @@ def apply_edits(source: Document, edits: Iterable[Edit]) -> str:
 
     Raises RepairError where two edits overlap, or when the result is not a program.
     """
+    changed = apply_plain_edits(source.path, source.text, edits, source.newline)
+    _check(source.path, changed)
+    return changed
+
+
+def apply_plain_edits(path: str, text: str, edits: Iterable[Edit], newline: str = "\n") -> str:
+    """Return a text, which need not be a program, with all edits made. Raises RepairError where two overlap."""
     pieces, position = [], 0
     for edit in sorted(edits, key=lambda each: (each.start, each.end)):
         if edit.start < position:
-            line = source.text.count("\n", 0, edit.start) + 1
-            raise RepairError(
-                f"{source.path}:{line}: two changes of the same code exclude each other: choose one."
-            )
-        written = edit.text.replace("\r\n", "\n").replace("\n", source.newline)
-        pieces += [source.text[position : edit.start], written]
+            line = text.count("\n", 0, edit.start) + 1
+            raise RepairError(f"{path}:{line}: two changes of the same code exclude each other: choose one.")
+        written = edit.text.replace("\r\n", "\n").replace("\n", newline)
+        pieces += [text[position : edit.start], written]
         position = edit.end
-    changed = "".join([*pieces, source.text[position:]])
-    _check(source.path, changed)
-    return changed
+    return "".join([*pieces, text[position:]])
 
 
 def _check(path: str, text: str) -> None:

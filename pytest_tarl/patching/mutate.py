@@ -6,11 +6,14 @@ import ast
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Conjunct, Guard
-from pytest_tarl.patching.document import Document, Edit, apply_edits, document
+from pytest_tarl.patching.definitions import Place
+from pytest_tarl.patching.definitions import edits as definition_edits
+from pytest_tarl.patching.document import Document, Edit, apply_edits, apply_plain_edits, document
 from pytest_tarl.patching.expressions import counting, negated, number, rounded, scaled, shifted
 from pytest_tarl.patching.fields import in_integer_field
 from pytest_tarl.patching.guards import Reading, always, condition, held
@@ -27,11 +30,13 @@ class Mutation:
     """Another value for an operand at its use.
 
     `value` is the new value of a literal; otherwise the factor that the use is multiplied by, or what is added
-    where the constant is zero. A boolean operand is flipped.
+    where the constant is zero. A boolean operand is flipped. With a `place` the change is written there, where the
+    constant is defined.
     """
 
     operand: Operand
     value: float | int | bool
+    place: Place | None = None
 
 
 def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutation | None:
@@ -62,21 +67,54 @@ def is_integral(analysis: Analysis, operand: Operand) -> bool:
     return isinstance(operand.value, int) and _whole(source, source.find(operand.span))
 
 
+def redefinition(mutation: Mutation) -> float | int | bool:
+    """Return what a mutation makes of the number at its place."""
+    value = mutation.operand.value
+    if isinstance(value, bool) or mutation.operand.literal:
+        return not value if isinstance(value, bool) else mutation.value
+    old = mutation.place.value if mutation.place is not None else value
+    if isinstance(old, bool):
+        return not old
+    return rounded(old * mutation.value) if value != 0 and old else rounded(mutation.value)
+
+
 def rewrite(
-    analysis: Analysis, mutations: Sequence[Mutation], guard: Guard, topics: Mapping[str, str]
+    analysis: Analysis,
+    mutations: Sequence[Mutation],
+    guard: Guard,
+    topics: Mapping[str, str],
+    texts: Mapping[str, str] = MappingProxyType({}),
 ) -> dict[str, str]:
     """Return the new text of every file that changes when the mutations hold under the guard.
 
-    `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that have to be added.
-    Raises RepairError when it cannot be written.
+    `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that have to be added; `texts`
+    are files beside the analysed ones that constants are defined in. Raises RepairError when it cannot be written.
     """
     conditions = Conditions(analysis, guard, topics)
     edits: dict[str, list[Edit]] = {}
-    for source, statements in _by_file(analysis, mutations):
+    here = [mutation for mutation in mutations if mutation.place is None]
+    for source, statements in _by_file(analysis, here):
         edits[source.path] = list(_file_edits(source, statements, conditions))
+    for path, places in _redefined(mutations).items():
+        text = analysis.sources.get(path) or texts[path]
+        edits.setdefault(path, []).extend(definition_edits(places, text))
     for path, added in conditions.subscriptions.edits().items():
         edits[path] = [*added, *edits.get(path, [])]
-    return {path: apply_edits(_document(analysis, path), edits[path]) for path in sorted(edits)}
+    return {
+        path: apply_edits(_document(analysis, path), edits[path])
+        if path in analysis.sources
+        else apply_plain_edits(path, texts[path], edits[path])
+        for path in sorted(edits)
+    }
+
+
+def _redefined(mutations: Sequence[Mutation]) -> dict[str, dict[Place, float | int | bool]]:
+    """Return what becomes of the numbers at places, by file."""
+    found: dict[str, dict[Place, float | int | bool]] = {}
+    for mutation in mutations:
+        if mutation.place is not None:
+            found.setdefault(mutation.place.path, {})[mutation.place] = redefinition(mutation)
+    return found
 
 
 def guard_text(

@@ -11,6 +11,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.neighbours import NOTHING_BESIDE, Beside, beside
+from pytest_tarl.repairing.placing import Placing
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import LOOKS, Acceptance, World, accept
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
@@ -58,6 +59,7 @@ class Examiner:
         self.mutants = mutants
         self.order = mutants.order
         self.guards = guards
+        self.placing = Placing(mutants)
         self.tested = 0
         self.spent = 0
         self.bar = float("-inf")  # what a candidate has to gain on known seeds, once one that did was refused
@@ -86,6 +88,12 @@ class Examiner:
 
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Reason:
         """Look at a candidate on a few known seeds, then test it on fresh ones; return what was wrong there, if any."""
+        placed = self.placing(candidate, trials)
+        if placed is None:
+            self.tried.append(Tried(candidate, "not at its definition", (), fresh=False))
+            self._refuse(Refused(candidate, "not at its definition"))
+            return ""
+        candidate = placed
         try:
             problem = self._known_to_fail(candidate, trials)
         except RepairError:

@@ -60,8 +60,10 @@ def _verify(order: Order, candidate: Candidate, changed: Mapping[Path, str]) -> 
     for shown, original in order.analysis.sources.items():
         text = changed.get(order.root / shown)
         if text is not None:
-            spans = [m.operand.span for m in candidate.mutations if m.operand.span.path == shown]
+            here = [m.operand.span for m in candidate.mutations if m.place is None]
+            spans = [span for span in here if span.path == shown]
             lines = {line for span in spans for line in range(span.line, span.end_line + 1)}
+            lines |= {m.place.line for m in candidate.mutations if m.place and m.place.path == shown}
             nothing_lost(shown, original, text, lines)
 
 
@@ -106,6 +108,8 @@ def _edits(candidate: Candidate) -> tuple[Edit, ...]:
 def _edit(mutation: Mutation) -> Edit:
     operand = mutation.operand
     value = words.expected(effective_value(mutation))
+    if mutation.place is not None:
+        return Edit(mutation.place.path, mutation.place.line, mutation.place.name, value)
     return Edit(operand.span.path, operand.span.line, operand.code, value, operand.value is None)
 
 

@@ -23,6 +23,7 @@ class Mutants:
     def __init__(self, order: Order) -> None:
         self.order = order
         self._ahead = Ahead(order.rollout)
+        self.texts: dict[str, str] = {}  # files beside the analysed ones, which constants are defined in
         self._sources: dict[Candidate, Mapping[Path, str]] = {}
 
     def mutate(self, operand: Operand, factor: float) -> Mutation | None:
@@ -33,7 +34,9 @@ class Mutants:
         """Return path → text of every file that a candidate changes. Raises RepairError when it cannot be written."""
         if candidate not in self._sources:
             order = self.order
-            texts = rewrite(order.analysis, candidate.mutations, candidate.guard, order.fixture.topics)
+            texts = rewrite(
+                order.analysis, candidate.mutations, candidate.guard, order.fixture.topics, self.texts
+            )
             while len(self._sources) >= MOST_KEPT:
                 del self._sources[next(iter(self._sources))]
             self._sources[candidate] = {order.root / path: text for path, text in texts.items()}

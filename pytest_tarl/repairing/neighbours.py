@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Sequence, Set
 from dataclasses import dataclass
+from pathlib import Path
 from statistics import fmean
 
+from pytest_tarl.instrumentation.datafiles import is_data
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Neighbour
 from pytest_tarl.searching import candidates
@@ -31,7 +34,8 @@ NOTHING_BESIDE = Beside()
 def beside(mutants: Mutants, candidate: Candidate) -> Beside:
     """Run the recorded missions of other tests of the changed files, until one of them loses."""
     changed = {path.resolve() for path in mutants.source(candidate)}
-    concerned = [one for one in mutants.order.neighbours() if changed & set(one.nodes)]
+    root = mutants.order.root
+    concerned = [one for one in mutants.order.neighbours() if _uses(one, changed, root)]
     held: list[str] = []
     episodes = 0
     for neighbour in concerned[:MOST]:
@@ -44,6 +48,17 @@ def beside(mutants: Mutants, candidate: Candidate) -> Beside:
     if len(concerned) > MOST:
         held.append(f"{len(concerned) - MOST} more of the node were not run")
     return Beside(tuple(held), (), episodes)
+
+
+def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
+    """Tell whether a test's nodes are among the changed files, or they or the test name one of them."""
+    if changed & set(neighbour.nodes):
+        return True
+    texts = [root / neighbour.test.partition("::")[0], *neighbour.nodes]
+    names = re.compile(
+        "|".join(rf"\b{re.escape(path.name if is_data(path) else path.stem)}\b" for path in changed)
+    )
+    return any(path.is_file() and names.search(path.read_text("utf-8", "replace")) for path in texts)
 
 
 def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:

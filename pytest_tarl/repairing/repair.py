@@ -160,6 +160,9 @@ def _ended(examiner: Examiner, found: _Findings) -> Refused:
 def _notes(order: Order, examiner: Examiner, found: _Findings) -> Iterator[str]:
     """Say what was not searched, what was dropped for the sake of others, and what cut the search short."""
     accepted = found.accepted is not None
+    told = found.accepted.candidate if found.accepted else examiner.refused.candidate
+    if told is not None:
+        yield from dict.fromkeys(examiner.placing.notes(told))
     yield from unnamed_modules(order)
     yield from (
         f"a candidate was dropped since another test loses: {told}" for told in dict.fromkeys(examiner.lost)

@@ -42,12 +42,12 @@ class Watch:
 
     def unconfirmed(self, tried: Iterable[Tried]) -> list[Tried]:
         """Return the candidates that came near once and did not on further seeds, in the order they were found."""
-        examined = {one.candidate.mutations for one in tried}
+        examined = {one.candidate.changes for one in tried}
         dropped = []
         for candidate, runs in self.seen.items():
             outcomes = list(runs.values())
             near = self.order.goal.reached(outcomes[0]) and len(outcomes) > LEAST
-            if near and candidate.mutations not in examined:
+            if near and candidate.changes not in examined:
                 totals = tuple(run.total for run in outcomes)
                 dropped.append(Tried(candidate, "not confirmed", totals, fresh=False))
         return dropped

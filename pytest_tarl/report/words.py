@@ -28,6 +28,7 @@ REASONS: dict[Reason, str] = {
     "not confirmed": "it came near once, and not on further seeds",
     "worse than unrepaired": "on fresh seeds the best change found earns less than no repair",
     "another test gets worse": "the best change found makes another recorded test of the node worse",
+    "not at its definition": "the best change found helps at its use only, and --tarl-edit=definition was asked for",
 }
 
 
@@ -38,6 +39,7 @@ ENDS: dict[Reason, str] = {
     "not confirmed": "dropped, not confirmed on further seeds",
     "worse than unrepaired": "dropped, worse than no repair",
     "another test gets worse": "dropped, another test of the node gets worse",
+    "not at its definition": "dropped, it helps at its use and not at the definition",
 }
 
 

@@ -6,12 +6,12 @@ A search yields confirmed candidates, best first; whether one is accepted is dec
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from statistics import fmean
 from typing import Protocol
 
 from pytest_tarl.model import Guard, OperandEffect
-from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.mutate import Mutation, redefinition
 from pytest_tarl.searching.accept import Outcome, unforeseen
 from tarl_lint.model import Operand
 
@@ -29,6 +29,11 @@ class Candidate:
 
     mutations: tuple[Mutation, ...]
     guard: Guard
+
+    @property
+    def changes(self) -> tuple[Mutation, ...]:
+        """Return the mutations, wherever they are written."""
+        return tuple(replace(mutation, place=None) for mutation in self.mutations)
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,6 +190,8 @@ def operand_effect(mutation: Mutation, gain: float) -> OperandEffect:
 
 def effective_value(mutation: Mutation) -> float:
     """Return the value that the use has under the mutation; of a constant known only at run time, the factor."""
+    if mutation.place is not None:
+        return float(redefinition(mutation))
     constant, value = mutation.operand.value, float(mutation.value)
     if mutation.operand.literal or constant is None or isinstance(constant, bool):
         return value

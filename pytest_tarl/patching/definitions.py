@@ -1,0 +1,198 @@
+"""Where a constant is defined: its literal, a parameter's default, the value in a YAML, launch or .cfg file."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.document import Document, Edit, document, parse
+from pytest_tarl.patching.expressions import number
+from tarl_lint.model import Operand
+
+if TYPE_CHECKING:
+    from tarl_lint.api import Analysis
+
+PARAMETER_CALLS = ("declare_parameter", "get_param", "get_parameter_or", "cached_param")
+_FOREIGN = {".git", ".tarl", ".venv", "venv", "build", "install", "log", "node_modules", "__pycache__"}
+_MOST_FILES = 400  # configuration files of a package that are looked at
+_NUMBER = r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|true|false|True|False)"
+_PLAIN = re.compile(r"[-+]?\d+")
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A number where it is defined: the characters from `start` to `end` of a file, and what it is called there."""
+
+    path: str
+    start: int
+    end: int
+    line: int
+    name: str
+    value: bool | int | float
+
+
+def defined(analysis: Analysis, operand: Operand) -> Place | None:
+    """Return where the operand's constant is written, away from its use; None where that is no single number."""
+    span = operand.definition
+    if span is None or operand.literal or operand.value is None or span.path not in analysis.sources:
+        return None
+    source = document(span.path, analysis.sources[span.path])
+    node = source.at(span)
+    if not isinstance(node, ast.Constant) or node.value != operand.value:
+        return None
+    name = parameter(analysis, operand) or _name(source, node) or operand.code
+    return Place(span.path, source.start(node), source.end(node), node.lineno, name, operand.value)
+
+
+def parameter(analysis: Analysis, operand: Operand) -> str:
+    """Return the ROS parameter that an operand's value is a default of, or is read from; empty where it is neither."""
+    span = operand.definition
+    if span is None or span.path not in analysis.sources:
+        return ""
+    source = document(span.path, analysis.sources[span.path])
+    node = source.at(span)
+    around = [node, *source.ancestors(node)] if node is not None else []
+    for each in around:
+        if isinstance(each, ast.Call) and ast.unparse(each.func).rpartition(".")[2] in PARAMETER_CALLS:
+            first = each.args[0] if each.args else None
+            named = isinstance(first, ast.Constant) and isinstance(first.value, str)
+            return str(first.value) if named and isinstance(first, ast.Constant) else ""
+        if isinstance(each, ast.stmt):
+            break
+    return ""
+
+
+def package_files(root: Path, node: Path) -> Mapping[str, str]:
+    """Return the configuration files of the package that a node belongs to: path below `root` → text."""
+    top = next((folder for folder in node.parents if (folder / "package.xml").is_file()), root)
+    top = top if top.is_relative_to(root) else root
+    found: dict[str, str] = {}
+    for path in sorted(top.rglob("*")):
+        if len(found) >= _MOST_FILES:
+            break
+        if _kind(path) and not _FOREIGN & {*path.relative_to(top).parts} and path.is_file():
+            try:
+                found[path.relative_to(root).as_posix()] = path.read_bytes().decode("utf-8")
+            except (OSError, UnicodeDecodeError):
+                continue
+    return found
+
+
+def configured(name: str, files: Mapping[str, str]) -> Iterator[Place]:
+    """Yield the places in configuration files where a parameter of that name has a number."""
+    key = re.split(r"[/.~]", name)[-1]
+    for path, text in files.items():
+        for match in _matches(_kind(Path(path)), key, text):
+            start, end = match
+            value = ast.literal_eval(
+                text[start:end].capitalize() if text[start].isalpha() else text[start:end]
+            )
+            yield Place(path, start, end, text.count("\n", 0, start) + 1, key, value)
+
+
+def redefined(place: Place, value: bool | int | float) -> str:
+    """Write a new value as the old one is written: `true`, `3`, `0.75`."""
+    if isinstance(value, bool):
+        return str(value)
+    whole = isinstance(place.value, int) and float(value).is_integer()
+    return number(int(value) if whole else float(value))
+
+
+def edits(places: Mapping[Place, bool | int | float], text: str) -> list[Edit]:
+    """Return the edits of one file. Raises RepairError where a place no longer holds its number."""
+    found = []
+    for place, value in places.items():
+        new = redefined(place, value)
+        old = text[place.start : place.end]
+        lower = old in ("true", "false")
+        if old.capitalize() != str(place.value) and not _same(old, place.value):
+            raise RepairError(f"{place.path}:{place.line} no longer holds {place.value}: run again.")
+        found.append(Edit(place.start, place.end, new.lower() if lower else new))
+    return found
+
+
+def _same(old: str, value: float) -> bool:
+    try:
+        return float(old) == float(value)
+    except ValueError:
+        return False
+
+
+def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
+    """Return the other places that use the same constant as these operands: `path:line`, in order."""
+    mine = {(operand.span.path, operand.span.line) for operand in used}
+    spans = {operand.definition for operand in used}
+    names = {parameter(analysis, operand) for operand in used} - {""}
+    found: dict[str, None] = {}
+    for step in analysis.sites:
+        for operand in analysis.operands(step.site):
+            shared = operand.definition in spans or (names and parameter(analysis, operand) in names)
+            if shared and (operand.span.path, operand.span.line) not in mine:
+                found[f"{operand.span.path}:{operand.span.line}"] = None
+    return list(found)
+
+
+def _name(source: Document, node: ast.expr) -> str:
+    """Return what a literal is called: the target of its assignment, the argument it is the default of."""
+    for each in source.ancestors(node):
+        if isinstance(each, ast.Assign) and len(each.targets) == 1:
+            return source.source(each.targets[0])
+        if isinstance(each, ast.AnnAssign):
+            return source.source(each.target)
+        if isinstance(each, ast.arguments):
+            named = [*each.posonlyargs, *each.args]
+            pairs = zip(named[len(named) - len(each.defaults) :], each.defaults, strict=True)
+            keywords = zip(each.kwonlyargs, each.kw_defaults, strict=True)
+            return next((arg.arg for arg, default in (*pairs, *keywords) if default is node), "")
+        if isinstance(each, ast.stmt):
+            break
+    return ""
+
+
+def _kind(path: Path) -> str:
+    if path.suffix in (".yaml", ".yml"):
+        return "yaml"
+    if path.suffix in (".launch", ".xml") and (path.suffix == ".launch" or path.name.endswith(".launch.xml")):
+        return "launch"
+    if path.name.endswith((".launch.py", "_launch.py")):
+        return "yaml"  # parameters of a node are a dictionary there
+    return "cfg" if path.suffix == ".cfg" else ""
+
+
+def _matches(kind: str, key: str, text: str) -> Iterator[tuple[int, int]]:
+    """Yield where the numbers of a key stand."""
+    if kind == "cfg":
+        yield from _added(key, text)
+        return
+    word = re.escape(key)
+    patterns = [rf"""(?<![\w.-])["']?{word}["']?[ \t]*:[ \t]*{_NUMBER}(?=[ \t]*(?:\#|,|\}}|\)|<|\r?\n|$))"""]
+    if kind == "launch":
+        named = rf"""name[ \t]*=[ \t]*["'][^"']*(?<![\w-]){word}["'][^<>]*?"""
+        patterns.append(rf"""{named}(?:value|default)[ \t]*=[ \t]*["'][ \t]*{_NUMBER}[ \t]*["']""")
+    for pattern in patterns:
+        for match in re.finditer(pattern, text):
+            yield match.span("number")
+
+
+def _added(key: str, text: str) -> Iterator[tuple[int, int]]:
+    """Yield the defaults of a dynamic_reconfigure file, the fifth argument of `gen.add(name, type, level, text, …)`."""
+    try:
+        source = Document("", text, parse(text))
+    except (SyntaxError, ValueError):
+        return
+    for node in ast.walk(source.tree):
+        if not (
+            isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "add"
+        ):
+            continue
+        named = {each.arg: each.value for each in node.keywords}
+        first = node.args[0] if node.args else named.get("name")
+        default = node.args[4] if len(node.args) > 4 else named.get("default")
+        named_so = isinstance(first, ast.Constant) and first.value == key
+        if named_so and isinstance(default, ast.Constant) and isinstance(default.value, int | float):
+            yield source.start(default), source.end(default)

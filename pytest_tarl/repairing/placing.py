@@ -1,0 +1,168 @@
+"""Where a repair is written: at the constant's definition where that is in force in this test, else at its use."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.definitions import Place, configured, defined, package_files, parameter, users
+from pytest_tarl.patching.mutate import Mutation, redefinition
+from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.searching.search import Candidate, Trials
+from tarl_lint.model import Operand
+
+LOOKED_AT = 3  # seeds on which a repair at the definition has to be as good as at the use
+MOST_PLACES = 6  # configuration files that are tried for one parameter
+MOST_NAMED = 5  # other users that a note names
+
+
+class Placing:
+    """Moves the mutations of a candidate to where their constants are defined, and remembers what is in force."""
+
+    def __init__(self, mutants: Mutants) -> None:
+        self.mutants = mutants
+        self.order = mutants.order
+        self._in_force: dict[Operand, Place | None] = {}
+        self._why: dict[Operand, str] = {}
+
+    def __call__(self, candidate: Candidate, trials: Trials) -> Candidate | None:
+        """Return the candidate as it is to be written; None where it has no place that was asked for."""
+        edit = self.order.options.edit
+        movable = [one for one in candidate.mutations if not one.operand.literal]
+        if edit == "use" or candidate.guard.conjuncts or not movable:
+            return candidate
+        try:
+            moved = self._moved(candidate, trials)
+        except RepairError:
+            moved = None
+        return moved or (None if edit == "definition" else candidate)
+
+    def notes(self, candidate: Candidate) -> Iterator[str]:
+        """Say why a repair is written at its use, and who else uses what it changes."""
+        for mutation in candidate.mutations:
+            if mutation.place is None and not candidate.guard.conjuncts and mutation.operand in self._why:
+                yield self._why[mutation.operand]
+        for place in dict.fromkeys(one.place for one in candidate.mutations if one.place is not None):
+            yield from self._users(place, [m.operand for m in candidate.mutations if m.place == place])
+
+    def _moved(self, candidate: Candidate, trials: Trials) -> Candidate | None:
+        """Move what has a place in force; None where nothing has, or where the moved candidate does not hold."""
+        mutations = []
+        for mutation in candidate.mutations:
+            place = None if mutation.operand.literal else self._place(mutation, candidate, trials)
+            mutations.append(replace(mutation, place=place))
+        values: dict[Place, object] = {}
+        for mutation in mutations:
+            if mutation.place and values.setdefault(mutation.place, redefinition(mutation)) != redefinition(
+                mutation
+            ):
+                return None  # two uses of one constant, which are to differ
+        if not values or (self.order.options.edit == "definition" and self._left(mutations)):
+            return None
+        moved = Candidate(tuple(mutations), candidate.guard)
+        pairs = self.order.goal.pairs[:LOOKED_AT]
+        if all(self.order.goal.reached(trials(moved, pair.seed)) for pair in pairs):
+            return moved
+        for mutation in mutations:
+            if mutation.place is not None:
+                where = f"{mutation.place.path}:{mutation.place.line}"
+                self._why[mutation.operand] = (
+                    f"`{mutation.operand.code}` is changed at its use: changed where it is defined, at {where}, it "
+                    "does not bring the reward back, since others use it, too"
+                )
+        return None
+
+    def _left(self, mutations: Sequence[Mutation]) -> bool:
+        return any(one.place is None and not one.operand.literal for one in mutations)
+
+    def _place(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> Place | None:
+        operand = mutation.operand
+        if operand not in self._in_force:
+            self._in_force[operand] = self._found(mutation, candidate, trials)
+        return self._in_force[operand]
+
+    def _found(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> Place | None:
+        """Return the first place whose change changes an episode: it is what this test goes by."""
+        analysis, operand = self.order.analysis, mutation.operand
+        name = parameter(analysis, operand)
+        written = defined(analysis, operand)
+        tried = [written] if written is not None else []
+        if self._moves(mutation, tried, candidate, trials):
+            return written
+        if not name:
+            return None
+        file = (self.order.root / operand.span.path).resolve()
+        texts = package_files(self.order.root.resolve(), file)
+        self.mutants.texts.update(texts)
+        likely = [
+            place
+            for place in configured(name, texts)
+            if isinstance(place.value, bool) == isinstance(operand.value, bool) or operand.value is None
+        ]
+        for place in likely[:MOST_PLACES]:
+            if self._moves(mutation, [place], candidate, trials):
+                return place
+        self._why[operand] = self._given(name, operand)
+        return None
+
+    def _moves(
+        self, mutation: Mutation, places: Sequence[Place], candidate: Candidate, trials: Trials
+    ) -> bool:
+        """Tell whether a change at these places is felt: the episode is no longer the one without it."""
+        pair = self.order.goal.pairs[0]
+        for place in places:
+            alone = Candidate((replace(mutation, place=place),), candidate.guard)
+            try:
+                if trials(alone, pair.seed).total != pair.total:
+                    return True
+            except RepairError:
+                continue
+        return False
+
+    def _given(self, name: str, operand: Operand) -> str:
+        """Say that a parameter's value comes from the test."""
+        test = self.order.root / self.order.fixture.test.partition("::")[0]
+        text = test.read_text("utf-8", "replace") if test.is_file() else ""
+        key = name.rpartition("/")[2].removeprefix("~")
+        who = "the test itself gives it (parameters=…, argv=…)" if key in text else "this test sets it"
+        return (
+            f"`{operand.code}` is changed at its use: the parameter {name!r} has a default and maybe a value in the "
+            f"package, but {who}, and tests are never edited: change the parameter where your robot gets it from"
+        )
+
+    def _users(self, place: Place, used: Sequence[Operand]) -> Iterator[str]:
+        others = users(self.order.analysis, used)
+        others += _importers(self.order.root.resolve(), place, {*self.order.analysis.sources})
+        if others:
+            more = f" and {len(others) - MOST_NAMED} more" if len(others) > MOST_NAMED else ""
+            yield (
+                f"{place.name} at {place.path}:{place.line} is used by {', '.join(others[:MOST_NAMED])}{more}, too; "
+                "recorded tests of this run that use it were run"
+            )
+
+
+def _importers(root: Path, place: Place, analysed: set[str]) -> list[str]:
+    """Return Python files below the root, not analysed, that name both the constant and the module it is in."""
+    if not place.path.endswith(".py"):
+        return []
+    module, found = Path(place.path).stem, []
+    for path in sorted(root.rglob("*.py")):
+        shown = path.relative_to(root).as_posix()
+        if shown in analysed or any(
+            part.startswith(".") or part == "venv" for part in path.relative_to(root).parts
+        ):
+            continue
+        words = set(_words(path))
+        if place.name.rpartition(".")[2] in words and module in words:
+            found.append(shown)
+    return found
+
+
+def _words(path: Path) -> Iterator[str]:
+    try:
+        yield from re.findall(r"\w+", path.read_text("utf-8", "replace"))
+    except OSError:
+        return

@@ -1,0 +1,244 @@
+"""Where a repair is written: at the definition that is in force in this test, else at the use."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.plugin.tank import ONLINE, RECORD, changed, result
+
+REPAIR = (*ONLINE, "--tarl-repair", "--tarl-drift=worn", "-p", "no:cacheprovider")
+TARL = (sys.executable, "-m", "pytest_tarl")
+IN_CLASS = """\
+import rospy
+from std_msgs.msg import Float64
+
+{before}
+class Keeper:
+    {attribute}
+
+    def __init__(self):
+        self.gain = {gain}
+        self.level = None
+        self.valve = rospy.Publisher("/valve", Float64, queue_size=1)
+        rospy.Subscriber("/level", Float64, self.on_level)
+
+    def on_level(self, msg):
+        self.level = msg.data
+
+    def step(self{argument}):
+        if self.level is not None:
+            missing = 1.0 - self.level
+            self.valve.publish({use} * missing)
+
+
+def main():
+    rospy.init_node("keeper")
+    keeper = Keeper()
+    rate = rospy.Rate(10)
+    while not rospy.is_shutdown():
+        keeper.step()
+        rate.sleep()
+
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+@pytest.fixture
+def worn(tank: pytest.Pytester) -> pytest.Pytester:
+    """A tank whose pump is worn out for good."""
+    changed(tank, "test_tank", "from pytest_tarl import Sensor", "from pytest_tarl import Drift, Sensor")
+    changed(tank, "test_tank", '{"clogged": 0.25}', '{"worn": Drift(0.2, permanent=True)}')
+    return tank
+
+
+def node(tank: pytest.Pytester, **parts: str) -> None:
+    """Write the node with its gain defined somewhere."""
+    usual = {"before": "", "attribute": "pass", "gain": "2.0", "argument": "", "use": "self.gain"}
+    (tank.path / "keeper.py").write_text(IN_CLASS.format(**usual | parts))
+
+
+def repaired(tank: pytest.Pytester, *flags: str) -> tuple[str, str, str]:
+    """Record, repair, and return the edited place, the account and the patch's lines."""
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    done = tank.runpytest(*REPAIR, *flags)
+    told = " ".join(done.stdout.str().split())
+    found = result(tank)["repair"]
+    if not found["accepted"]:
+        return "", told, ""
+    (patch,) = tank.path.glob(".tarl/patches/*.patch")
+    lines = [
+        line for line in patch.read_text().splitlines() if line[:1] in "+-" and line[:3] not in ("+++", "---")
+    ]
+    (edit,) = found["edits"]
+    return f"{edit['path']}:{edit['line']} {edit['code']}", told, "\n".join(lines)
+
+
+@pytest.mark.parametrize(
+    ("parts", "place"),
+    [
+        ({"before": "GAIN = 2.0\n", "use": "GAIN"}, "GAIN = "),
+        ({"attribute": "GAIN = 2.0", "use": "self.GAIN"}, "    GAIN = "),
+        ({}, "        self.gain = "),
+        ({"argument": ", gain=2.0", "use": "gain"}, "    def step(self, gain="),
+        ({"gain": 'rospy.get_param("~gain", 2.0)'}, '        self.gain = rospy.get_param("~gain", '),
+        (
+            {"gain": 'rospy.get_param("~gain", default=2)'},
+            '        self.gain = rospy.get_param("~gain", default=',
+        ),
+        ({"before": 'TABLE = {"gain": 2.0}\n', "use": 'TABLE["gain"]'}, 'TABLE = {"gain": '),
+    ],
+)
+def test_a_named_constant_is_changed_where_it_is_defined(
+    worn: pytest.Pytester, parts: dict[str, str], place: str
+) -> None:
+    node(worn, **parts)
+    where, _, lines = repaired(worn)
+    removed, added = lines.splitlines()
+    assert removed.startswith(f"-{place}2")
+    assert added.startswith(f"+{place}")
+    assert where
+
+
+def test_a_default_of_rclpy_is_changed(worn: pytest.Pytester) -> None:
+    text = IN_CLASS.format(before="", attribute="pass", gain="2.0", argument="", use="self.gain")
+    text = text[: text.index("class Keeper")].replace(
+        "import rospy", "import rclpy\nfrom rclpy.node import Node"
+    ) + (
+        "class Keeper(Node):\n"
+        "    def __init__(self):\n"
+        '        super().__init__("keeper")\n'
+        '        self.declare_parameter("gain", 2.0)\n'
+        '        self.gain = self.get_parameter("gain").value\n'
+        '        self.valve = self.create_publisher(Float64, "/valve", 1)\n'
+        '        self.create_subscription(Float64, "/level", self.on_level, 1)\n\n'
+        "    def on_level(self, msg):\n"
+        "        self.valve.publish(Float64(data=self.gain * (1.0 - msg.data)))\n\n\n"
+        'if __name__ == "__main__":\n'
+        "    rclpy.init()\n"
+        "    rclpy.spin(Keeper())\n"
+    )
+    (worn.path / "keeper.py").write_text(text)
+    where, _, lines = repaired(worn)
+    assert where.endswith(" gain")
+    assert '+        self.declare_parameter("gain", ' in lines
+
+
+FILES = {
+    "config/params.yaml": (
+        "keeper:\n  gain: 2.0  # per second\n  other_gain: 2.0\n",
+        "yaml.safe_load(Path('config/params.yaml').read_text())['keeper']",
+        "-  gain: 2.0  # per second",
+    ),
+    "config/flow.yaml": (
+        "/**: {ros__parameters: {gain: 2, rate: 2}}\n",
+        "yaml.safe_load(Path('config/flow.yaml').read_text())['/**']['ros__parameters']",
+        "-/**: {ros__parameters: {gain: 2, rate: 2}}",
+    ),
+    "launch/keeper.launch": (
+        '<launch>\n  <node name="keeper" pkg="tank">\n    <param name="gain" value="2.0"/>\n  </node>\n</launch>\n',
+        "{p.get('name'): float(p.get('value')) for p in ElementTree.parse('launch/keeper.launch').iter('param')}",
+        '-    <param name="gain" value="2.0"/>',
+    ),
+    "cfg/Keeper.cfg": (
+        'gen = ParameterGenerator()\ngen.add("gain", double_t, 0, "per second", 2.0, 0.0, 10.0)\n',
+        "{'gain': float(ast.parse(Path('cfg/Keeper.cfg').read_text()).body[1].value.args[4].value)}",
+        '-gen.add("gain", double_t, 0, "per second", 2.0, 0.0, 10.0)',
+    ),
+}
+
+
+@pytest.mark.parametrize(("name", "default"), list(zip(FILES, ["", ", 0.7"] * 2, strict=True)))
+def test_a_parameter_is_changed_in_the_file_that_this_test_gets_it_from(
+    worn: pytest.Pytester, name: str, default: str
+) -> None:
+    _, loading, removed = FILES[name]
+    node(worn, gain=f'rospy.get_param("~gain"{default})')
+    for other, (content, *_) in FILES.items():  # all of them there, one of them read
+        path = worn.path / other
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(content)
+    changed(
+        worn,
+        "test_tank",
+        "import pytest\n",
+        "import ast\nimport yaml\nfrom pathlib import Path\nfrom xml.etree import ElementTree\nimport pytest\n",
+    )
+    changed(worn, "test_tank", 'tarl.start("keeper.py")', f'tarl.start("keeper.py", parameters={loading})')
+    before = Path(worn.path / name).read_bytes()
+    where, _, lines = repaired(worn)
+    assert where.startswith(f"{name}:")
+    assert where.endswith(" gain")
+    assert lines.splitlines()[0] == removed
+    assert len(lines.splitlines()) == 2
+    assert Path(worn.path / name).read_bytes() == before
+    (patch,) = worn.path.glob(".tarl/patches/*.patch")
+    assert worn.run(*TARL, "apply", str(patch)).ret == 0
+    worn.runpytest(*RECORD, "--tarl-drift=worn").assert_outcomes(passed=1, deselected=1)
+
+
+def test_what_the_test_itself_gives_is_said_and_never_edited(worn: pytest.Pytester) -> None:
+    node(worn, gain='rospy.get_param("~gain", 0.7)')
+    (worn.path / "params.yaml").write_text("gain: 2.0\n")
+    changed(worn, "test_tank", 'tarl.start("keeper.py")', 'tarl.start("keeper.py", parameters={"gain": 2.0})')
+    where, told, lines = repaired(worn)
+    assert where.startswith("keeper.py:")
+    assert "self.gain * missing" in lines
+    assert "the test itself gives it (parameters=…, argv=…), and tests are never edited" in told
+
+
+def test_a_definition_that_others_need_as_it_is_stays(worn: pytest.Pytester) -> None:
+    node(worn, before="GAIN = 2.0\n", use="GAIN")
+    changed(
+        worn,
+        "keeper",
+        "            missing =",
+        "            if GAIN > 3.0:\n                return\n            missing =",
+    )
+    where, told, lines = repaired(worn)
+    assert where == "keeper.py:23 GAIN"
+    assert "* GAIN * missing" in lines
+    assert (
+        "`GAIN` is changed at its use: changed where it is defined, at keeper.py:4, it does not bring" in told
+    )
+
+
+def test_other_users_are_named_and_their_tests_run(worn: pytest.Pytester) -> None:
+    node(worn, before="from settings import GAIN\n", use="GAIN")
+    (worn.path / "settings.py").write_text("GAIN = 2.0\n")
+    (worn.path / "tool.py").write_text("import settings\n\nprint(settings.GAIN)\n")
+    test = (worn.path / "test_tank.py").read_text()
+    (worn.path / "test_again.py").write_text(test.replace("test_fills", "test_fills_again"))
+    changed(worn, "test_tank", 'nodes=["keeper.py"]', 'nodes=["keeper.py", "settings.py"]')
+    worn.runpytest(*RECORD).assert_outcomes(passed=2, deselected=2)
+    done = worn.runpytest(*REPAIR)
+    told = " ".join(done.stdout.str().split())
+    assert "GAIN at settings.py:1 is used by tool.py" in told
+    (patch,) = worn.path.glob(".tarl/patches/test-tank-*.patch")
+    assert "# other test: test_again.py::test_fills_again: " in patch.read_text()
+
+
+@pytest.mark.parametrize(
+    ("edit", "first"), [("use", "-            self.valve"), ("definition", "-GAIN"), ("auto", "-GAIN")]
+)
+def test_the_flag_says_where(worn: pytest.Pytester, edit: str, first: str) -> None:
+    node(worn, before="GAIN = 2.0\n", use="GAIN")
+    _, _, lines = repaired(worn, f"--tarl-edit={edit}")
+    assert lines.startswith(first)
+
+
+def test_a_repair_that_has_no_definition_is_refused_where_one_is_wanted(worn: pytest.Pytester) -> None:
+    node(worn, gain='rospy.get_param("~gain", 0.7)')
+    changed(worn, "test_tank", 'tarl.start("keeper.py")', 'tarl.start("keeper.py", parameters={"gain": 2.0})')
+    where, told, _ = repaired(worn, "--tarl-edit=definition", "--tarl-budget=60")
+    assert not where or "missing" in told
+    assert "it helps at its use and not at the definition" in told
+
+
+def test_an_unknown_place_is_explained(worn: pytest.Pytester) -> None:
+    done = worn.runpytest(*REPAIR, "--tarl-edit=defintion")
+    done.stderr.fnmatch_lines(["*--tarl-edit does not know 'defintion'; did you mean 'definition'?*"])
