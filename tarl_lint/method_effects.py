@@ -17,6 +17,10 @@ TELLS: Final = re.compile(
 REGISTERS: Final = re.compile(
     r"(?:set|add|register|connect|bind|on|subscribe|install|attach|schedule)(?:_|[A-Z]|$)"
 )  # keeps the callables that it is given, to call them later
+FAILS: Final = re.compile(
+    r"(?:loads?|parse|decode|literal_eval|fromisoformat|strptime|unpack|from_?[Ss]tring|look_?up|transform|do_transform"
+    r"|convert|index|Decimal|Fraction|ip_address|UUID|inv|solve)(?:_|[A-Z]|$)|lookup"
+)  # raises when it cannot do with what it is given
 
 
 def changes(method: str, *, dropped: bool) -> bool:
@@ -30,3 +34,13 @@ def changes(method: str, *, dropped: bool) -> bool:
 def keeps_callables(name: str) -> bool:
     """Tell whether a class or method keeps the callables that it is given, for later."""
     return name[:1].isupper() or REGISTERS.match(name) is not None
+
+
+def fails(name: str) -> str | None:
+    """Return what a call of a library raises when it cannot do with a value: "" for anything, None for nothing.
+
+    Conversions, parsers and look-ups fail by the value that they are given; of other calls that is not meant.
+    """
+    if name in ("float", "int", "complex"):
+        return "ValueError"
+    return "" if FAILS.match(name) else None

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.bounds import MAX_STATEMENTS
+from tarl_lint.valueflow.control import taken
 from tarl_lint.valueflow.frames import Attempt, Frame
 from tarl_lint.valueflow.raising import Raising
 from tarl_lint.valueflow.store import Delta
@@ -143,7 +144,7 @@ class Branches(Raising):
         self.condition(frame, s)
         self.store.push()
         states: list[Delta] = [{}]
-        attempt = Attempt(depth, states, bool(s.handlers), BOTTOM)
+        attempt = Attempt(depth, states, bool(s.handlers), BOTTOM, _taken(s))
         frame.tries.append(attempt)
         goes_on = True
         for statement in s.body:
@@ -195,3 +196,9 @@ class Branches(Raising):
         for manager in reversed(managers if goes_on else ()):
             self.special(manager, "__exit__", [UNKNOWN] * 3, frame, s.pos)
         return goes_on
+
+
+def _taken(s: ir.Try) -> frozenset[str]:
+    """Return the names of the exceptions that a statement handles, none when it handles any."""
+    each = [taken(types) for types, _, _ in s.handlers]
+    return frozenset().union(*each) if all(each) else frozenset()

@@ -128,7 +128,7 @@ def raised(expr: ir.Expr | None) -> str:
     return expr.name if isinstance(expr, (ir.Name, ir.Attribute)) else ""
 
 
-def _taken(types: ir.Expr | None) -> frozenset[str]:
+def taken(types: ir.Expr | None) -> frozenset[str]:
     """Return the names of the classes that a handler takes, none for all."""
     parts = types.items if isinstance(types, ir.SequenceDisplay) else [types]
     names = frozenset(raised(part) for part in parts)
@@ -139,7 +139,7 @@ def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
     """The statement itself chooses a handler: which one, nothing tells."""
     after = _block(graph, s.final, follow, exits)
     handlers = [_block(graph, body, after, exits) for _, _, body in s.handlers]
-    takes = tuple((_taken(types), entry) for (types, _, _), entry in zip(s.handlers, handlers, strict=True))
+    takes = tuple((taken(types), entry) for (types, _, _), entry in zip(s.handlers, handlers, strict=True))
     inner = _Exits(exits.on_break, exits.on_continue, after, takes)
     orelse = _block(graph, s.orelse, after, exits)
     graph.link(s.id, "body", _block(graph, s.body, orelse, inner))

@@ -28,6 +28,9 @@ BUILTINS = frozenset(dir(builtins))
 DEFINITIONS = frozenset(["msg", "srv", "action"])  # modules of classes that definition files make
 
 
+LOOKUP_ERRORS = ("KeyError", "IndexError", "LookupError")  # of an element that is not there
+
+
 class Evaluation(Displays):
     """Evaluates expressions."""
 
@@ -110,6 +113,9 @@ class Evaluation(Displays):
         if isinstance(expr.index, ir.Slice):
             return self.sliced(base, expr.index, expr.pos, frame)
         index = self.evaluate(expr.index, frame)
+        if (frame.tries or len(self.stack) > 1) and (decides := self.use(index)):
+            for raises in LOOKUP_ERRORS:
+                self.may_fail(decides, raises, frame, named=True)
         said = self.special(base, "__getitem__", [index], frame, expr.pos)
         return said if said is not None else self.read_item(base, index)
 

@@ -16,6 +16,7 @@ class Attempt:
     states: list[dict[Key, Value]]
     handled: bool
     raised: Value
+    takes: frozenset[str] = frozenset()  # names of the exceptions that are handled; none: any
 
 
 @dataclass(slots=True, eq=False)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from tarl_lint import catalog
 from tarl_lint.catalog import Fact
-from tarl_lint.method_effects import changes, keeps_callables
+from tarl_lint.method_effects import changes, fails, keeps_callables
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.containers import CONTAINERS, QUEUES, is_device
 from tarl_lint.valueflow.ends import Publisher
@@ -70,6 +70,8 @@ class Library(Handing):
     def generic(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
         """Pass the arguments on to the result; write the argument that the catalog says is written."""
         name = qualified.rpartition(".")[2]
+        if (raises := fails(name)) is not None:
+            self.may_fail(self.all_used(arguments), raises, frame)
         shaped = name in catalog.SHAPED and qualified not in self.config.named
         deps = self.all_used((arguments[0][1:], arguments[1]) if shaped else arguments)
         held = self.answering(arguments) if qualified not in catalog.KEEPERS else []
@@ -172,6 +174,8 @@ class Library(Handing):
         if name in SIGNALLING:
             self.signal(base, name, arguments, frame, call)
         given = self._given(base, name, arguments, frame, call)
+        if (raises := fails(name)) is not None:
+            self.may_fail(self.use(base) | self.all_used(arguments), raises, frame)
         learnt = self.all_used(arguments) | given
         if (
             learnt

@@ -249,6 +249,10 @@ class Machine:
         """Let other roots run."""
         raise NotImplementedError
 
+    def may_fail(self, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:
+        """Let what comes after a statement depend on whether a library can do with what it is given."""
+        raise NotImplementedError
+
     def add_root(self, root: Root, run: Callable[[Root], None], *, news: bool = False) -> None:
         """Have something run on its own."""
         raise NotImplementedError

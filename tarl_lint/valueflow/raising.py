@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from tarl_lint.valueflow.frames import Escape, Frame
+from tarl_lint.valueflow.frames import Attempt, Escape, Frame
 from tarl_lint.valueflow.taking import Taking
-from tarl_lint.valueflow.values import join
+from tarl_lint.valueflow.values import BOTTOM, Nodes, join
 
 
 class Raising(Taking):
@@ -17,6 +17,26 @@ class Raising(Taking):
             attempt.raised = join(attempt.raised, escape.value)
         else:
             frame.escapes.append(escape)
+
+    def may_fail(self, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:
+        """Let what comes after a statement depend on whether a library can do with what it is given.
+
+        Only where somebody takes what it raises, in the function or in one that called it; `named`: by its name.
+        """
+        statement = frame.statement
+        if not deps or statement is None or frame.cls is not None:
+            return
+        here = any(_takes(t, raises, named) for t in frame.tries)
+        if not here and not any(_takes(t, raises, named) for f in self.stack for t in f.tries):
+            return
+        known = frame.function.raising.setdefault(statement.id, {})
+        if raises not in known:
+            known[raises] = None
+            frame.function.control = None
+        decision = self.condition(frame, statement)
+        self.graph.depend(decision, deps)
+        if not here and not any(e.decision == decision for e in frame.escapes):
+            frame.escapes.append(Escape(frame, statement, raises, BOTTOM, decision))
 
     def escaped(self, frame: Frame, caller: Frame) -> None:
         """Let what comes after a call depend on whether the called function raises, when somebody takes that."""
@@ -33,3 +53,10 @@ class Raising(Taking):
             if escape.decision is not None:
                 self.graph.depend(decision, (escape.decision,))
             self.leave(Escape(caller, statement, escape.name, escape.value, decision), caller)
+
+
+def _takes(attempt: Attempt, raises: str, named: bool) -> bool:
+    """Tell whether a `try` handles an exception, as far as its name tells."""
+    if named or (raises and attempt.takes):
+        return raises in attempt.takes
+    return attempt.handled
