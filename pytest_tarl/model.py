@@ -82,6 +82,21 @@ class Region:
     novel: tuple[Cell, ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """One-sided bounds of a quantity, each at the confidence; infinite where too little was seen.
+
+    `exact` tells whether they hold at least as often as stated, whatever the distribution (learning/bounds.py).
+    """
+
+    low: float
+    high: float
+    confidence: float
+    method: str
+    exact: bool
+    episodes: int
+
+
 class LossInterval(NamedTuple):
     """The losses per episode that what was seen leaves possible; infinite ends where too little was seen."""
 

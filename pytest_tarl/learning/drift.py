@@ -14,8 +14,8 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
+from pytest_tarl.learning.bounds import loss_between
 from pytest_tarl.learning.evidence import gathered
-from pytest_tarl.learning.intervals import difference_bounds
 from pytest_tarl.learning.merging import aligned
 from pytest_tarl.learning.packing import represented_chain
 from pytest_tarl.learning.permutation import PERMUTATIONS, max_statistic, permuted_loss
@@ -88,10 +88,9 @@ def judged(verdict: Verdict, alpha: float) -> Verdict:
 
 
 def loss_bounds(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
-    """Return the losses that are neither too small nor too large at `risk`; the two worlds may vary differently."""
-    if min(offline.size, online.size) < 2:
-        return -inf, inf
-    return difference_bounds(offline.tolist(), online.tolist(), risk)
+    """Return the losses that are neither too small nor too large at `risk`."""
+    bound = loss_between(offline.tolist(), online.tolist(), 1.0 - risk)
+    return bound.low, bound.high
 
 
 def smallest_detectable_loss(offline: Floats, online: Floats, alpha: float) -> float:

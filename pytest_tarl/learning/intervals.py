@@ -13,11 +13,12 @@ FEW_DEGREES = 20  # of freedom
 
 def difference_bounds(first: Sequence[float], second: Sequence[float], risk: float) -> tuple[float, float]:
     """Return the one-sided lower and upper bounds of mean(first) - mean(second), each at `risk` (Welch)."""
-    parts = [_spread(first), _spread(second)]
+    unit = max(map(abs, (*first, *second))) or 1.0  # squares of so many units neither overflow nor vanish
+    parts = [_spread([value / unit for value in group]) for group in (first, second)]
     spread = sqrt(sum(parts))
     freedom = [part**2 / max(len(group) - 1, 1) for part, group in zip(parts, (first, second), strict=True)]
     degrees = sum(parts) ** 2 / sum(freedom) if sum(freedom) > 0 else 1e9
-    reach = student_quantile(1 - risk, degrees) * spread
+    reach = student_quantile(1 - risk, degrees) * spread * unit
     difference = fmean(first) - fmean(second)
     return difference - reach, difference + reach
 

@@ -1,0 +1,215 @@
+"""How often bounds hold that are stated at 95 %, over many samples of worlds whose truth is known.
+
+    python benchmarks/bound_coverage.py [--repetitions 2000]
+
+Rows are distributions of an episode's total, columns numbers of episodes; a cell is the share of lower / upper bounds
+that held. Exact bounds must hold in at least 94 %, within the error of the benchmark; approximate ones have no goal. A
+loss is between 200 episodes off-line and so many on-line, of the same world.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property
+from math import log, sqrt
+
+import numpy as np
+
+from pytest_tarl.learning.bounds import (
+    Range,
+    evidence_above,
+    loss_between,
+    mean_of,
+    quantile_low,
+    rate,
+)
+from pytest_tarl.learning.intervals import difference_bounds
+from pytest_tarl.learning.tables import Floats
+from pytest_tarl.model import Bound
+from pytest_tarl.seeds import generator
+
+CONFIDENCE = 0.95
+GOAL = 0.94
+EPISODES = (8, 20, 50, 200)
+OFFLINE = 200
+QUANTILE = 0.05
+TRUTH = 2_000_000  # draws that a mean or quantile is known from
+
+Generator = np.random.Generator
+Held = tuple[bool, bool]
+
+
+def zero_inflated(draws: Generator, n: int) -> Floats:
+    """Return totals that are nothing nine times in ten."""
+    return np.clip(draws.exponential(2, n), 0, 20) * (draws.random(n) < 0.1)
+
+
+def bimodal(draws: Generator, n: int) -> Floats:
+    """Return totals one in twenty of which is far lower."""
+    return np.where(draws.random(n) < 0.05, -9.0, 5.0) + draws.uniform(-1, 1, n)
+
+
+DRAWN: dict[str, tuple[Callable[[Generator, int], Floats], Range | None]] = {
+    "normal": (lambda draws, n: draws.normal(0, 1, n), None),
+    "exponential": (lambda draws, n: draws.exponential(1, n), None),
+    "exponential cost": (lambda draws, n: -draws.exponential(1, n), None),
+    "lognormal": (lambda draws, n: draws.lognormal(0, 1, n), None),
+    "zero-inflated": (zero_inflated, Range(0, 20)),
+    "bimodal": (bimodal, Range(-10, 10)),
+    "bounded": (lambda draws, n: draws.beta(5, 1, n), Range(0, 1)),
+    "skewed in its range": (lambda draws, n: np.clip(draws.exponential(1, n), 0, 10), Range(0, 10)),
+    "bonus in 97 %": (lambda draws, n: (draws.random(n) < 0.97).astype(np.float64), Range(0, 1)),
+}
+RATES = (0.5, 0.9, 0.99)
+
+
+@dataclass(frozen=True)
+class World:
+    """A distribution of totals, and what is asked of a sample of it."""
+
+    name: str
+
+    @property
+    def declared(self) -> Range | None:
+        """Return the range that holds all totals; None where there is none."""
+        return DRAWN[self.name][1]
+
+    @cached_property
+    def truth(self) -> tuple[float, float]:
+        """Return mean and quantile."""
+        many = self.drawn(generator(0, f"truth/{self.name}"), TRUTH)
+        return float(np.mean(many)), float(np.quantile(many, QUANTILE))
+
+    def drawn(self, draws: Generator, n: int) -> list[float]:
+        """Return a sample."""
+        totals: list[float] = DRAWN[self.name][0](draws, n).tolist()
+        return totals
+
+    def mean(self, draws: Generator, n: int, how: Range | None, anytime: bool = False) -> Held:
+        """Tell whether the bounds of the mean hold."""
+        return holds(mean_of(self.drawn(draws, n), CONFIDENCE, how, anytime=anytime), self.truth[0])
+
+    def quantile(self, draws: Generator, n: int) -> Held:
+        """Tell whether the bound of the quantile holds; what is not stated holds."""
+        low = quantile_low(self.drawn(draws, n), QUANTILE, CONFIDENCE)
+        return low is None or low <= self.truth[1], True
+
+    def loss(self, draws: Generator, n: int, how: Range | None) -> Held:
+        """Tell whether the bounds of a loss hold where there is none."""
+        return holds(loss_between(self.drawn(draws, OFFLINE), self.drawn(draws, n), CONFIDENCE, how), 0.0)
+
+    def welch(self, draws: Generator, n: int) -> Held:
+        """Tell whether Welch's do."""
+        low, high = difference_bounds(self.drawn(draws, OFFLINE), self.drawn(draws, n), 1 - CONFIDENCE)
+        return low <= 0.0, high >= 0.0
+
+
+def holds(bound: Bound, truth: float) -> Held:
+    """Tell whether the lower bound is one, and the upper."""
+    return bound.low <= truth, truth <= bound.high
+
+
+def rate_holds(p: float, draws: Generator, n: int) -> Held:
+    """Tell whether the bounds of a rate hold."""
+    return holds(rate(int((draws.random(n) < p).sum()), n, CONFIDENCE), p)
+
+
+def sequence_holds(p: float, draws: Generator, n: int) -> Held:
+    """Tell whether the bounds of a rate hold after every one of n episodes."""
+    passed = np.cumsum(draws.random(n) < p)
+    barred = log(1 / (1 - CONFIDENCE))
+    ends = range(1, n + 1, max(1, n // 50))
+    low = all(evidence_above(int(passed[i - 1]), i, p) < barred for i in ends)
+    return low, all(evidence_above(i - int(passed[i - 1]), i, 1 - p) < barred for i in ends)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A bound in a world: how often it held, by number of episodes."""
+
+    bound: str
+    exact: bool
+    world: str
+    held: tuple[tuple[float, float], ...]
+
+    def line(self) -> str:
+        """Return the row of the table."""
+        label = self.bound if self.exact else f"{self.bound} (approximate)"
+        return (
+            f"| {label} | {self.world} | {' | '.join(f'{low:.1%} / {high:.1%}' for low, high in self.held)} |"
+        )
+
+
+def measured(
+    bound: str, exact: bool, world: str, held: Callable[[Generator, int], Held], repetitions: int
+) -> Row:
+    """Draw over and over and count."""
+    found = []
+    for n in EPISODES:
+        seen = np.array([held(generator(seed, f"{bound}/{world}/{n}"), n) for seed in range(repetitions)])
+        low, high = seen.mean(axis=0).tolist()
+        found.append((low, high))
+    return Row(bound, exact, world, tuple(found))
+
+
+def of_rate(p: float, repetitions: int) -> list[Row]:
+    """Return the rows of a success rate."""
+    name = f"{p:.0%} succeed"
+    return [
+        measured("rate, Clopper-Pearson", True, name, lambda d, n: rate_holds(p, d, n), repetitions),
+        measured("rate, at any time", True, name, lambda d, n: sequence_holds(p, d, n), repetitions),
+    ]
+
+
+def of_world(name: str, repetitions: int) -> list[Row]:
+    """Return the rows of a distribution of totals."""
+    world = World(name)
+    declared, fewer = world.declared, repetitions // 2
+    exact: list[Row] = []
+    if declared is not None:
+        exact = [
+            measured("mean, betting", True, name, lambda d, n: world.mean(d, n, declared), repetitions),
+            measured(
+                "mean, betting, any time", True, name, lambda d, n: world.mean(d, n, declared, True), fewer
+            ),
+            measured("loss, betting", True, name, lambda d, n: world.loss(d, n, declared), fewer),
+        ]
+    return [
+        *exact,
+        measured("quantile, order statistics", True, name, world.quantile, repetitions),
+        measured("mean, Student", False, name, lambda d, n: world.mean(d, n, None), repetitions),
+        measured("loss, permutation", False, name, lambda d, n: world.loss(d, n, None), fewer),
+        measured("loss, Welch: not used", False, name, world.welch, fewer),
+    ]
+
+
+def rows(repetitions: int, workers: int) -> Iterator[Row]:
+    """Yield all rows."""
+    with ProcessPoolExecutor(workers) as processes:
+        jobs = [processes.submit(of_rate, p, repetitions) for p in RATES]
+        jobs += [processes.submit(of_world, name, repetitions) for name in DRAWN]
+        for job in jobs:
+            yield from job.result()
+
+
+def main() -> None:
+    """Print the table, and how many cells of exact bounds miss the goal."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("--repetitions", type=int, default=2000)
+    parser.add_argument("--workers", type=int, default=2)
+    asked = parser.parse_args()
+    found = sorted(rows(asked.repetitions, asked.workers), key=lambda row: (not row.exact, row.bound))
+    print(f"| bound | world | {' | '.join(f'n = {n}' for n in EPISODES)} |")
+    print(f"|---|---|{'---|' * len(EPISODES)}")
+    print(*(row.line() for row in found), sep="\n")
+    ends = [end for row in found if row.exact for pair in row.held for end in pair]
+    error = 2 * sqrt(GOAL * (1 - GOAL) / (asked.repetitions // 2))
+    missed = sum(end < GOAL - error for end in ends)
+    print(f"\n{missed} of {len(ends)} shares of exact bounds are below {GOAL:.0%} by more than chance.")
+
+
+if __name__ == "__main__":
+    main()
