@@ -6,16 +6,18 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from pytest_tarl.drifts import Drift
     from pytest_tarl.episode import Tarl
+    from pytest_tarl.formulas.signals import Signal
     from pytest_tarl.searching.asking import Constant, Optimiser
     from pytest_tarl.sensors import Sensor
 
-__all__ = ["Constant", "Drift", "Optimiser", "Sensor", "Tarl"]
+__all__ = ["Constant", "Drift", "Optimiser", "Sensor", "Signal", "Tarl"]
 
 _HOMES = {
     "Constant": "pytest_tarl.searching.asking",
     "Drift": "pytest_tarl.drifts",
     "Optimiser": "pytest_tarl.searching.asking",
     "Sensor": "pytest_tarl.sensors",
+    "Signal": "pytest_tarl.formulas.signals",
     "Tarl": "pytest_tarl.episode",
 }
 

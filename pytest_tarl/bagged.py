@@ -83,7 +83,8 @@ def misfit(bag: Bag, fixture: Fixture) -> str:
 
 
 def _check(designation: Designation) -> None:
-    if designation.monitor is None and designation.judge is None:
+    judged = designation.monitor is not None or designation.judge is not None
+    if not judged and not designation.requirements.rewarding:
         raise SettingsError(NO_REWARDS)
     mute = next((sensor.name for sensor in designation.sensors if sensor.topic is None), None)
     if mute is not None:

@@ -12,7 +12,7 @@ from pytest_tarl.bagged import bagged
 from pytest_tarl.designation import Designation
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.instrumentation.sites import Plan
-from pytest_tarl.learning import localize, parts
+from pytest_tarl.learning import judgements, localize, parts
 from pytest_tarl.learning.drift import Difference, compare, paper_region
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.looks import Look, certain, concluded, planned
@@ -88,10 +88,15 @@ def run_online(
             *_early(recorded.sample, count),
             *lost_sites(fixture, plan),
             *failing(offline, online, difference.verdict, options),
+            *other_formulas(offline, online),
         ),
         parts=parts.means(offline, online),
         lost=parts.lost(offline, online, options.alpha, seeds.generator(options.seed, "parts")),
         changes=difference.changes,
+        formulas=judgements.rows(
+            [one.text for one in designation.requirements.formulas],
+            {"offline": offline.judgements, "online": online.judgements},
+        ),
         permanent=drift is not None and designation.drifts[drift].permanent,
     )
     return Online(comparison, recorded, learned)
@@ -227,6 +232,23 @@ def failing(offline: Sample, online: Sample, verdict: Verdict, options: Options)
             "no loss of reward was found: a mission that ends early may earn more than one that is carried on. Let "
             "the reward count a failed mission."
         ),
+    )
+
+
+def other_formulas(offline: Sample, online: Sample) -> tuple[str, ...]:
+    """Tell which formulas were not required when the test was recorded, and which no mission was long enough for."""
+    if online.judgements is None:
+        return ()
+    recorded = offline.judgements.formulas if offline.judgements is not None else ()
+    added = [repr(one) for one in online.judgements.formulas if one not in recorded]
+    late = [repr(one) for one in judgements.never_judged(online.judgements)]
+    return (
+        *(
+            (f"not required when the test was recorded: {', '.join(added)}. Record again to compare.",)
+            if added
+            else ()
+        ),
+        *((f"no on-line episode was long enough to judge {', '.join(late)}.",) if late else ()),
     )
 
 

@@ -10,10 +10,14 @@ from typing import Any
 
 from pytest_tarl.drifts import Drift, drift
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.formulas.declared import ARGUMENTS, NOTHING_REQUIRED, Requirements, requirements
 from pytest_tarl.options import number_within
 from pytest_tarl.sensors import Sensor
 
-MARKER_ARGUMENTS = ("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance", "judge", "monitor")
+MARKER_ARGUMENTS = (
+    *("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance", "judge", "monitor"),
+    *ARGUMENTS,
+)
 
 
 @dataclass(frozen=True)
@@ -32,6 +36,7 @@ class Designation:
     monitor: Callable[[Any], float | Mapping[str, float]] | None = (
         None  # of missions in a bag; or a class of such
     )
+    requirements: Requirements = NOTHING_REQUIRED
 
 
 def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, Any]) -> Designation:
@@ -45,15 +50,17 @@ def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, A
             close = difflib.get_close_matches(name, MARKER_ARGUMENTS, 1)
             hint = f"did you mean {close[0]!r}?" if close else f"it has {', '.join(MARKER_ARGUMENTS)}."
             raise SettingsError(f"{where}: @pytest.mark.tarl has no argument {name!r}; {hint}")
+    sensors = _sensors(where, arguments.get("sensors", ()))
     return Designation(
         nodes=_nodes(where, arguments.get("nodes", ())),
-        sensors=_sensors(where, arguments.get("sensors", ())),
+        sensors=sensors,
         drifts=_drifts(where, arguments.get("drifts", {})),
         episodes=number_within(where, "episodes", arguments.get("episodes", 200), int, 2, 10**6),
         min_success=number_within(where, "min_success", arguments.get("min_success", 1.0), float, 0, 1),
         tolerance=_tolerance(where, arguments.get("tolerance")),
         judge=_judge(where, arguments.get("judge")),
         monitor=_monitor(where, arguments.get("monitor")),
+        requirements=requirements(where, arguments, sensors),
     )
 
 

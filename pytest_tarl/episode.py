@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import reprlib
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl import seeds
-from pytest_tarl.errors import RecordingError, SettingsError
+from pytest_tarl.errors import RecordingError, RequirementError, SettingsError, TarlError
+from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements, check_texts
+from pytest_tarl.formulas.judging import Judge, Judged
+from pytest_tarl.formulas.signals import Signal
 from pytest_tarl.sensors import Cell, Sensor, as_number, reading
 
 if TYPE_CHECKING:
@@ -19,6 +24,7 @@ if TYPE_CHECKING:
     from pytest_tarl.bags.replay import Judgement, Replay
     from pytest_tarl.instrumentation.importhook import NodeImports
     from pytest_tarl.instrumentation.recorder import Recorder
+    from pytest_tarl.instrumentation.trace import Trace
     from pytest_tarl.ros import Bus, Ros
 
 LARGEST = 1e100  # size of a reward; that of a flow value is bounded by the same number
@@ -38,6 +44,8 @@ class Tarl:
         kind: str = "embedded",
         nodes: Sequence[str] = (),
         replay: Replay | None = None,
+        requirements: Requirements = NOTHING_REQUIRED,
+        alone: bool = False,
     ) -> None:
         self.seed = seed
         self.topics: dict[str, str] = {}
@@ -55,6 +63,11 @@ class Tarl:
         self._rewards = 0
         self._streams: dict[str, np.random.Generator] = {}
         self._ros: Ros | None = None
+        self._origin = 0  # of virtual time, in ns
+        self._requirements = requirements
+        self._alone = alone  # whether it is the only episode of a plain test run
+        self._judge = Judge(requirements.names, requirements.formulas) if requirements.followed else None
+        self.judged: tuple[Judged, ...] = ()
         self._open = ExitStack()
         self._open.enter_context(imports)
 
@@ -76,6 +89,7 @@ class Tarl:
             self._ros.on_delivery(self._latch)
             if self._replay is not None:
                 self._replay.begin(self._ros)
+            self._origin = self._ros.scheduler.time
         return self._ros
 
     @property
@@ -126,18 +140,20 @@ class Tarl:
         if self._replay is not None:
             self._replayed(self._replay, seconds)
         self.ros.step(seconds)
+        self._stepped()
 
     def _replayed(self, replay: Replay, dt: float) -> None:
         """Let a recorded mission take the place of the rest of the test's body."""
         from pytest_tarl.bags.replay import MissionReplayed
 
-        def reward(judgement: Judgement) -> None:
+        def close(judgement: Judgement | None) -> None:
+            self._stepped()
             if isinstance(judgement, Mapping):
                 self.reward(**judgement)
-            else:
+            elif judgement is not None:
                 self.reward(judgement)
 
-        replay.run(self.ros, dt, lambda: self._situated, reward)
+        replay.run(self.ros, dt, lambda: self._situated, close, self.observe)
         raise MissionReplayed("The recorded mission is over.")
 
     def message(self, topic: str, message: Any) -> None:
@@ -149,15 +165,38 @@ class Tarl:
         self._latch(topic, message)
 
     def observe(self, **values: Any) -> None:
-        """Give the values of sensors that have no topic."""
+        """Give the values of sensors that have no topic, and of signals that formulas name."""
         declared = {sensor.name: sensor for sensor in self._sensors}
+        signals = {signal.name for signal in self._requirements.signals}
         for name, value in values.items():
-            if name not in declared:
-                raise SettingsError(
-                    f"tarl.observe: no sensor is named {name!r}; the marker declares {', '.join(declared)}."
+            if name in declared:
+                self._read(declared[name], value)
+            elif name in signals:
+                self._give(name, value)
+            else:
+                known = [*declared, *sorted(signals)]
+                close = difflib.get_close_matches(name, known, 1)
+                hint = (
+                    f"; did you mean {close[0]!r}?" if close else f"; the marker declares {', '.join(known)}."
                 )
-            self._read(declared[name], value)
-        self._latch_cell()
+                raise SettingsError(f"tarl.observe: no sensor and no signal is named {name!r}{hint}")
+        if not signals.issuperset(values):
+            self._latch_cell()
+
+    def require(self, formula: str) -> None:
+        """Require a formula of this episode, judged with those of the marker when the body is over.
+
+        Raises SettingsError for what is no formula over the test's signals.
+        """
+        check_texts("tarl.require", formula, self._sensors)
+        if self._judge is None:
+            if self._bins or self._now:
+                raise SettingsError(
+                    "tarl.require: the episode has begun and its signals were not followed until now: call it before "
+                    "the world moves, or say requires=[] in the marker."
+                )
+            self._judge = Judge(self._requirements.names, ())
+        self._judge.require(formula)
 
     def reward(self, total: float | None = None, /, **parts: float) -> None:
         """Give the monitor's judgement of this simulation step, once a step; parts are summed and reported apart."""
@@ -165,10 +204,47 @@ class Tarl:
             raise SettingsError(
                 "tarl.reward needs a number, or parts such as tarl.reward(progress=0.2, clearance=-1)."
             )
+        if self._requirements.rewarding:
+            raise SettingsError(
+                'The marker says reward="robustness", so each step has its reward by the formulas: take tarl.reward '
+                "out of the test, or reward out of the marker."
+            )
         given = {name: _reward(value) for name, value in parts.items()}
         amount = _reward(sum(given.values()) if total is None else total)
         self._recorder.reward(amount, given)
         self._rewards += 1
+
+    def conclude(self, ended: BaseException | None) -> None:
+        """Judge the formulas when the body is over, which `ended` ended. Raises RequirementError where one is violated.
+
+        A body that failed by itself fails for its own reason.
+        """
+        if self._judge is None:
+            return
+        whole = ended is None or (self._replay is not None and self._replay.done)
+        try:
+            self.judged = self._judge.conclude(self._now)
+        except TarlError:
+            if whole:
+                raise
+            return
+        if not whole:
+            return
+        too_short = self._judge.unjudged(self._now) if self._alone else ""
+        if too_short:
+            raise SettingsError(too_short)
+        violation = self._judge.violation(self.judged)
+        if violation:
+            raise RequirementError(violation)
+
+    def rewarded(self, trace: Trace) -> Trace:
+        """Return the trace with the rewards that formulas give, where they do."""
+        if not self._requirements.rewarding or self._judge is None:
+            return trace
+        import numpy as np
+
+        rewards = self._judge.rewards(self._now, self._requirements.cap)
+        return replace(trace, reward=np.array(rewards, np.float64))
 
     def close(self) -> None:
         """End the nodes and forget the episode."""
@@ -189,6 +265,11 @@ class Tarl:
         """Return why the episode cannot be learned from: no reward, a silent sensor, a mute node; None when it can."""
         if self._replay is not None:
             return self._unplayed(self._replay)
+        if not self._rewards and self._requirements.rewarding:
+            return RecordingError(
+                'The test never called tarl.step, so there is no step to reward: reward="robustness" counts steps of '
+                "virtual time."
+            )
         if not self._rewards:
             return RecordingError(
                 "The test never called tarl.reward: call it once a simulation step with the monitor's judgement, "
@@ -231,10 +312,34 @@ class Tarl:
                 self._read(sensor, _value(sensor, message))
                 self.topics[sensor.topic] = message_type_name(message)
                 changed = True
+        for signal in self._requirements.signals:
+            if signal.topic is not None and same_topic(signal.topic, topic):
+                self._give(signal.name, _value(signal, message))
+                self.topics[signal.topic] = message_type_name(message)
         if changed:
             self._latch_cell()
 
+    @property
+    def _now(self) -> int:
+        """Return the virtual nanoseconds since the episode, or the recorded mission, began."""
+        return 0 if self._ros is None else self._ros.scheduler.time - self._origin
+
+    def _give(self, name: str, value: Any) -> None:
+        if self._judge is not None:
+            self._judge.give(name, value, self._now)
+
+    def _stepped(self) -> None:
+        """Close a step for the formulas; what it earns by them is known when the episode is over."""
+        if self._judge is None:
+            return
+        self._judge.steps.append(self._now)
+        if self._requirements.rewarding:
+            self._recorder.reward(0.0, {})
+            self._rewards += 1
+
     def _read(self, sensor: Sensor, value: Any) -> None:
+        if self._judge is not None and not sensor.categories:
+            self._give(sensor.name, value)
         self._bins[sensor.name] = sensor.bin(value)
         if sensor.to_learn:
             self.values.setdefault(sensor.name, []).append(float(value))
@@ -271,14 +376,14 @@ def message_type_name(message: Any) -> str:
     return f"{package}/msg/{kind.__name__}" if hasattr(kind, "__slots__") or hasattr(kind, "_type") else ""
 
 
-def _value(sensor: Sensor, message: Any) -> Any:
+def _value(sensor: Sensor | Signal, message: Any) -> Any:
     if callable(sensor.field):
         return sensor.field(message)
     try:
         return reading(message, sensor.field or "")
     except (AttributeError, IndexError, KeyError, TypeError) as problem:
         raise SettingsError(
-            f"Sensor {sensor.name!r}: a message on {sensor.topic} ({type(message).__name__}) has no "
+            f"{type(sensor).__name__} {sensor.name!r}: a message on {sensor.topic} ({type(message).__name__}) has no "
             f"field {sensor.field!r}. Mend the field in the marker."
         ) from problem
 

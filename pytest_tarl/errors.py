@@ -27,6 +27,10 @@ class RecordingError(TarlError):
     """A test run cannot be recorded: no reward, silent sensor, node that fails to start."""
 
 
+class RequirementError(AssertionError):
+    """A formula does not hold in an episode: a failed mission, told without a traceback."""
+
+
 class LogError(TarlError):
     """A node cannot be observed, or the log of its missions cannot be read."""
 

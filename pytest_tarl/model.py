@@ -216,6 +216,28 @@ class ListComparison:
     slices: tuple[Slice, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class FormulaWorld:
+    """A formula in one world: mean and least robustness, in how many episodes it was judged and violated.
+
+    `first` is the earliest time in an episode at which it was violated, in s.
+    """
+
+    robustness: float
+    least: float
+    episodes: int
+    violated: int
+    first: float | None
+
+
+@dataclass(frozen=True)
+class FormulaRow:
+    """What a formula came to by world: offline, online, repaired, nominal_repaired."""
+
+    formula: str
+    worlds: Mapping[str, FormulaWorld]
+
+
 @dataclass(frozen=True)
 class Comparison:
     """Everything that an on-line run found: what terminal, JSON result and report page are made from."""
@@ -240,4 +262,5 @@ class Comparison:
     target: str = ""  # the test as it is typed where pytest was started
     flags: tuple[str, ...] = ()  # options of the run that are not the default ones
     changes: Mapping[Cell, float] = field(default_factory=dict)  # how far on-line differs, by cell
+    formulas: tuple[FormulaRow, ...] = ()
     permanent: bool = False  # whether the drift is for good, so that the designed world is the old one

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from pytest_tarl.options import Options
 
 MARKER = (
-    "tarl(nodes, sensors, drifts={}, episodes=200, min_success=1.0, tolerance=None, judge=None, monitor=None): "
-    "a simulation test that TARL records off-line and compares on-line."
+    "tarl(nodes, sensors, drifts={}, episodes=200, min_success=1.0, tolerance=None, judge=None, monitor=None, "
+    "requires=[], signals=[], reward=None): a simulation test that TARL records off-line and compares on-line."
 )
 
 
@@ -50,6 +50,21 @@ def tarl_drift(request: pytest.FixtureRequest) -> Any:
     from pytest_tarl.repeating import drift_value
 
     return drift_value(request.node)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, object]:
+    """Judge the formulas of an episode when its body is over."""
+    episode: Any = pyfuncitem.funcargs.get("tarl")
+    if episode is None or pyfuncitem.get_closest_marker("tarl") is None:
+        return (yield)
+    try:
+        outcome = yield
+    except BaseException as ended:
+        episode.conclude(ended)
+        raise
+    episode.conclude(None)
+    return outcome
 
 
 @pytest.hookimpl(wrapper=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +12,12 @@ import numpy as np
 from pytest_tarl.design import adopted, adopting
 from pytest_tarl.designation import Designation
 from pytest_tarl.errors import FixtureError, RecordingError
+from pytest_tarl.formulas.signals import stored_signal
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.judgements import judgements, never_judged
 from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.sarsa import LEARNERS, Learner
 from pytest_tarl.learning.sequences import event_sequences
@@ -105,6 +107,9 @@ def record(
     ]
     if len(recorded.failures) > bearable:
         return RecordResult("", _unfinished(recorded, designation, len(seeds)), tuple(notes))
+    unjudged = never_judged(recorded.sample.judgements)
+    if unjudged:
+        return RecordResult("", _unjudged(unjudged[0], recorded.sample), tuple(notes))
     notes += _silent_lists(recorded.sample, plan)
     new = Fixture(
         test=test,
@@ -115,6 +120,7 @@ def record(
         sample=recorded.sample,
         sarsa=sarsa_tables(recorded, mean_flows(recorded.sample)),
         learner=recorded.learner,
+        signals=tuple(map(stored_signal, designation.requirements.signals)),
         design=adopting(adopted(path), drift, designation.drifts),
     )
     fixtures.save(new, path)
@@ -159,7 +165,8 @@ def run_episodes(
         progress(done, len(seeds), drift or "off-line")
         run = sound(episode.result())
         first = first or run.trace
-        samples.append(sample(run.trace, seed, run.passed, members))
+        counted = sample(run.trace, seed, run.passed, members)
+        samples.append(replace(counted, judgements=judgements(run.judged)))
         for one, chosen in zip(learners, members, strict=True):
             for sequence in event_sequences(run.trace, chosen):
                 one.learn(sequence, run.trace.cells)
@@ -217,6 +224,13 @@ def _unfinished(recorded: Recorded, designation: Designation, asked: int) -> str
         f"{designation.min_success:.1%}{stopped}), so this is not yet the software as designed and no utility was "
         f"written. The first failure: {recorded.failures[0].rstrip('.')}. Mend the node, or lower min_success on the "
         "marker."
+    )
+
+
+def _unjudged(formula: str, recorded: Sample) -> str:
+    return (
+        f"The formula {formula!r} can never be judged: a part of it is looked at later than any of the "
+        f"{recorded.episodes} episodes lasts, so no utility was written. Shorten its bounds, or let the episodes last."
     )
 
 

@@ -19,7 +19,7 @@ import pytest
 from _pytest.runner import runtestprotocol
 
 from pytest_tarl.designation import Designation, designation
-from pytest_tarl.errors import NodeError, SettingsError, StuckNodeError, TarlError
+from pytest_tarl.errors import NodeError, RequirementError, SettingsError, StuckNodeError, TarlError
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 from pytest_tarl.scenarios import without_drift
 from pytest_tarl.seeds import episode_seed
@@ -27,6 +27,7 @@ from pytest_tarl.seeds import episode_seed
 if TYPE_CHECKING:
     from pytest_tarl.bags.replay import Replay
     from pytest_tarl.episode import Tarl
+    from pytest_tarl.formulas.judging import Judged
     from pytest_tarl.instrumentation.sites import Positions
     from pytest_tarl.instrumentation.trace import Trace
 
@@ -56,6 +57,7 @@ class Episode:
     notes: tuple[str, ...] = ()
     values: Mapping[str, Sequence[float]] = field(default_factory=dict)
     replayed: bool = False  # a bag, to its end
+    judged: tuple[Judged, ...] = ()
 
 
 EPISODE = pytest.StashKey[Episode]()
@@ -99,6 +101,8 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         kind="embedded" if replay else kind,
         nodes=episode.designation.nodes,
         replay=replay,
+        requirements=episode.designation.requirements,
+        alone=EPISODE not in item.stash,
     )
     data = {path: text for path, text in episode.plan.overlay.items() if is_data(path)}
     try:
@@ -106,7 +110,8 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
             yield tarl
     finally:
         try:
-            episode.trace = recorder.finish()
+            episode.trace = tarl.rewarded(recorder.finish())
+            episode.judged = tarl.judged
             episode.topics, episode.values = dict(tarl.topics), tarl.values
             episode.problem = tarl.problem()
             episode.replayed = replay is not None and replay.done
@@ -123,7 +128,13 @@ def _replay(episode: Episode) -> Replay | None:
     from pytest_tarl.bags.replay import Replay
 
     marked = episode.designation
-    return Replay(opened_bag(episode.plan.bag), marked.sensors, marked.monitor, marked.judge)
+    return Replay(
+        opened_bag(episode.plan.bag),
+        marked.sensors,
+        marked.monitor,
+        marked.judge,
+        requirements=marked.requirements,
+    )
 
 
 def drift_value(item: pytest.Item) -> Any:
@@ -140,7 +151,7 @@ def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestRepor
     """Keep what ended a phase; a user's mistake becomes a sentence in the report."""
     if EPISODE in item.stash and item.stash[EPISODE].error is None:
         item.stash[EPISODE].error = error
-    if isinstance(error, TarlError) and report.failed:
+    if isinstance(error, (TarlError, RequirementError)) and report.failed:
         report.longrepr = str(error)
 
 
@@ -289,6 +300,7 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
         stuck=isinstance(episode.error, StuckNodeError) or _timed_out(episode.error),
         notes=episode.notes,
         values=episode.values,
+        judged=episode.judged,
     )
 
 

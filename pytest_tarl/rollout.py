@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
+from pytest_tarl.formulas.judging import Judged
 from pytest_tarl.instrumentation.trace import Trace
 
 AHEAD = 2  # episodes per worker that are begun before anybody asks for them
@@ -33,7 +34,8 @@ class EpisodeRun:
     """What came of it. `failure` says why the test failed, one line; `topics` are message types by sensor topic.
 
     `crashed` tells that the node ended it before its time, `stuck` that it did so by never waiting. `notes` are
-    what else the user should hear. `values` is what sensors read whose bins are yet to be learned.
+    what else the user should hear. `values` is what sensors read whose bins are yet to be learned. `judged` tells of
+    formulas.
 
     `broken` holds what is neither a pass nor a failed mission, such as an error in the test's own code, as text.
     """
@@ -48,6 +50,7 @@ class EpisodeRun:
     stuck: bool = False
     notes: tuple[str, ...] = ()
     values: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    judged: tuple[Judged, ...] = ()
 
 
 class Pending(Protocol):

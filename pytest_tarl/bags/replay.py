@@ -11,6 +11,7 @@ from pytest_tarl.bags.channels import Recorded
 from pytest_tarl.bags.converting import class_named, converted
 from pytest_tarl.bags.reading import Bag
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.messages.snapshot import type_name
 from pytest_tarl.ros.messages.values import FieldError
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 Judgement = float | Mapping[str, float]
 Monitor = Callable[["Moment"], Judgement]
 Judge = Callable[[Mapping[str, Any], Mapping[str, Any]], float]
+Close = Callable[[Judgement | None], None]
 NO_REWARDS = (
     "A bag holds no rewards: give the marker monitor=, a function that reads the newest recorded messages, "
     "moment.latest('/odom'), and returns the reward of a step."
@@ -40,6 +42,7 @@ class Moment:
     def __init__(self, bag: Bag) -> None:
         self.now = 0.0  # seconds since the bag began
         self.over = False  # whether this is the last step
+        self.observe: Callable[..., None] = _unheard  # gives values of signals that no topic holds
         self._bag = bag
         self._data: dict[str, bytes] = {}
         self._read: dict[str, Any] = {}
@@ -66,14 +69,20 @@ class Replay:
     """
 
     def __init__(
-        self, bag: Bag, sensors: Sequence[Sensor], monitor: Monitor | None, judge: Judge | None
+        self,
+        bag: Bag,
+        sensors: Sequence[Sensor],
+        monitor: Monitor | None,
+        judge: Judge | None,
+        requirements: Requirements = NOTHING_REQUIRED,
     ) -> None:
         self.bag = bag
         self.begun = self.done = False
         self.notes: list[str] = bag.notes
         self._sensed = {absolute(sensor.topic) for sensor in sensors if sensor.topic is not None}
+        self._sensed |= {absolute(topic) for topic in requirements.topics}
         self._moment = Moment(bag)
-        self._monitor = _made(monitor) if monitor is not None else _judging(judge, sensors)
+        self._monitor = _chosen(monitor, judge, sensors, requirements)
         self._refused: set[str] = set()
 
     def begin(self, ros: Ros) -> None:
@@ -82,9 +91,17 @@ class Replay:
         ros.bus.muted = True
 
     def run(
-        self, ros: Ros, dt: float, ready: Callable[[], bool], reward: Callable[[Judgement], None]
+        self,
+        ros: Ros,
+        dt: float,
+        ready: Callable[[], bool],
+        close: Close,
+        observe: Callable[..., None],
     ) -> None:
-        """Replay the mission in steps of `dt` seconds; each from when `ready` on, which is asked, has its reward."""
+        """Replay the mission in steps of `dt` seconds; each from when `ready` on, which is asked, is closed.
+
+        `close` gets the monitor's judgement, None where formulas judge. `observe` is what the monitor may tell.
+        """
         step = nanoseconds(dt)
         if step <= 0:
             raise SettingsError(
@@ -92,24 +109,23 @@ class Replay:
             )
         self.begun = True
         ros.bus.muted, moment, end = False, self._moment, self.bag.start + step
+        moment.observe = observe
         for message in self.bag.messages():
             while message.time >= end:
-                self._close(ros, end, ready, reward)
+                self._close(ros, end, ready, close)
                 end += step
             moment.take(message)
             self._deliver(ros, message)
         moment.over = True
-        self._close(ros, end, ready, reward)
+        self._close(ros, end, ready, close)
         self.done = True
         self._conclude(ros)
 
-    def _close(
-        self, ros: Ros, end: int, ready: Callable[[], bool], reward: Callable[[Judgement], None]
-    ) -> None:
+    def _close(self, ros: Ros, end: int, ready: Callable[[], bool], close: Close) -> None:
         ros.step(seconds(end - ros.scheduler.time))
         self._moment.now = seconds(end - self.bag.start)
         if ready():
-            reward(self._monitor(self._moment))
+            close(self._monitor(self._moment) if self._monitor is not None else None)
 
     def _deliver(self, ros: Ros, message: Recorded) -> None:
         place, channel = ros.bus.topic(message.topic), self.bag.channels[message.topic]
@@ -154,6 +170,28 @@ class Replay:
 
 def _sentence(problem: Exception) -> str:
     return f"nobody has defined {problem.args[0]}" if isinstance(problem, KeyError) else str(problem)
+
+
+def _unheard(**values: Any) -> None:
+    """Take values of signals where nobody follows them."""
+
+
+def _chosen(
+    monitor: Monitor | None, judge: Judge | None, sensors: Sequence[Sensor], requirements: Requirements
+) -> Monitor | None:
+    """Return what judges a mission: where formulas do, the monitor only observes."""
+    if requirements.rewarding:
+        return _watching(_made(monitor)) if monitor is not None else None
+    return _made(monitor) if monitor is not None else _judging(judge, sensors)
+
+
+def _watching(monitor: Monitor) -> Any:
+    """Return a monitor whose judgement is left to the formulas."""
+
+    def watch(moment: Moment) -> None:
+        monitor(moment)
+
+    return watch
 
 
 def _made(monitor: Any) -> Monitor:

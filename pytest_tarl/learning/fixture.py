@@ -5,7 +5,8 @@ without pickle, written to a temporary file and renamed; the same episodes give 
 
 FORMAT_VERSION history:
 1  Columns of float64.
-2  Sums as logarithms (packing.py), a sixth of the size; Σ|f| per episode and site.
+2  Sums as logarithms (packing.py), a sixth of the size; Σ|f| per episode and site. Where there are formulas also
+   `formulas` and `signals` in the header and the columns `robustness` and `lost`, which older versions pass over.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ import numpy as np
 
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.files import advice_on, make_room, write_atomically
+from pytest_tarl.formulas.signals import Signal
 from pytest_tarl.learning.archive import DamagedError, numbers, read_arrays
 from pytest_tarl.learning.packing import (
     narrowed,
@@ -34,7 +36,7 @@ from pytest_tarl.learning.packing import (
     unpacked_table,
 )
 from pytest_tarl.learning.soundness import check
-from pytest_tarl.learning.tables import Floats, Sample
+from pytest_tarl.learning.tables import Floats, Judgements, Sample
 from pytest_tarl.model import SitePlace, TaintList
 from pytest_tarl.sensors import Sensor
 
@@ -56,6 +58,7 @@ class Fixture:
     sarsa: tuple[Floats, ...]
     learner: str = "sarsa"  # what learned it, a key of sarsa.LEARNERS
     design: tuple[str, ...] = ()  # drifts that are the design: changes for good
+    signals: tuple[Signal, ...] = ()  # that formulas may name and a message holds
 
 
 def save(fixture: Fixture, path: Path) -> None:
@@ -74,6 +77,9 @@ def save(fixture: Fixture, path: Path) -> None:
     }
     if fixture.design:
         header["design"] = list(fixture.design)
+    if fixture.sample.judgements is not None:
+        header["formulas"] = list(fixture.sample.judgements.formulas)
+        header["signals"] = [asdict(signal) for signal in fixture.signals]
     header["digest"] = _digest(header, columns)
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
@@ -172,6 +178,8 @@ def _columns(fixture: Fixture) -> dict[str, np.ndarray[Any, Any]]:
         "total": sample.total,
         "steps": narrowed(sample.steps),
     }
+    if sample.judgements is not None:
+        columns |= {"robustness": sample.judgements.robustness, "lost": sample.judgements.lost}
     columns |= packed_chain(sample.chain)
     for i, one in enumerate(sample.lists):
         columns |= packed_list(f"list{i}", one) | packed_table(f"sarsa{i}", fixture.sarsa[i])
@@ -200,6 +208,7 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
         seed=header["seed"],
         learner=header["learner"],
         design=tuple(header.get("design", ())),
+        signals=tuple(Signal(**one) for one in header.get("signals", ())),
         sensors=sensors,
         lists=lists,
         topics=header["topics"],
@@ -212,9 +221,17 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
             part_names=tuple(header["parts"]),
             chain=unpacked_chain(columns),
             lists=tuple(unpacked_list(f"list{i}", columns, len(one.sites)) for i, one in enumerate(lists)),
+            judgements=_judgements(header, columns),
         ),
         sarsa=tuple(unpacked_table(f"sarsa{i}", columns) for i in range(len(lists))),
     )
+
+
+def _judgements(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, Any]]) -> Judgements | None:
+    formulas = tuple(header.get("formulas", ()))
+    if not formulas:
+        return None
+    return Judgements(formulas, columns["robustness"], columns["lost"])
 
 
 def _check_header(header: Mapping[str, Any]) -> None:
@@ -226,6 +243,7 @@ def _check_header(header: Mapping[str, Any]) -> None:
         *header["topics"].values(),
         *header["parts"],
         *header.get("design", []),
+        *header.get("formulas", []),
     ]
     plain += [text for one in header["lists"] for text in (one["source"], one["sink"])]
     plain += [
@@ -235,7 +253,9 @@ def _check_header(header: Mapping[str, Any]) -> None:
         for name in ("id", "path", "code", "dependence", "role", "qualname")
     ]
     lines = [header["seed"], *(site["line"] for one in header["lists"] for site in one["sites"])]
-    listed = isinstance(header["parts"], list) and isinstance(header.get("design", []), list)
+    listed = all(
+        isinstance(header.get(name, []), list) for name in ("parts", "design", "formulas", "signals")
+    )
     if (
         not listed
         or not all(type(text) is str for text in plain)

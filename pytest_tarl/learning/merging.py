@@ -8,6 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from pytest_tarl.learning.judgements import together
 from pytest_tarl.learning.tables import END, START, Chain, Edges, Floats, Ints, ListSample, Sample, Visits
 from pytest_tarl.sensors import Cell
 
@@ -41,6 +42,7 @@ def merge(samples: Sequence[Sample], cells: Iterable[Cell] = ()) -> Sample:
         part_names=names,
         chain=_stack([place.chain() for place in places], "cell", "next_cell"),
         lists=tuple(_merge_list(places, i, len(seeds)) for i in range(len(samples[0].lists))),
+        judgements=together(samples, picked),
     )
 
 

@@ -22,11 +22,24 @@ def check(sample: Sample, sensors: int, tables: Sequence[Floats]) -> None:
     _same_length("episodes", sample.episodes, sample.passed, sample.total, sample.steps)
     if sample.passed.dtype != bool or not np.isfinite(sample.total).all() or (sample.steps < 0).any():
         raise DamagedError("its episodes have no result, no total or no steps")
+    _check_judgements(sample)
     _check_chain(sample.chain, sample)
     for one, table in zip(sample.lists, tables, strict=True):
         _check_list(one, sample)
         if table.shape != (len(sample.cells), one.width):
             raise DamagedError("a learned table is not one of its cells and sites")
+
+
+def _check_judgements(sample: Sample) -> None:
+    judged = sample.judgements
+    if judged is None:
+        return
+    shape = sample.episodes, len(judged.formulas)
+    for column in (judged.robustness, judged.lost):
+        if column.shape != shape or column.dtype != np.float64 or np.isinf(column).any():
+            raise DamagedError("what its formulas came to is not told of its episodes")
+    if len(set(judged.formulas)) < len(judged.formulas):
+        raise DamagedError("it names a formula twice")
 
 
 def _check_chain(chain: Chain, sample: Sample) -> None:

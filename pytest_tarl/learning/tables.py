@@ -73,6 +73,18 @@ class ListSample:
 
 
 @dataclass(frozen=True)
+class Judgements:
+    """What formulas came to; columns of shape (episodes, formulas).
+
+    Robustness is NaN where a formula was not judged, `lost` is when it was lost, in s, NaN where it was not.
+    """
+
+    formulas: tuple[str, ...]  # sorted
+    robustness: Floats
+    lost: Floats
+
+
+@dataclass(frozen=True)
 class Sample:
     """Episodes in order of their seeds. `total` and `passed` have shape (episodes,); cells are sorted."""
 
@@ -84,6 +96,7 @@ class Sample:
     part_names: tuple[str, ...]
     chain: Chain
     lists: tuple[ListSample, ...]
+    judgements: Judgements | None = None  # where there are formulas
 
     @property
     def episodes(self) -> int:

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from time import monotonic
 
 from pytest_tarl.learning import localize
-from pytest_tarl.model import Comparison, Guard, OperandEffect, SearchTrace, SitePlace
+from pytest_tarl.learning.judgements import with_worlds
+from pytest_tarl.model import Comparison, FormulaRow, Guard, OperandEffect, SearchTrace, SitePlace
 from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.accepting import Accepted, Examiner, Refused
 from pytest_tarl.repairing.delivering import attempts, delivered, withheld
@@ -129,6 +130,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         totals["nominal_repaired"] = nominal or totals["offline"]
     comparison = replace(
         order.comparison,
+        formulas=_formulas(order, accepted),
         culprits=localize.culprits(
             _ranked(order),
             found.effects or {},
@@ -146,6 +148,15 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
     )
     episodes = {"search": found.episodes, "acceptance": examiner.spent}
     return Repaired(comparison, accepted, episodes, found.interrupted)
+
+
+def _formulas(order: Order, accepted: Accepted | None) -> tuple[FormulaRow, ...]:
+    """Return what formulas came to, in the episodes that an accepted repair was tested on, too."""
+    if accepted is None:
+        return order.comparison.formulas
+    worlds = {"repaired": accepted.acceptance.drifted, "nominal_repaired": accepted.acceptance.nominal}
+    judged = {name: [one.judged for one in outcomes] for name, outcomes in worlds.items()}
+    return with_worlds(order.comparison.formulas, judged)
 
 
 def _ended(examiner: Examiner, found: _Findings) -> Refused:

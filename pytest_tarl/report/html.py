@@ -16,7 +16,7 @@ from typing import Any
 from pytest_tarl.errors import TarlError
 from pytest_tarl.files import advice_on, write_atomically
 from pytest_tarl.model import Comparison, ListComparison
-from pytest_tarl.report import words
+from pytest_tarl.report import formulas, words
 from pytest_tarl.report.figures import MOST_ROWS, plane, reward_curves, utility_figure
 from pytest_tarl.report.slices import chart
 
@@ -58,6 +58,7 @@ def render(comparison: Comparison, *, title: str | None = None) -> str:
         "capitalize_first": lambda text: text[:1].upper() + text[1:],
         "plain": lambda value: typeset(f"{value:.6g}"),
         "p": words.p_value,
+        "margin": lambda value: typeset(formulas.margin(value)),
         "typeset": typeset,
         "parts": parts,
         "code": lambda text: highlight.code_html(words.one_line(text)),
@@ -149,6 +150,7 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
         "command": words.repeat(comparison),
         "next_steps": list(words.next_steps(comparison)),
         "lost": lambda part: words.lost_words(comparison, part),
+        "formulas": formulas.page_rows(comparison),
         "place": lambda site: f"{site.path}:{site.line}",
     }
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from pytest_tarl.errors import TarlError
 from pytest_tarl.files import advice_on, write_atomically
-from pytest_tarl.model import Comparison, Culprit, Repair, SitePlace, Slice
+from pytest_tarl.model import Comparison, Culprit, FormulaRow, Repair, SitePlace, Slice
 from pytest_tarl.report.regions import boxes
 from pytest_tarl.report.words import atr, expected
 from pytest_tarl.sensors import Cell, Sensor
@@ -67,6 +67,7 @@ def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, A
         ],
         "culprits": [_culprit(culprit) for culprit in comparison.culprits],
         "repair": _repair(repair) if repair else None,
+        **({"formulas": [_formula(row) for row in comparison.formulas]} if comparison.formulas else {}),
     }
 
 
@@ -129,6 +130,20 @@ def _culprit(culprit: Culprit) -> dict[str, Any]:
     ]
     evidence = {"score": _finite(culprit.score), "method": culprit.method, "operands": operands}
     return {**_place(culprit.site), **evidence}
+
+
+def _formula(row: FormulaRow) -> dict[str, Any]:
+    worlds = {
+        name: {
+            "robustness": _finite(world.robustness),
+            "least": _finite(world.least),
+            "episodes": world.episodes,
+            "violated": world.violated,
+            "first_violation": _finite(world.first),
+        }
+        for name, world in row.worlds.items()
+    }
+    return {"formula": row.formula, "worlds": {name: worlds.get(name) for name in WORLDS}}
 
 
 def _repair(repair: Repair) -> dict[str, Any]:

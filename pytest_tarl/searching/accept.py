@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from math import ceil, log, log1p
 from statistics import fmean
 
+from pytest_tarl.formulas.judging import Judged
 from pytest_tarl.learning.intervals import difference_bounds
 from pytest_tarl.model import Reason
 
@@ -24,10 +25,11 @@ PASS_RATE_LOSS = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """One episode: total reward, and whether the test passed."""
+    """One episode: total reward, whether the test passed, and what formulas came to."""
 
     total: float
     passed: bool
+    judged: tuple[Judged, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

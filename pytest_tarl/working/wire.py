@@ -12,6 +12,7 @@ import numpy as np
 
 from pytest_tarl import errors
 from pytest_tarl.errors import TarlError
+from pytest_tarl.formulas.judging import Judged
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 
@@ -70,6 +71,7 @@ def run_message(run: EpisodeRun) -> bytes:
         "stuck": run.stuck,
         "notes": run.notes,
         "values": dict(run.values),
+        "judged": run.judged,
     }
     return _joined(head, arrays)
 
@@ -87,6 +89,7 @@ def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
         thread=arrays.get("thread"),
     )
     told = {name: head[name] for name in TOLD} | {"notes": tuple(head["notes"])}
+    told["judged"] = tuple(Judged(*one) for one in head["judged"])
     return EpisodeRun(plan=plan, trace=trace, **told)
 
 

@@ -91,7 +91,10 @@ MISTAKES: dict[str, Any] = {
     "time backwards": (lambda t: t.step(-0.1), "tarl.step got -0.1"),
     "no time": (lambda t: t.step(float("nan")), "tarl.step got nan"),
     "a message without topic": (lambda t: t.message(SimpleNamespace(data=1), None), "takes the name first"),
-    "a sensor that is not declared": (lambda t: t.observe(y=1), "no sensor is named 'y'; .* x, wet"),
+    "a sensor that is not declared": (
+        lambda t: t.observe(y=1),
+        "no sensor and no signal is named 'y'; .* x, wet",
+    ),
     "a measurement for flags": (lambda t: t.observe(wet=0.5), "low, high and bins for a measurement"),
     "no number for a sensor": (lambda t: t.observe(x="far"), "'x' got 'far', which is no number"),
     "a message without the field": (lambda t: t.message("/odom", SimpleNamespace()), "has no field 'data'"),

@@ -1,0 +1,125 @@
+"""What a marker says of formulas: the signals that they may name, what is required, what the reward is."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.formulas.parsing import Formula, formula
+from pytest_tarl.formulas.signals import NANOSECONDS, Signal
+from pytest_tarl.options import number_within
+from pytest_tarl.sensors import Sensor
+
+ARGUMENTS = ("requires", "signals", "reward", "robustness_cap", "lasts")
+CAP = 100.0
+LONGEST = 1e9  # seconds that an episode may last
+
+
+@dataclass(frozen=True)
+class Requirements:
+    """The formulas of a test. `cap` bounds the reward where it is by robustness, `lasts` is in virtual seconds."""
+
+    signals: tuple[Signal, ...] = ()
+    formulas: tuple[Formula, ...] = ()
+    names: tuple[str, ...] = ()  # that formulas may use: sensors that hold numbers, and signals
+    rewarding: bool = False
+    cap: float = CAP
+    followed: bool = False  # whether signals are followed from the beginning of an episode
+
+    @property
+    def topics(self) -> frozenset[str]:
+        """Return the topics that signals are read from."""
+        return frozenset(signal.topic for signal in self.signals if signal.topic is not None)
+
+
+NOTHING_REQUIRED = Requirements()
+
+
+def requirements(where: str, given: Mapping[str, Any], sensors: Sequence[Sensor]) -> Requirements:
+    """Check those arguments of a marker that are about formulas. Raises SettingsError."""
+    signals = _signals(where, given.get("signals", ()), sensors)
+    names = (*(sensor.name for sensor in sensors if not sensor.categories), *(one.name for one in signals))
+    formulas = _formulas(where, given.get("requires", ()), names, sensors)
+    rewarding = _rewarding(where, given.get("reward"), formulas)
+    if "robustness_cap" in given and not rewarding:
+        raise SettingsError(
+            f'{where}: robustness_cap goes with reward="robustness", and does nothing without it.'
+        )
+    cap = number_within(where, "robustness_cap", given.get("robustness_cap", CAP), float, 1e-9, 1e9)
+    _check_lasting(where, given.get("lasts"), formulas)
+    followed = "requires" in given or "signals" in given
+    return Requirements(signals, formulas, names, rewarding, cap, followed)
+
+
+def _signals(where: str, given: Any, sensors: Sequence[Sensor]) -> tuple[Signal, ...]:
+    if isinstance(given, str) or not isinstance(given, Sequence):
+        raise SettingsError(
+            f'{where}: signals lists names, or Signal(…) for fields of messages, such as signals=["gap", '
+            f'Signal("speed", topic="/odom", field="twist.twist.linear.x")], got {given!r}.'
+        )
+    signals = tuple(Signal(one) if isinstance(one, str) else one for one in given)
+    odd = next((one for one in signals if not isinstance(one, Signal)), None)
+    if odd is not None:
+        raise SettingsError(f"{where}: signals lists names and Signal(…), got {odd!r}.")
+    names = [*(sensor.name for sensor in sensors), *(one.name for one in signals)]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise SettingsError(
+            f"{where}: the name {twice!r} is used twice among sensors and signals; give each its own."
+        )
+    return signals
+
+
+def _formulas(
+    where: str, given: Any, names: tuple[str, ...], sensors: Sequence[Sensor]
+) -> tuple[Formula, ...]:
+    if isinstance(given, str) or not isinstance(given, Sequence):
+        raise SettingsError(
+            f'{where}: requires lists formulas, such as requires=["always (gap > 0.3)"], got {given!r}.'
+        )
+    for text in given:
+        check_texts(where, text, sensors)
+    return tuple(dict.fromkeys(formula(where, text, names) for text in given))
+
+
+def check_texts(where: str, text: Any, sensors: Sequence[Sensor]) -> None:
+    """Raise SettingsError where a formula names a sensor that holds texts."""
+    for sensor in sensors:
+        if sensor.categories and isinstance(text, str) and re.search(rf"\b{sensor.name}\b", text):
+            raise SettingsError(
+                f"{where}: the formula {text!r} names {sensor.name!r}, a sensor of texts; formulas compare "
+                f"numbers: declare a signal that tells what is asked, such as Signal('is_{sensor.categories[0]}', "
+                f"topic=…, field=lambda message: message.data == {sensor.categories[0]!r})."
+            )
+
+
+def _rewarding(where: str, given: Any, formulas: Sequence[Formula]) -> bool:
+    if given is None:
+        return False
+    if given != "robustness":
+        raise SettingsError(
+            f'{where}: reward must be "robustness", or be left out and given by tarl.reward; got {given!r}.'
+        )
+    if not formulas:
+        raise SettingsError(
+            f'{where}: reward="robustness" is that of the formulas in requires=[…], and there is none: add one.'
+        )
+    return True
+
+
+def _check_lasting(where: str, lasts: Any, formulas: Sequence[Formula]) -> None:
+    if lasts is None:
+        return
+    seconds = number_within(where, "lasts", lasts, float, 1e-9, LONGEST)
+    for one in formulas:
+        from pytest_tarl.formulas.reach import unjudged
+
+        problem = unjudged(one.tree, round(seconds * NANOSECONDS))
+        if problem:
+            raise SettingsError(
+                f"{where}: the formula {one.text!r} can never be judged: {problem}, and no episode lasts longer than "
+                f"{seconds:g} s (lasts={lasts!r}). Shorten its bounds."
+            )

@@ -1,0 +1,158 @@
+"""rtamt's grammar: words of a formula, and its tree."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from pytest_tarl.formulas import quietly  # noqa: F401
+
+# isort: split
+
+from antlr4.error.ErrorListener import ErrorListener
+from antlr4.InputStream import InputStream
+from rtamt.antlr.parser.stl.LtlLexer import LtlLexer
+from rtamt.exception.exception import RTAMTException
+from rtamt.syntax.ast.parser.stl.specification_parser import StlAst
+from rtamt.syntax.node.abstract_node import AbstractNode
+from rtamt.syntax.node.ltl.conjunction import Conjunction
+from rtamt.syntax.node.ltl.constant import Constant
+from rtamt.syntax.node.ltl.disjunction import Disjunction
+from rtamt.syntax.node.ltl.fall import Fall
+from rtamt.syntax.node.ltl.iff import Iff
+from rtamt.syntax.node.ltl.implies import Implies
+from rtamt.syntax.node.ltl.neg import Neg
+from rtamt.syntax.node.ltl.next import Next
+from rtamt.syntax.node.ltl.previous import Previous
+from rtamt.syntax.node.ltl.rise import Rise
+from rtamt.syntax.node.ltl.strong_next import StrongNext
+from rtamt.syntax.node.ltl.strong_previous import StrongPrevious
+from rtamt.syntax.node.ltl.variable import Variable
+from rtamt.syntax.node.ltl.xor import Xor
+
+from pytest_tarl.formulas.semantics import CONNECTIVES, TIMED, bounds, operands
+
+COUNTING = (Rise, Fall, Next, Previous, StrongNext, StrongPrevious)
+WORDS = (
+    "always", "eventually", "until", "unless", "once", "historically", "since", "not", "and", "or", "implies", "abs",
+    "sqrt", "exp", "pow",
+)  # fmt: skip
+HINTS = (
+    (r"(true|false)\b", "booleans are 1 and -1, so write (delivered > 0)"),
+    (r"=[^=]", "two values are compared with =="),
+    (r"[&|]", "write and, or"),
+)  # by what stands where a text cannot be understood any more
+MINUS = "write (0 - gap) for -gap"
+_PLACE = re.compile(r"^(?:RTAMT Exception: )?\d+:(?P<column>\d+): Syntax ERROR, ")
+
+
+class ReadingError(Exception):
+    """A text is no formula; says why, without a full stop."""
+
+
+class _Strict(ErrorListener):  # type: ignore[misc]
+    """Raise where antlr would print to the terminal and go on."""
+
+    def syntaxError(self, *told: Any) -> None:  # noqa: N802
+        """Say which characters no formula has; the fifth argument is antlr's message."""
+        msg: str = told[4]
+        raise ReadingError(f"{msg.partition(': ')[2]} means nothing in a formula")
+
+
+def words(text: str) -> tuple[list[str], list[str]]:
+    """Return the names in a text and its other words. Raises ReadingError for characters that no formula has."""
+    lexer = LtlLexer(InputStream(text))
+    lexer.removeErrorListeners()
+    lexer.addErrorListener(_Strict())
+    tokens = lexer.getAllTokens()
+    names = [token.text for token in tokens if token.type == LtlLexer.Identifier]
+    return names, [token.text for token in tokens if token.type != LtlLexer.Identifier]
+
+
+def tree(text: str, names: Sequence[str]) -> Any:
+    """Return the tree of a formula over those names, in the connectives of `semantics`. Raises ReadingError."""
+    ast = StlAst()
+    for name in names:
+        ast.declare_var(name, "float")
+    ast.spec = text
+    try:
+        ast.parse()
+    except RTAMTException as problem:
+        raise ReadingError(_reason(text, str(problem))) from None
+    except AttributeError:  # rtamt reads the bounds of `unless` without looking whether there are any
+        raise ReadingError("unless needs bounds, such as unless[0:10]") from None
+    except (ValueError, KeyError, RecursionError) as problem:
+        raise ReadingError(f"{problem}".strip("'") or "it is nested too deeply") from None
+    if len(ast.specs) != 1:
+        raise ReadingError("it holds more than one formula: join them with and, or list them one by one")
+    return _connected(ast.specs[0])
+
+
+def nodes(node: Any) -> Iterator[Any]:
+    """Yield a node and all below it."""
+    yield node
+    for child in node.children:
+        yield from nodes(child)
+
+
+def atoms(node: Any) -> Iterator[Any]:
+    """Yield the comparisons of a formula, and what stands in the place of one."""
+    if not isinstance(node, CONNECTIVES):
+        yield node
+        return
+    for child in operands(node):
+        yield from atoms(child)
+
+
+def signals(node: Any) -> tuple[str, ...]:
+    """Return the names that a formula is about, in order of appearance."""
+    return tuple(dict.fromkeys(one.var for one in nodes(node) if isinstance(one, Variable)))
+
+
+def _reason(text: str, problem: str) -> str:
+    place = _PLACE.search(problem)
+    if place is None:
+        return problem.removeprefix("RTAMT Exception: ").rstrip()
+    column = int(place["column"])
+    rest = text[column:].strip()
+    if not rest:
+        return "it ends too early"
+    negated = text[:column].endswith("-")
+    hint = next((hint for start, hint in HINTS if re.match(start, rest)), MINUS if negated else "")
+    return f"it cannot be understood from {rest!r} on{hint and '; '}{hint}"
+
+
+def _connected(node: AbstractNode) -> Any:
+    """Check a tree and write iff and xor by other connectives. Raises ReadingError."""
+    if isinstance(node, COUNTING):
+        raise ReadingError(
+            "next, prev, rise and fall count samples, and steps may differ in length: say it in seconds, such as "
+            "eventually[0:0.1] (…)"
+        )
+    if isinstance(node, (Iff, Xor)):
+        left, right = (_connected(child) for child in node.children[:2])
+        if isinstance(node, Iff):
+            return Conjunction(Implies(left, right), Implies(right, left))
+        return Disjunction(Conjunction(left, Neg(right)), Conjunction(Neg(left), right))
+    if not isinstance(node, CONNECTIVES):
+        return _numeric(node)
+    if isinstance(node, TIMED):
+        _check(node)
+    node.children = [_connected(child) for child in operands(node)]
+    return node
+
+
+def _check(node: Any) -> None:
+    begin, end = bounds(node)
+    if not 0 <= begin <= end:
+        raise ReadingError(f"the bounds [{begin / 1e9:g}:{end / 1e9:g}] s must rise and not be negative")
+
+
+def _numeric(node: Any) -> Any:
+    """Return an atom. Raises ReadingError where formulas are compared, or nothing is."""
+    if any(isinstance(one, (*CONNECTIVES, *COUNTING, Iff, Xor)) for one in nodes(node)):
+        raise ReadingError("it compares or computes with a formula: only numbers can be compared")
+    if isinstance(node, Constant) or not signals(node):
+        raise ReadingError("a part of it names no signal, so nothing could ever change it")
+    return node

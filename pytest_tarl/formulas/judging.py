@@ -1,0 +1,154 @@
+"""The formulas of one episode: which hold, what each is worth, and what the reward of a step is by them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from pytest_tarl.errors import RecordingError
+from pytest_tarl.formulas.parsing import Formula, formula
+from pytest_tarl.formulas.signals import NANOSECONDS, Timeline
+
+if TYPE_CHECKING:
+    from pytest_tarl.formulas.robustness import Course
+
+LARGEST = 1e9  # a robustness beyond it, of an infinite range for instance, counts as that
+NEGLIGIBLE = 1e-12  # a margin that is shown as 0
+
+
+class Judged(NamedTuple):
+    """What a formula came to in an episode: robustness, above 0 where it holds, and when it was lost, in s.
+
+    Robustness is NaN where the episode ended before the formula could be judged; `lost` is NaN where it was not lost.
+    """
+
+    formula: str
+    robustness: float
+    lost: float = math.nan
+
+    @property
+    def violated(self) -> bool:
+        """Tell whether the formula was judged and does not hold."""
+        return self.robustness <= 0
+
+
+class Judge:
+    """Follows the signals of one episode and judges its formulas when it is over."""
+
+    def __init__(self, names: Sequence[str], formulas: Sequence[Formula]) -> None:
+        self.names = tuple(names)
+        self.timeline = Timeline(names)
+        self.formulas = list(formulas)
+        self.steps: list[int] = []  # when each step ended, in ns since the episode began
+        self._courses: dict[str, Course] = {}
+
+    def give(self, name: str, value: Any, time: int) -> None:
+        """Let a signal have a value from an instant on. Raises SettingsError for what is no number."""
+        self.timeline.give(name, value, time)
+
+    def require(self, text: str) -> None:
+        """Add a formula. Raises SettingsError for what is none."""
+        added = formula("tarl.require", text, self.names)
+        if added not in self.formulas:
+            self.formulas.append(added)
+
+    def conclude(self, end: int) -> tuple[Judged, ...]:
+        """Judge all formulas. Raises RecordingError where a signal was never given or no time has passed."""
+        self._check(end)
+        return tuple(self._judged(one, end) for one in self.formulas)
+
+    def unjudged(self, end: int) -> str:
+        """Return a sentence on a formula that the episode was too short for; empty where there is none."""
+        from pytest_tarl.formulas.reach import unjudged
+
+        for one in self.formulas:
+            problem = unjudged(one.tree, end)
+            if problem:
+                return (
+                    f"The formula {one.text!r} can never be judged: {problem}, and the episode lasts "
+                    f"{end / NANOSECONDS:g} s. Shorten its bounds, or let the episode last."
+                )
+        return ""
+
+    def rewards(self, end: int, cap: float) -> list[float]:
+        """Return the reward of each step: the increments of the least robustness so far, within ±cap.
+
+        They add up to its value at the end. An episode that ended before its signals were known is worth -cap.
+        """
+        ends = [*self.steps[:-1], end] if self.steps else []
+        if not ends:
+            return []
+        if not self.formulas or end == 0 or self._silent() is not None:
+            return [0.0] * (len(ends) - 1) + [-cap]
+        from pytest_tarl.formulas.robustness import running
+
+        courses = [self._course(one) for one in self.formulas]
+        least = [min(values) for values in zip(*(running(one, ends) for one in courses), strict=True)]
+        capped = [max(-cap, min(cap, value)) for value in least]
+        return [after - before for before, after in zip([0.0, *capped], capped, strict=False)]
+
+    def violation(self, judged: Sequence[Judged]) -> str:
+        """Say which formulas do not hold, the one that was lost first in the first line; empty where all hold."""
+        broken = sorted((one for one in judged if one.violated), key=lambda one: one.lost)
+        return "\n".join(self._sentence(one) for one in broken)
+
+    def _judged(self, one: Formula, end: int) -> Judged:
+        from pytest_tarl.formulas.reach import unjudged
+        from pytest_tarl.formulas.robustness import lost_at, robustness
+
+        if unjudged(one.tree, end):
+            return Judged(one.text, math.nan)
+        course = self._course(one)
+        value = max(-LARGEST, min(LARGEST, robustness(course, end)))
+        if value > 0:
+            return Judged(one.text, value)
+        lost = lost_at(course, sorted({*self.timeline.instants(one.signals, end), *self.steps, end}))
+        return Judged(one.text, value, (end if lost is None else lost) / NANOSECONDS)
+
+    def _sentence(self, judged: Judged) -> str:
+        names = next(one.signals for one in self.formulas if one.text == judged.formula)
+        values = self.timeline.at(names, round(judged.lost * NANOSECONDS))
+        told = ", ".join(f"{name} = {value:.6g}" for name, value in values.items())
+        return (
+            f"requirement violated at {judged.lost:g} s: {judged.formula} "
+            f"(robustness {margin(judged.robustness)}; {told})"
+        )
+
+    def _course(self, one: Formula) -> Course:
+        from pytest_tarl.formulas.robustness import course
+
+        if one.text not in self._courses:
+            self._courses[one.text] = course(one, self.timeline.samples(one.signals))
+        return self._courses[one.text]
+
+    def _silent(self) -> tuple[Formula, str] | None:
+        for one in self.formulas:
+            name = self.timeline.missing(one.signals)
+            if name is not None:
+                return one, name
+        return None
+
+    def _check(self, end: int) -> None:
+        if self.formulas and end == 0:
+            raise RecordingError(
+                "No virtual time passed, so no formula can be judged: call tarl.step(dt) in each simulation step; "
+                "bounds are seconds of it."
+            )
+        silent = self._silent()
+        if silent is not None:
+            one, name = silent
+            raise RecordingError(
+                f"The formula {one.text!r} needs the signal {name!r}, which never had a value: call "
+                f"tarl.observe({name}=…) in each step, or look at its topic and field in the marker."
+            )
+
+
+def margin(robustness: float) -> str:
+    """Write a robustness for people."""
+    return f"{0.0 if abs(robustness) < NEGLIGIBLE else robustness:.4g}"
+
+
+def as_mapping(judged: Sequence[Judged]) -> Mapping[str, Judged]:
+    """Return what formulas came to by their text."""
+    return {one.formula: one for one in judged}

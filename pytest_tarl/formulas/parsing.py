@@ -1,0 +1,91 @@
+"""A formula as it is written in a marker or given to `tarl.require`, checked; what is wrong is told in a sentence."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from importlib.util import find_spec
+from typing import Any
+
+from pytest_tarl.errors import SettingsError
+
+NEWEST = (3, 12)  # for which the parser that rtamt is built on can be imported
+EXAMPLE = 'such as "always (gap > 0.3)"'
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A formula that can be judged: its text, the signals that it names, its tree in nodes of rtamt."""
+
+    text: str
+    signals: tuple[str, ...]
+    tree: Any = field(compare=False, repr=False)
+
+
+def formula(where: str, text: Any, names: Sequence[str]) -> Formula:
+    """Read a formula over those signals. Raises SettingsError; `where` begins its sentence."""
+    if not isinstance(text, str) or not text.strip():
+        raise SettingsError(f"{where}: a formula is a text {EXAMPLE}, got {text!r}.")
+    require_rtamt(where)
+    from pytest_tarl.formulas.grammar import ReadingError
+
+    try:
+        return _formula(" ".join(text.split()), tuple(names))
+    except ReadingError as problem:
+        raise SettingsError(f"{where}: the formula {text!r} cannot be used: {problem}.") from None
+    except _UnknownError as problem:
+        raise SettingsError(f"{where}: the formula {text!r} names {problem}") from None
+
+
+def require_rtamt(where: str) -> None:
+    """Raise SettingsError where formulas cannot be read here."""
+    if sys.version_info[:2] > NEWEST:
+        raise SettingsError(
+            f"{where}: formulas are read by rtamt, which runs on Python 3.10 to 3.12, and this is Python "
+            f"{sys.version_info[0]}.{sys.version_info[1]}: run these tests there, or judge by tarl.reward and assert."
+        )
+    if find_spec("rtamt") is None:
+        raise SettingsError(
+            f'{where}: formulas are read by rtamt, which is not installed: run pip install "tarl[stl]".'
+        )
+
+
+class _UnknownError(Exception):
+    """A formula names what is no signal."""
+
+
+@lru_cache(maxsize=256)
+def _formula(text: str, names: tuple[str, ...]) -> Formula:
+    from pytest_tarl.formulas import grammar
+    from pytest_tarl.formulas.reach import unjudged
+
+    plain = re.sub(r"!=(?!=)", "!==", text)  # as in Python
+    used, others = grammar.words(plain)
+    reserved = next((name for name in names if name in others), None)
+    if reserved is not None:
+        raise grammar.ReadingError(f"{reserved} is a word of the language, so no signal may have that name")
+    unknown = next((name for name in used if name not in names), None)
+    if unknown is not None:
+        raise _UnknownError(_unknown(unknown, names, grammar.WORDS))
+    tree = grammar.tree(plain, names)
+    problem = unjudged(tree)
+    if problem:
+        raise grammar.ReadingError(problem)
+    return Formula(text, grammar.signals(tree), tree)
+
+
+def _unknown(name: str, names: Sequence[str], words: Sequence[str]) -> str:
+    if "/" in name and name.partition("/")[0] in names:
+        return f"{name!r}, which is no signal; write a division with spaces, {name.replace('/', ' / ')}."
+    close = difflib.get_close_matches(name, [*names, *words], 1)
+    if close:
+        return f"{name!r}, which is no signal; did you mean {close[0]!r}?"
+    known = ", ".join(names) or "none is declared"
+    return (
+        f"{name!r}, which is no signal ({known}): declare it in the marker, signals=[{name!r}], and give its value by "
+        f"tarl.observe({name.partition('.')[0]}=…)."
+    )

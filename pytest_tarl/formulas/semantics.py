@@ -1,0 +1,183 @@
+"""What a formula is worth: rtamt's dense-time evaluation, with the readings in which rtamt differs from its own text.
+
+Time is counted in whole nanoseconds, as on the virtual clock. Signals are constant from one change to the next, and so
+is every subformula. Where a window reaches beyond the end of what is known, a subformula keeps the value that it had
+last, and before the beginning the value that it had first; so values are finite wherever signals are.
+
+Differences from rtamt 0.4 in dense time: `until` and `since` need their left side up to the instant before only, as in
+discrete time; timed ones with a lower bound above zero do not let the left side be false before it; a comparison at
+equality has the sign of its truth; an empty window is no infinity; units of bounds are converted the right way.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from pytest_tarl.formulas import quietly  # noqa: F401
+
+# isort: split
+
+from rtamt.semantics.stl.dense_time.offline import ast_visitor as dense
+from rtamt.semantics.stl.dense_time.offline import intersection
+from rtamt.syntax.node.ltl.always import Always
+from rtamt.syntax.node.ltl.conjunction import Conjunction
+from rtamt.syntax.node.ltl.disjunction import Disjunction
+from rtamt.syntax.node.ltl.eventually import Eventually
+from rtamt.syntax.node.ltl.historically import Historically
+from rtamt.syntax.node.ltl.implies import Implies
+from rtamt.syntax.node.ltl.neg import Neg
+from rtamt.syntax.node.ltl.once import Once
+from rtamt.syntax.node.ltl.since import Since
+from rtamt.syntax.node.ltl.until import Until
+from rtamt.syntax.node.stl.timed_always import TimedAlways
+from rtamt.syntax.node.stl.timed_eventually import TimedEventually
+from rtamt.syntax.node.stl.timed_historically import TimedHistorically
+from rtamt.syntax.node.stl.timed_once import TimedOnce
+from rtamt.syntax.node.stl.timed_since import TimedSince
+from rtamt.syntax.node.stl.timed_until import TimedUntil
+
+from pytest_tarl.formulas.signals import Samples
+
+__all__ = [
+    "BOOLEAN", "CONNECTIVES", "FUTURE", "PAST", "TIMED", "TRUTH", "Always", "Atoms", "Conjunction", "Disjunction",
+    "Eventually", "Implies", "Neg", "Skeleton", "TimedAlways", "TimedEventually", "bounds", "operands",
+]  # fmt: skip
+
+TRUTH = 1e-300  # robustness of a comparison that holds at equality; a formula above 0 is satisfied
+UNITS = {"": 10**9, "s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
+
+BOOLEAN = (Neg, Conjunction, Disjunction, Implies)
+FUTURE = (Always, Eventually, Until, TimedAlways, TimedEventually, TimedUntil)
+PAST = (Historically, Once, Since, TimedHistorically, TimedOnce, TimedSince)
+TIMED = (TimedAlways, TimedEventually, TimedUntil, TimedHistorically, TimedOnce, TimedSince)
+CONNECTIVES = BOOLEAN + FUTURE + PAST
+STRICT = ("<", ">", "!=")  # comparisons that do not hold at equality
+
+
+def operands(node: Any) -> tuple[Any, ...]:
+    """Return the children of a node; rtamt lists them twice for some."""
+    binary = isinstance(node, (Conjunction, Disjunction, Implies, Until, TimedUntil, Since, TimedSince))
+    return tuple(node.children[: 2 if binary else 1])
+
+
+def bounds(node: Any) -> tuple[int, int]:
+    """Return the window of a timed operator in nanoseconds."""
+    return round(node.begin * UNITS[node.begin_unit]), round(node.end * UNITS[node.end_unit])
+
+
+class Atoms(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
+    """Values of comparisons, and of numbers that stand for a formula."""
+
+    def __init__(self, signals: Mapping[str, Samples]) -> None:
+        self._signals = signals
+
+    def visitVariable(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
+        """Return a signal."""
+        return self._signals[node.var]
+
+    def visitConstant(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
+        """Return a constant."""
+        return [[0, node.val]]
+
+    def visitPredicate(self, node: Any, *args: Any, **kwargs: Any) -> Samples:  # noqa: N802
+        """Return a comparison, never zero: at equality its sign is its truth. Raises ArithmeticError for NaN."""
+        equal = -TRUTH if str(node.operator) in STRICT else TRUTH
+        found: Samples = super().visitPredicate(node, *args, **kwargs)
+        if any(math.isnan(value) for _, value in found):
+            raise ArithmeticError("infinity minus infinity is no number")
+        return [[time, value or equal] for time, value in found]
+
+
+class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
+    """Values of a formula whose atoms are known up to `end`, by their identity."""
+
+    def __init__(self, atoms: Mapping[int, Samples], end: float) -> None:
+        self._atoms = atoms
+        self._end = end
+
+    def visit(self, node: Any, *args: Any, **kwargs: Any) -> Samples:
+        """Return the value of a node over time, nothing of it beyond the end."""
+        known = self._atoms.get(id(node))
+        return known if known is not None else self._clipped(super().visit(node, *args, **kwargs))
+
+    def time_unit_transformer(self, node: Any) -> tuple[int, int]:
+        """Return the window of a timed operator, where rtamt asks for it."""
+        return bounds(node)
+
+    def visitUntil(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
+        """Return the largest of min(right then, left until just before)."""
+        return _until(*self._both(node))
+
+    def visitSince(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
+        """Return the mirror image of until."""
+        return _since(*self._both(node))
+
+    def visitTimedUntil(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
+        """Return until with a window: left up to where it begins, then until within what is left of it."""
+        (left, right), (begin, end) = self._both(node), bounds(node)
+        within = dense.and_operation(
+            dense.eventually_timed_operation(right, 0, end - begin), _until(left, right)
+        )
+        if not begin:
+            return within  # type: ignore[no-any-return]
+        held = dense.always_timed_operation(left, 0, begin - 1)
+        return dense.and_operation(held, dense.eventually_timed_operation(within, begin, begin))  # type: ignore[no-any-return]
+
+    def visitTimedSince(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
+        """Return the mirror image of until with a window."""
+        (left, right), (begin, end) = self._both(node), bounds(node)
+        within = dense.and_operation(_once(right, 0, end - begin), _since(left, right))
+        if not begin:
+            return within  # type: ignore[no-any-return]
+        held = dense.historically_timed_operation(left, 0, begin - 1)
+        return dense.and_operation(held, _once(self._clipped(within), begin, begin))  # type: ignore[no-any-return]
+
+    def visitTimedOnce(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
+        """Return the largest value in a window of the past."""
+        return _once(self.visit(operands(node)[0]), *bounds(node))
+
+    def visitTimedHistorically(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
+        """Return the least value in a window of the past."""
+        sample, (begin, end) = self.visit(operands(node)[0]), bounds(node)
+        return _begun(dense.historically_timed_operation(sample, begin, end), sample)
+
+    def _both(self, node: Any) -> tuple[Samples, Samples]:
+        left, right = operands(node)
+        return self.visit(left), self.visit(right)
+
+    def _clipped(self, samples: Samples) -> Samples:
+        last = len(samples)
+        while last > 1 and samples[last - 1][0] > self._end:
+            last -= 1
+        return samples[:last]
+
+
+def _until(left: Samples, right: Samples) -> Samples:
+    pairs = intersection.intersection(left, right, intersection.split)[0]
+    found: Samples = []
+    following = -math.inf
+    for time, (held, reached) in reversed(pairs):
+        following = max(reached, min(held, following))
+        found.append([time, following])
+    return found[::-1]
+
+
+def _since(left: Samples, right: Samples) -> Samples:
+    pairs = intersection.intersection(left, right, intersection.split)[0]
+    found: Samples = []
+    before = -math.inf
+    for time, (held, reached) in pairs:
+        before = max(reached, min(held, before))
+        found.append([time, before])
+    return found
+
+
+def _once(sample: Samples, begin: int, end: int) -> Samples:
+    return _begun(dense.once_timed_operation(sample, begin, end), sample)
+
+
+def _begun(samples: Samples, operand: Samples) -> Samples:
+    """Put the operand's first value where a window lies wholly before the beginning, which rtamt makes infinite."""
+    return [[time, operand[0][1] if i == 0 else value] for i, (time, value) in enumerate(samples)]

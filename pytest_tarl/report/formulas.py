@@ -1,0 +1,60 @@
+"""Formulas in a report: a row each, with robustness by world and the first violation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from pytest_tarl.model import Comparison, FormulaRow, FormulaWorld
+from pytest_tarl.report import words
+
+WORLDS = {
+    "offline": "off-line",
+    "online": "on-line",
+    "repaired": "repaired",
+    "nominal_repaired": "designed world repaired",
+}
+NEGLIGIBLE = 1e-12  # a robustness that is shown as 0
+
+
+def lines(comparison: Comparison) -> Iterator[str]:
+    """Yield a line a formula for the terminal; those that are violated on-line come first."""
+    for row in sorted(comparison.formulas, key=lambda one: not violated(one)):
+        yield f"{row.formula}: {', '.join(_worlds(row)) or 'never judged'}"
+
+
+def violated(row: FormulaRow) -> bool:
+    """Tell whether any on-line episode violates the formula."""
+    world = row.worlds.get("online")
+    return world is not None and world.violated > 0
+
+
+def page_rows(comparison: Comparison) -> list[dict[str, Any]]:
+    """Return what the page's table shows."""
+    return [
+        {
+            "formula": row.formula,
+            "violated": violated(row),
+            "worlds": {name: row.worlds.get(name) for name in WORLDS},
+            "first": row.worlds["online"].first if "online" in row.worlds else None,
+        }
+        for row in comparison.formulas
+    ]
+
+
+def margin(value: float) -> str:
+    """Write a robustness; one that is 0 but for the truth of a comparison is 0."""
+    return words.amount(0.0 if abs(value) < NEGLIGIBLE else value)
+
+
+def _worlds(row: FormulaRow) -> Iterator[str]:
+    for name, label in WORLDS.items():
+        world = row.worlds.get(name)
+        if world is not None:
+            yield f"{label} {margin(world.robustness)}{_broken(world)}"
+
+
+def _broken(world: FormulaWorld) -> str:
+    if world.first is None:
+        return ""
+    return f" (violated in {world.violated} of {world.episodes}, first at {world.first:g} s)"
