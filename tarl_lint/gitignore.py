@@ -7,14 +7,37 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+DIRECTORIES: Final = None  # the component that stands for any number of directories, none too
+Component = re.Pattern[str] | None
+
 
 @dataclass(frozen=True)
 class Pattern:
     """One line of a .gitignore file, for paths relative to its directory."""
 
-    regex: re.Pattern[str]
+    components: tuple[Component, ...]
     negated: bool
     directories_only: bool
+
+    def matches(self, path: str) -> bool:
+        """Tell whether a relative path is meant. Takes time in proportion to path times pattern at most."""
+        names = path.split("/")
+        at = place = 0
+        retry: tuple[int, int] | None = None  # where the last `**` goes on with one directory more
+        while place < len(names):
+            component = self.components[at] if at < len(self.components) else _NOTHING
+            if component is DIRECTORIES:
+                retry = (at, place + 1)
+                at += 1
+            elif component.fullmatch(names[place]):
+                at, place = at + 1, place + 1
+            elif retry is None:
+                return False
+            else:
+                at, place = retry
+                retry = (at, place + 1)
+                at += 1
+        return at == len(self.components)
 
 
 @dataclass(frozen=True)
@@ -31,7 +54,7 @@ class Ignore:
             return None
         relative = path[len(prefix) :]
         for pattern in reversed(self.patterns):
-            if (is_directory or not pattern.directories_only) and pattern.regex.fullmatch(relative):
+            if (is_directory or not pattern.directories_only) and pattern.matches(relative):
                 return not pattern.negated
         return None
 
@@ -58,12 +81,13 @@ def _pattern(line: str) -> Pattern | None:
     text = text.removesuffix("/")
     if not text:
         return None
-    anywhere = "/" not in text
     try:
-        regex = re.compile(("(?:.*/)?" if anywhere else "") + _translate(text.removeprefix("/")), re.DOTALL)
+        components = _components(text.removeprefix("/"))
     except re.error:
         return None
-    return Pattern(regex, negated, directories_only)
+    if "/" not in text and components[0] is not DIRECTORIES:
+        components = (DIRECTORIES, *components)
+    return Pattern(components, negated, directories_only)
 
 
 _MEMBER: Final = r"(?:\\.|[^]\\])"
@@ -71,21 +95,50 @@ _PIECES: Final = (
     r"(?P<dirs>(?:^|(?<=/))\*\*+/)|(?P<rest>/\*\*+$)|(?P<star>\*+)|(?P<one>\?)|\\(?P<escaped>.)"
     rf"|\[(?P<negated>[!^]?)(?P<set>(?:\]|(?<=[!^]){_MEMBER}|(?![!^]){_MEMBER}){_MEMBER}*)\]|(?P<plain>.)"
 )
-_FIXED: Final = {"dirs": "(?:.*/)?", "rest": "/.*", "star": "[^/]*", "one": "[^/]"}
+_NOTHING: Final = re.compile("(?!)")
+_ANYTHING: Final = re.compile(".*", re.DOTALL)
 
 
-def _translate(text: str) -> str:
-    """Write a pattern as a regular expression: `*` and `?` stay inside a path component, `**` does not."""
-    return "".join(_piece(match) for match in re.finditer(_PIECES, text, re.DOTALL))
+def _components(text: str) -> tuple[Component, ...]:
+    """Return what a pattern says of each directory on the way and of the name at its end.
+
+    `*` and `?` stay inside a component, `**` stands for several.
+    """
+    found: list[Component] = []
+    pieces: list[str] = [""]  # what stands between the stars of the present component
+    for match in re.finditer(_PIECES, text, re.DOTALL):
+        kind = match.lastgroup
+        if kind == "dirs":
+            found.append(DIRECTORIES)
+        elif kind == "rest":
+            return (*found, _component(pieces), DIRECTORIES, _ANYTHING)
+        elif (match["escaped"] or match["plain"]) == "/":
+            found.append(_component(pieces))
+            pieces = [""]
+        elif kind == "star":
+            pieces.append("")
+        else:
+            pieces[-1] += _piece(match)
+    return (*found, _component(pieces))
+
+
+def _component(pieces: Sequence[str]) -> re.Pattern[str]:
+    """Return an expression for a name. Each piece is taken where it comes first, which no later one can regret."""
+    first, *rest = pieces
+    if not rest:
+        return re.compile(first, re.DOTALL)
+    middle = (f"(?=(?P<p{n}>.*?{piece}))(?P=p{n})" for n, piece in enumerate(rest[:-1]) if piece)
+    return re.compile(f"{first}{''.join(middle)}.*{rest[-1]}", re.DOTALL)
 
 
 def _piece(match: re.Match[str]) -> str:
-    kind, text = match.lastgroup or "", match[0]
-    if kind == "set":
+    """Write what stands for one character as a regular expression."""
+    text = match[0]
+    if match["set"] is not None:
         return f"(?!/)[{'^' if match['negated'] else ''}{_members(match['set'])}]"
     if text in ("[", "\\"):
         return "(?!)"  # never closed, or nothing escaped: git matches nothing with it
-    return _FIXED.get(kind) or re.escape(match["escaped"] or text)
+    return "." if text == "?" else re.escape(match["escaped"] or text)
 
 
 def _members(text: str) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from importlib import import_module
 from typing import Final, cast
 
-from tarl_lint.report.line import Line, View
+from tarl_lint.report.line import Line, View, unbroken
 from tarl_lint.runner import Result
 
 FORMATS: Final[Mapping[str, str]] = {
@@ -22,9 +22,11 @@ FORMATS: Final[Mapping[str, str]] = {
     "mermaid": "tarl_lint.report.mermaid:report",
 }
 FOR_PEOPLE: Final = frozenset({"text", "concise", "github"})
+LINE_BY_LINE: Final = FOR_PEOPLE | {"dot", "mermaid"}  # a line means something there, whatever a topic holds
 
 
 def render(name: str, result: Result, view: View) -> Iterator[Line]:
     """Return the lines of a report in one of the `FORMATS`; only that format's file is imported."""
     module, _, function = FORMATS[name].partition(":")
-    return cast("Iterator[Line]", getattr(import_module(module), function)(result, view))
+    lines = cast("Iterator[Line]", getattr(import_module(module), function)(result, view))
+    return map(unbroken, lines) if name in LINE_BY_LINE else lines

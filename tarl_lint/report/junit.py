@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 from tarl_lint.model import Finding
 from tarl_lint.report.flows import taint_list
-from tarl_lint.report.line import ASCII, Line, View, location, plain
+from tarl_lint.report.line import ASCII, Line, View, location, plain, unbroken
 from tarl_lint.runner import UNREADABLE, Result
 
 _ILLEGAL: Final = r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"  # in XML 1.0
@@ -53,8 +53,9 @@ def _errors(result: Result) -> Iterator[_Case]:
 
 def _case(finding: Finding, result: Result) -> _Case:
     name = f"{finding.code} {finding.message}"
+    head = plain(unbroken(((f"{location(finding.span)}: {finding.message}", ""),)))
     steps = taint_list(finding.flow, View(glyphs=ASCII)) if finding.flow else ()
-    text = "\n".join([f"{location(finding.span)}: {finding.message}", *map(plain, steps)])
+    text = "\n".join([head, *map(plain, steps)])
     if finding.status == "accepted":
         return _Case(finding.span.path, name, "skipped", "accepted in the baseline", text)
     outcome = "failure" if finding.code in result.failing else "passed"

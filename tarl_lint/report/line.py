@@ -49,6 +49,13 @@ def plain(line: Line) -> str:
     return "".join(text for text, _ in line)
 
 
+def unbroken(line: Line) -> Line:
+    """Return a line in which what would end it is written as an escape."""
+    if not any("\n" in text or "\r" in text for text, _ in line):
+        return line
+    return tuple((text.replace("\n", "\\n").replace("\r", "\\r"), style) for text, style in line)
+
+
 def location(span: Span) -> str:
     """Write where a span begins, so that terminals and editors can go there."""
     return f"{one_line(span.path)}:{span.line}:{span.column}"

@@ -20,8 +20,12 @@ _COLOURS: Final[Mapping[Style, str]] = {
     "control": "yellow",
     "quiet": "bright_black",
 }
-# What is linted must not steer the terminal: names of files and code may hold anything.
-_CONTROLS: Final = {n: f"\\x{n:02x}" for n in (*range(32), *range(127, 160)) if chr(n) not in "\n\t"}
+# What is linted must not steer the terminal: names of files, topics and code may hold anything.
+_STEERING: Final = (0x061C, *range(0x200E, 0x2010), *range(0x2028, 0x202F), *range(0x2066, 0x206A), 0xFEFF)
+_CONTROLS: Final = {
+    **{n: f"\\x{n:02x}" for n in (*range(32), *range(127, 160)) if chr(n) not in "\n\t"},
+    **{n: f"\\u{n:04x}" for n in _STEERING},  # the order of letters, ends of lines
+}
 
 
 def wants_colour(stream: TextIO, environment: Mapping[str, str] = os.environ) -> bool:

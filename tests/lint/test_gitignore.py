@@ -86,3 +86,12 @@ def test_git_itself_agrees(tmp_path: Path, lines: list[str]):
     )  # fmt: skip
     ours = [n for n in names if ignored(f"{tmp_path}/{n}", [parse(str(tmp_path), lines)], is_directory=False)]
     assert ours == asked.stdout.split()
+
+
+@given(
+    st.lists(st.sampled_from(["*a", "**/", "?*", "[ab]*", "*", "a*/", "*b*"]), min_size=10, max_size=60),
+    st.lists(st.sampled_from(["a" * 60, "a", "ab" * 30]), min_size=1, max_size=40),
+)
+def test_no_pattern_takes_for_ever(pieces: list[str], names: list[str]):
+    """Expressions that try every way never end on these: `*a*a*a…b` against a name of many letters a."""
+    parse("/top", ["".join(pieces) + "c"]).verdict(f"/top/{'/'.join(names)}", is_directory=False)
