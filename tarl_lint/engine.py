@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from typing import Final
 
 from tarl_lint.config import Config
+from tarl_lint.deep_stack import with_deep_stack
 from tarl_lint.evidence import Evidence
 from tarl_lint.memory import without_collection
 from tarl_lint.model import Finding, Flow
@@ -18,7 +17,6 @@ from tarl_lint.source import Module
 from tarl_lint.taint import Tracer
 from tarl_lint.valueflow.link import Linker
 
-MAX_RECURSION: Final = 5_000
 HAZARDS: Final = (tarl201, tarl202, tarl203, tarl204)
 
 
@@ -37,15 +35,22 @@ def examine(
     if one_sided(modules, config):
         return (), {}, False
     failures: dict[str, Exception] | None = {} if isolate else None
-    with without_collection(), deep_recursion():
-        machine = Linker(modules, config, failures, thorough=False)
-        machine.link()
-        tracer = Tracer(machine)
-        flows = tracer.flows()
-        found = (*findings(flows), *hazards(tracer, flows, config))
-        tracer.texts.release()
-        machine.release()
-    return found, failures or {}, machine.hurried
+    with without_collection():
+        found, hurried = with_deep_stack(lambda: _found(modules, config, failures))
+    return found, failures or {}, hurried
+
+
+def _found(
+    modules: Sequence[Module], config: Config, failures: dict[str, Exception] | None
+) -> tuple[tuple[Finding, ...], bool]:
+    machine = Linker(modules, config, failures, thorough=False)
+    machine.link()
+    tracer = Tracer(machine)
+    flows = tracer.flows()
+    found = (*findings(flows), *hazards(tracer, flows, config))
+    tracer.texts.release()
+    machine.release()
+    return found, machine.hurried
 
 
 def analyse(modules: Sequence[Module], config: Config) -> tuple[Flow, ...]:
@@ -57,11 +62,14 @@ def trace(
     modules: Sequence[Module], config: Config, *, thorough: bool = True
 ) -> tuple[Linker, tuple[Flow, ...]]:
     """Return the flows and the machine that found them, which can be asked more when it was thorough."""
-    with without_collection(), deep_recursion():
+
+    def linked() -> tuple[Linker, tuple[Flow, ...]]:
         machine = Linker(relevant(modules, config), config, thorough=thorough)
         machine.link()
-        flows = Tracer(machine).flows()
-    return machine, flows
+        return machine, Tracer(machine).flows()
+
+    with without_collection():
+        return with_deep_stack(linked)
 
 
 def findings(flows: Sequence[Flow]) -> tuple[Finding, ...]:
@@ -83,14 +91,3 @@ def hazards(tracer: Tracer, flows: Sequence[Flow], config: Config) -> tuple[Find
     evidence = Evidence(tracer, flows)
     found = {finding for rule in wanted for finding in rule.findings(evidence)}
     return tuple(sorted(found, key=lambda f: (f.span, f.code, f.message)))
-
-
-@contextmanager
-def deep_recursion() -> Iterator[None]:
-    """Allow calls as deep as calls and expressions of real programs are nested: each takes several of ours."""
-    before = sys.getrecursionlimit()
-    sys.setrecursionlimit(max(before, MAX_RECURSION))
-    try:
-        yield
-    finally:
-        sys.setrecursionlimit(before)

@@ -77,7 +77,7 @@ class Origins:
         """Tell whether a value is a field of a topic's messages, or a constant from before the first."""
         fields = 0
         for obj in value.pts:
-            root = obj.root()
+            root = obj.whole
             if root in self.topics:
                 if topic not in self.topics[root] or _dotted(obj) != path:
                     return False
@@ -142,7 +142,7 @@ class Holding:
         found: list[tuple[str, bool]] = []
         for name, value in self.values.items():
             for obj in value.pts:
-                if obj.root() not in origins.topics:
+                if obj.whole not in origins.topics:
                     continue
                 rest = _rest(_dotted(obj), path)
                 if rest is None or not origins.unchanged(value, topic, _dotted(obj)):

@@ -47,10 +47,14 @@ class Allocation(Machine):
             older = self.objects["lib", (obj.key, "older")] = Obj("lib", (obj.key, "older"))
             older.many = True
         self._copy_fields(obj, older)
+        without: dict[frozenset[Obj], frozenset[Obj]] = {}  # many hold the same objects
         for key in holders:
             value = self.store.get(key)
             if value is not None:
-                self.store.put(key, Value(value.deps, (value.pts - {obj}) | {older}, value.consts))
+                pts = without.get(value.pts)
+                if pts is None:
+                    pts = without[value.pts] = (value.pts - {obj}) | {older}
+                self.store.put(key, Value(value.deps, pts, value.consts))
 
     def _holds(self, key: tuple[Obj, str], obj: Obj) -> bool:
         value = self.store.get(key)

@@ -9,6 +9,8 @@ from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.invocation import Arguments
 from tarl_lint.valueflow.values import BOTTOM, NONE, Nodes, Obj, Value, join, join_all, pointer
 
+MAX_ALIKE = 12  # objects of libraries whose methods are called one by one; of more, all at once
+
 
 class Calls(Activations):
     """Resolves and performs calls."""
@@ -67,12 +69,21 @@ class Calls(Activations):
             return self._call_member(base, *targets[0], function.name, arguments, frame, expr)
         result, deltas = BOTTOM, []
         guard = self.guard(base.deps, frame, ("dispatch", expr.slot))
+        alike = frozenset(o for o, m in targets if o.kind == "lib" and not self._held_by(o, m, function.name))
+        if len(alike) > MAX_ALIKE:
+            targets = [(o, m) for o, m in targets if o not in alike]
         for number, (obj, member) in enumerate(targets):
             self.store.push()
             self.guards.append((guard, str(number)))
             value = self._call_member(base, obj, member, function.name, arguments, frame, expr)
             self.guards.pop()
             result = join(result, value)
+            deltas.append(self.store.pop())
+        if len(alike) > MAX_ALIKE:
+            self.store.push()
+            receivers = Value(base.deps, alike)
+            first = in_order(alike)[0]
+            result = join(result, self.call_method(receivers, first, function.name, arguments, frame, expr))
             deltas.append(self.store.pop())
         self.merge(deltas)
         return result
@@ -89,7 +100,7 @@ class Calls(Activations):
     ) -> Value:
         if obj.kind == "ext":
             return self.call_library(f"{obj.name}.{name}", arguments, frame, expr)
-        callables = frozenset(o for o in member.pts if self.callable_held(o) and o.info != (obj, name))
+        callables = self._held_by(obj, member, name)
         if len(callables) == 1 and (method := next(iter(callables))).kind == "bound":
             return self.call_object(method, arguments, frame, expr, base.deps)
         if callables:
@@ -103,6 +114,10 @@ class Calls(Activations):
         stored = self.store.get((obj, name))
         pts = frozenset(o for o in stored.pts if o.kind == "lib") if stored is not None else frozenset[Obj]()
         return Value(stored.deps if stored is not None else NONE, pts)
+
+    def _held_by(self, obj: Obj, member: Value, name: str) -> frozenset[Obj]:
+        """Return the functions that an object holds as an attribute, not methods of its own that are not ours."""
+        return frozenset(o for o in member.pts if self.callable_held(o) and o.info != (obj, name))
 
     def callable_held(self, obj: Obj) -> bool:
         """Tell whether what an attribute holds can be called: a function, or an object whose class says how."""

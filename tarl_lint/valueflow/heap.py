@@ -71,7 +71,7 @@ class Heap(Userdata):
         if stored is not None:
             if obj.kind == "class":
                 return self.bind_class(stored, obj)
-            if obj.root().kind == "message" and not self.written_here(obj, name):
+            if obj.whole.kind == "message" and not self.written_here(obj, name):
                 return join(stored, pointer(obj.sub(name)))  # each message brings its own
             return stored
         return self.default(obj, name)

@@ -58,7 +58,7 @@ class Joining(Contents):
         owner = key[0]
         return (
             owner.kind == "lib"
-            and owner.root().info is BY_CLASS
+            and owner.whole.info is BY_CLASS
             and not value.deps
             and all(o.parent is owner and not o.fields for o in value.pts)
             and self.content(owner) is BOTTOM
@@ -72,7 +72,7 @@ class Joining(Contents):
         owner, name = key
         if owner.kind in ("frame", "module", "class", "closure"):
             return None
-        if owner.kind != "message" and self.store.get((owner.root(), BORN)) is None:
+        if owner.kind != "message" and self.store.get((owner.whole, BORN)) is None:
             return None  # the object does not exist there
         return self.content(owner) if name == "*" else self.default(owner, name)
 

@@ -28,28 +28,33 @@ def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]
     kept: Delta = {}
     inside: dict[Obj, list[tuple[str, Value]]] = {}
     pending = [*returned, *(local & given)]
+    followed: set[frozenset[Obj]] = set()  # many values point to the same objects
     for key, value in delta.items():
         owner = key[0]
         if owner is frame and not frame.captured:
             continue
         kept[key] = value
-        root = owner.root()
+        root = owner.whole
         if root in local:
             inside.setdefault(root, []).append((key[1], value))
-        else:
+        elif value.pts and value.pts not in followed:
+            followed.add(value.pts)
             pending += value.pts
     seen: set[Obj] = set()
     while pending:
-        root = pending.pop().root()
+        root = pending.pop().whole
         if root not in seen:
             seen.add(root)
             for _, value in inside.get(root, ()):
-                pending += value.pts
-            pending += _about(root.info)
+                if value.pts not in followed:
+                    followed.add(value.pts)
+                    pending += value.pts
+            if root.info is not None:
+                pending += _about(root.info)
     gone = local - seen
     if not gone:
         return kept
-    return {k: v for k, v in kept.items() if k[0].root() not in gone}
+    return {k: v for k, v in kept.items() if k[0].whole not in gone}
 
 
 def together(objects: Iterable[Obj]) -> Set[Obj]:
@@ -57,7 +62,7 @@ def together(objects: Iterable[Obj]) -> Set[Obj]:
     found: set[Obj] = set()
     pending = [*objects]
     while pending:
-        obj = pending.pop().root()
+        obj = pending.pop().whole
         if obj not in found:
             found.add(obj)
             pending += _about(obj.info)

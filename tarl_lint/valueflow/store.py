@@ -176,19 +176,27 @@ class Store:
             self.hidden[-1][key] = self.now.get(key)
         layer[key] = self.now[key] = value
         owner, name = key
-        owner.fields[name] = None
         if self.insides and owner.kind != "frame":
             self.insides.clear()
+        noted = owner.fields.get(name)
         laden = bool(value.deps)
-        for obj in value.pts:
+        if noted is None or (value.pts is not noted and not value.pts <= noted):
+            owner.fields[name] = value.pts
+            laden = self._note(key, value.pts) or laden
+        if laden and not owner.laden:
+            self.shared.load(owner, self.root)
+
+    def _note(self, key: Key, held: frozenset[Obj]) -> bool:
+        """Have objects know where they are held; tell whether data is in one of them."""
+        owner, laden = key[0], False
+        for obj in held:
             if obj.kind == "lib":
                 obj.holders[key] = None
             if obj.laden:
                 laden = True
             elif not owner.laden:
                 obj.inside[owner] = None
-        if laden and not owner.laden:
-            self.shared.load(owner, self.root)
+        return laden
 
     def doubt(self, obj: Obj) -> None:
         """Remember that this run found no data inside an object."""

@@ -20,6 +20,7 @@ NUMBERS = count()  # of objects in the order in which they are made
 MAX_CONSTS = 4
 MAX_TEXTS = 24  # names of topics, mostly: a table of them may be long
 MAX_DEPTH = 6  # of objects embedded in objects
+MAX_ELEMENTS = 2  # elements of elements that are told apart: beyond, their indices give a power of objects
 MESSAGES = frozenset(["message", "goal"])  # objects that bring data with them
 
 
@@ -29,6 +30,7 @@ class Obj:
     __slots__ = (
         "defined",
         "depth",
+        "elements",
         "fields",
         "holders",
         "info",
@@ -39,6 +41,7 @@ class Obj:
         "many",
         "name",
         "number",
+        "outermost",
         "parent",
         "subs",
     )  # fmt: skip
@@ -49,9 +52,12 @@ class Obj:
         self.key = key
         self.name = name
         self.parent = parent
+        self.outermost: Obj | None = parent.whole if parent is not None else None
         self.depth: int = parent.depth + 1 if parent is not None else 0
+        self.elements: int = parent.elements + 1 if parent is not None and name.startswith("[") else 0
         self.many: bool = parent.many if parent is not None else False
-        self.fields: dict[str, None] = {}  # every field ever stored, in order
+        # every field ever stored, in order, with objects that are known to be held there (`holders`, `inside`)
+        self.fields: dict[str, frozenset[Obj]] = {}
         self.subs: dict[str, Obj] = {}
         self.holders: dict[tuple[Obj, str], None] = {}  # where pointers to it were stored
         self.info: object = None
@@ -63,7 +69,7 @@ class Obj:
 
     def sub(self, name: str) -> Obj:
         """Return the object embedded under a field; deep nesting folds into one."""
-        if self.depth >= MAX_DEPTH:
+        if self.depth >= MAX_DEPTH or (self.elements >= MAX_ELEMENTS and name.startswith("[")):
             return self
         found = self.subs.get(name)
         if found is None:
@@ -77,9 +83,10 @@ class Obj:
         outer = self.parent.path()
         return f"{outer}.{self.name}" if outer else self.name
 
-    def root(self) -> Obj:
-        """Return the outermost object."""
-        return self if self.parent is None else self.parent.root()
+    @property
+    def whole(self) -> Obj:
+        """Return the outermost object that it is part of."""
+        return self.outermost or self
 
     def release(self) -> None:
         """Let go of what may lead back here."""
@@ -89,6 +96,7 @@ class Obj:
         self.subs.clear()
         self.holders.clear()
         self.inside.clear()
+        self.fields.clear()
         self.info = None
 
     def __repr__(self) -> str:

@@ -4,7 +4,8 @@ from textwrap import dedent
 import pytest
 
 from tarl_lint.config import Config
-from tarl_lint.engine import HAZARDS, deep_recursion, findings, hazards
+from tarl_lint.deep_stack import with_deep_stack
+from tarl_lint.engine import HAZARDS, findings, hazards
 from tarl_lint.onesided import one_sided
 from tarl_lint.rules import tarl101, tarl102
 from tarl_lint.source import Module, parse
@@ -47,11 +48,10 @@ def skipped(*texts, **settings):
 
 
 def found(modules):
-    with deep_recursion():
-        machine = Linker(modules, Config(), thorough=False)
-        machine.link()
-        tracer = Tracer(machine)
-        flows = tracer.flows()
+    machine = Linker(modules, Config(), thorough=False)
+    with_deep_stack(machine.link)
+    tracer = Tracer(machine)
+    flows = tracer.flows()
     return (*findings(flows), *hazards(tracer, flows, Config()))
 
 

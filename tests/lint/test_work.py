@@ -10,11 +10,13 @@ import pytest
 from tarl_lint import engine
 from tarl_lint.cli import main
 from tarl_lint.config import Config
+from tarl_lint.deep_stack import with_deep_stack
 from tarl_lint.source import Module
 from tarl_lint.taint import Tracer
 from tarl_lint.valueflow.bounds import LEISURE, MAX_GENERATIONS, PATIENCE
 from tarl_lint.valueflow.graph import MAX_EDGES
 from tarl_lint.valueflow.link import Linker
+from tarl_lint.valueflow.values import Obj
 
 MOST = 2.5 * PATIENCE  # statements that any program may take
 
@@ -24,8 +26,7 @@ def work(text: str, *others: str, thorough: bool = False) -> Linker:
     machine = Linker(
         [*modules, Module("node.py", "node", text, ast.parse(text))], Config(), thorough=thorough
     )
-    with engine.deep_recursion():
-        machine.link()
+    with_deep_stack(machine.link)
     return machine
 
 
@@ -247,3 +248,17 @@ def test_loops_in_loops_take_a_bounded_number_of_passes():
     machine = work(callback(f"{nested}{' ' * 17}x = x + 1\n"))
     assert machine.total < MOST
     assert len(Tracer(machine).flows()) == 1
+
+
+def test_elements_of_elements_of_what_nobody_knows_are_few():
+    deep = "".join(f"        part = (part[{n % 2}], part[i], part)[n]\n" for n in range(12))
+    machine = work(callback(f"    part = load(x)\n    for i in x:\n{deep}        part.shift(i)\n"))
+    widest = max(
+        (len(v.pts) for v in machine.shared.ends for v in machine.shared.ends[v].values()), default=0
+    )
+    parts = sum(_parts(obj) for obj in machine.objects.values() if obj.kind == "lib")
+    assert widest + parts < 400
+
+
+def _parts(obj: Obj) -> int:
+    return 1 + sum(_parts(sub) for sub in obj.subs.values() if sub is not obj)
