@@ -132,7 +132,7 @@ def _show(typed: Namespace, result: Result) -> None:
         view = replace(wanted, width=paint.width_of(sys.stdout), glyphs=paint.glyphs_for(sys.stdout))
         _print(report.render(typed.format, result, view))
     if typed.format not in report.FOR_PEOPLE:
-        for line in (*summary.vanished(result, view), *summary.unused(result)):
+        for line in (*summary.vanished(result, view), *summary.unused(result), *summary.unmatched(result)):
             print(plain(line), file=sys.stderr)
 
 

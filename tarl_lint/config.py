@@ -245,9 +245,10 @@ def _check(path: Path, key: str, value: Any) -> Any:
     return checked
 
 
-def suggestion(word: str, known: Mapping[str, Any] | Sequence[str], cutoff: float = 0.6) -> str:
+def suggestion(word: str, known: Mapping[str, Any] | Sequence[str], cutoff: float = 0.72) -> str:
     """Return ": did you mean 'x'?" for a word that is nearly a known one, else a full stop."""
     import difflib  # only mistakes need it
 
-    close = difflib.get_close_matches(word, list(known), n=1, cutoff=cutoff)
-    return f": did you mean {close[0]!r}?" if close else "."
+    bare = {name.lstrip("-"): name for name in known}  # what all options begin with makes none alike
+    close = difflib.get_close_matches(word.lstrip("-"), list(bare), n=1, cutoff=cutoff)
+    return f": did you mean {bare[close[0]]!r}?" if close else "."

@@ -16,6 +16,7 @@ from tarl_lint.config import suggestion
 from tarl_lint.errors import UsageError
 from tarl_lint.report.line import Line
 
+ALIKE: Final = 0.8  # of codes, all of which begin alike
 _HEADINGS: Final = (("INVALID", "Reported"), ("VALID", "Not reported"))
 
 
@@ -30,7 +31,7 @@ def check_codes(codes: Sequence[str], where: str) -> None:
     known = list(known_rules())
     for code in codes:
         if not any(k.startswith(code) for k in known):
-            meant = suggestion(code, known)
+            meant = suggestion(code, known, ALIKE)
             raise UsageError(f"{where} names {code!r}, which is no rule{meant} Rules are {', '.join(known)}.")
 
 
@@ -59,7 +60,7 @@ def page(code: str) -> str:
         raise UsageError(f"{code} stands for {', '.join(several)}: name one of them.")
     if code not in known:
         raise UsageError(
-            f"There is no rule {code!r}{suggestion(code, list(known))} Rules are {', '.join(known)}."
+            f"There is no rule {code!r}{suggestion(code, list(known), ALIKE)} Rules are {', '.join(known)}."
         )
     rule = known[code]
     title, _, text = (inspect.getdoc(rule) or "").partition("\n")

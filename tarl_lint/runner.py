@@ -23,6 +23,7 @@ from tarl_lint.perfile import FileIgnores
 from tarl_lint.progress import Tell, silent
 from tarl_lint.source import Script, SourceError
 from tarl_lint.suppress import Suppression
+from tarl_lint.unmatched import unmatched
 
 UNREADABLE: Final = "TARL001"
 
@@ -43,7 +44,7 @@ class Result:
 
     `findings` are sorted by place and carry fingerprint and status; `silenced` are those that comments speak
     of. `found` are the findings as a baseline holds them, `vanished` and `kept` what the baseline holds beyond
-    that. `texts` are the analysed files.
+    that. `unmatched` are sentences about settings that speak of nothing here. `texts` are the analysed files.
     `left_out` counts what `per-file-ignores` speaks of, `off_by_default` what rules found that nobody asked for.
     Without `names_errors` files that cannot be read are counted but not listed for people; only flows of the `kinds`
     were asked for, hazards with `reports_hazards`. New findings of the codes in `failing` make the run fail.
@@ -56,6 +57,7 @@ class Result:
     vanished: tuple[Accepted, ...] = ()
     kept: tuple[Accepted, ...] = ()
     unused: tuple[Suppression, ...] = ()
+    unmatched: tuple[str, ...] = ()
     texts: Mapping[str, str] = field(default_factory=dict)
     statistics: Statistics = field(default_factory=Statistics)
     baseline: Path | None = None
@@ -108,6 +110,7 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
         vanished=vanished,
         kept=kept,
         unused=tuple(s for s in unused if _in_vain(s, config)),
+        unmatched=unmatched(config, texts.values()),
         texts=texts,
         statistics=Statistics(len(texts), lines, discovery.notes, report.hurried),
         baseline=config.baseline if known.entries else None,

@@ -24,6 +24,7 @@ def report(result: Result, view: View) -> Iterator[Line]:
             if own == grade:
                 yield ((_command(own, span, title, text), ""),)
     yield from summary.vanished(result, view)
+    yield from summary.unmatched(result)
     yield from summary.closing(result)
 
 

@@ -170,6 +170,12 @@ def in_words(entry: Accepted, arrow: str) -> str:
     return f"{key.source} {arrow} {key.sink}, {key.kind}{by}{place} ({key.package}){times}"
 
 
+def unmatched(result: Result) -> Iterator[Line]:
+    """Yield what is wrong with names in the settings that no file mentions."""
+    for sentence in result.unmatched:
+        yield ((sentence, "error"),)
+
+
 def unused(result: Result) -> Iterator[Line]:
     """Yield the comments that silence nothing."""
     for comment in result.unused:

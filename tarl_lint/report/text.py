@@ -22,6 +22,7 @@ def report(result: Result, view: View) -> Iterator[Line]:
     yield from _findings(result, view)
     yield from summary.vanished(result, view)
     yield from summary.unused(result)
+    yield from summary.unmatched(result)
     if view.statistics:
         yield from summary.statistics(result)
     yield from summary.closing(result)
@@ -33,7 +34,11 @@ def concise(result: Result, view: View) -> Iterator[Line]:
     yield from _errors(result)
     for finding in result.new:
         yield _heading(finding)
-    for line in (*summary.unused(result), *summary.vanished(result, view)):
+    for line in (
+        *summary.unused(result),
+        *summary.unmatched(result),
+        *summary.vanished(result, view),
+    ):
         if line:
             yield line
     if view.statistics:
