@@ -36,7 +36,7 @@ def _entries(
     yield "verdict", [words.verdict_sentence(comparison)]
     yield "reward", [_rewards(comparison)]
     yield "loss", list(_loss(comparison))
-    yield "formula", list(_some(list(formulas.lines(comparison))))
+    yield "formula", list(formulas.lines(comparison))
     if comparison.verdict.result != "no difference":
         yield "parts", list(_parts(comparison))
         yield "where", [words.region_words(comparison) or "no single situation stands out"]
