@@ -35,6 +35,10 @@ class LogError(TarlError):
     """A node cannot be observed, or the log of its missions cannot be read."""
 
 
+class MonitorError(TarlError):
+    """Missions cannot be watched: the state of the watch is damaged, in use, or belongs to something else."""
+
+
 class NodeError(TarlError):
     """A node misbehaves towards the simulation: it never waits, or ends in an exception."""
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
 from numbers import Real
 from typing import Any
@@ -268,6 +270,12 @@ def stored(sensor: Sensor) -> Sensor:
     return replace(
         sensor, field=f"{getattr(sensor.field, '__qualname__', type(sensor.field).__name__)}{CALLED}"
     )
+
+
+def binning_digest(sensors: Iterable[Sensor]) -> str:
+    """Return a short digest of what sensors read and how it is binned: with the same one, cells mean the same."""
+    text = json.dumps([asdict(stored(sensor)) for sensor in sensors], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def declared(sensor: Sensor) -> Sensor:

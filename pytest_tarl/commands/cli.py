@@ -1,4 +1,4 @@
-"""The command line of `tarl`: fixtures to look at, robots to observe, patches to apply."""
+"""The command line of `tarl`: fixtures to look at, robots to observe and watch, patches to apply."""
 
 from __future__ import annotations
 
@@ -68,6 +68,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     diff.set_defaults(run=_diff)
     _add_observe(commands)
+    _add_watch(commands)
     _add_patches(commands)
     return parser
 
@@ -172,6 +173,79 @@ def _observe(arguments: argparse.Namespace) -> int:
     )
     print(observe(order), file=sys.stderr)
     return 0
+
+
+def _add_watch(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    watch = commands.add_parser(
+        "watch",
+        help="judge logged missions as they come: is the stated bound kept, is the world as off-line?",
+    )
+    flag = watch.add_argument
+    flag("logs", type=Path, nargs="+", metavar="LOG", help="logs of `tarl observe`, which may still grow")
+    flag("--fixture", type=Path, required=True, help="the utility fixture that the missions are held against")
+    flag("--once", action="store_true", help="read what is there, tell it and end")
+    flag("--until-alarm", action="store_true", help="end with the first alarm")
+    flag(
+        "--alpha",
+        metavar="P",
+        type=float,
+        default=0.05,
+        help="probability of ever a false alarm (default 0.05)",
+    )
+    flag(
+        "--seed",
+        metavar="N",
+        type=int,
+        default=0,
+        help="decides how ties between missions are broken (default 0)",
+    )
+    flag(
+        "--state",
+        type=Path,
+        metavar="FILE",
+        help="default .tarl/watch/FIXTURE.npz; goes on from it where it exists",
+    )
+    flag(
+        "--json",
+        type=Path,
+        metavar="FILE",
+        help="keep the account there for other programs; - for standard output",
+    )
+    flag(
+        "--interval",
+        metavar="SECONDS",
+        type=float,
+        default=1.0,
+        help="between two looks at the logs (default 1)",
+    )
+    flag(
+        "--every",
+        metavar="SECONDS",
+        type=float,
+        default=60.0,
+        help="between two lines of output (default 60)",
+    )
+    flag("--diagnostics", choices=("rclpy", "rospy"), help="be a ROS node that publishes on /diagnostics")
+    watch.set_defaults(run=_watch)
+
+
+def _watch(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.commands import watch
+
+    order = watch.Order(
+        logs=tuple(arguments.logs),
+        fixture=arguments.fixture,
+        state=arguments.state or watch.default_state(arguments.fixture),
+        json=arguments.json,
+        alpha=arguments.alpha,
+        seed=arguments.seed,
+        interval=arguments.interval,
+        every=arguments.every,
+        once=arguments.once,
+        until_alarm=arguments.until_alarm,
+        ros=arguments.diagnostics or "",
+    )
+    return watch.run(order)
 
 
 def _show(arguments: argparse.Namespace) -> int:

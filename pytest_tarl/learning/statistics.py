@@ -40,7 +40,7 @@ def sample(trace: Trace, seed: int, passed: bool, lists: Sequence[Sequence[int]]
         cells=cells,
         seeds=(seed,),
         passed=np.array([passed]),
-        total=_cancelled(np.sum(trace.reward, keepdims=True), np.sum(np.abs(trace.reward))),
+        total=np.array([total_reward(trace.reward)]),
         steps=np.array([trace.reward.size], dtype=np.int64),
         part_names=names,
         chain=_chain(sorted_trace, names),
@@ -63,18 +63,24 @@ def _chain(trace: Trace, names: Sequence[str]) -> Chain:
     following = np.append(cell[1:], END) if cell.size else cell
     pairs, inverse, count = _unique_pairs(cell, following)
     columns = [trace.parts[name][known] for name in names]
-    summed = [_summed(inverse, column, count.size) for column in columns]
+    sums = [summed(inverse, column, count.size) for column in columns]
     return Chain(
         episode=np.zeros(count.size, np.int64),
         cell=pairs[0],
         next_cell=pairs[1],
         count=count,
-        reward=_summed(inverse, trace.reward[known], count.size),
-        parts=np.stack(summed, axis=1) if summed else np.zeros((count.size, 0)),
+        reward=summed(inverse, trace.reward[known], count.size),
+        parts=np.stack(sums, axis=1) if sums else np.zeros((count.size, 0)),
     )
 
 
-def _summed(index: Ints, column: Floats, size: int) -> Floats:
+def total_reward(reward: Floats) -> float:
+    """Return what an episode earned, 0 where all of it cancels out."""
+    total, size = float(np.add.reduce(reward)), float(np.add.reduce(np.abs(reward)))
+    return total if abs(total) > CANCELLED * size else 0.0
+
+
+def summed(index: Ints, column: Floats, size: int) -> Floats:
     """Return the sum at each index, 0 where all of it cancels out; shape (size,)."""
     return _cancelled(sum_by(index, column, size), sum_by(index, np.abs(column), size))
 

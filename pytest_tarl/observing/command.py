@@ -17,6 +17,7 @@ from pytest_tarl.observing.observer import Observer
 from pytest_tarl.observing.watching import Topics, watched
 from pytest_tarl.realros.choice import libraries
 from pytest_tarl.ros.argv import command_line
+from pytest_tarl.sensors import binning_digest
 from tarl_lint.api import analyse
 
 
@@ -48,6 +49,7 @@ def observe(order: Order) -> str:
         "node": order.node.name,
         "test": fixture.test,
         "sensors": [sensor.name for sensor in fixture.sensors],
+        "bins": binning_digest(fixture.sensors),
         "sites": [place.id for place in sites.places],
         "judged": order.step is not None,
     }

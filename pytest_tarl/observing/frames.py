@@ -23,6 +23,7 @@ from pytest_tarl.errors import LogError
 FORMAT = 1
 MAGIC = b"tarl log 1\n"
 _HEAD = struct.Struct("<II")
+HEAD = _HEAD.size  # bytes before a record's payload
 _LARGEST = 1 << 26  # bytes of a record; a longer one is a damaged length
 
 Record = dict[str, Any]
@@ -88,7 +89,7 @@ def records(path: Path) -> Iterator[Record]:
         ) from None
     with file:
         _check_magic(file, path)
-        while (payload := _next(file)) is not None:
+        while (payload := next_record(file)) is not None:
             yield json.loads(zlib.decompress(payload))
 
 
@@ -101,7 +102,7 @@ def _whole(file: BinaryIO, path: Path) -> int:
             return 0  # empty, or torn while it was begun
         raise _foreign(path)
     end = file.tell()
-    while _next(file) is not None:
+    while next_record(file) is not None:
         end = file.tell()
     return end
 
@@ -111,9 +112,10 @@ def _check_magic(file: BinaryIO, path: Path) -> None:
         raise _foreign(path)
 
 
-def _next(file: BinaryIO) -> bytes | None:
-    head = file.read(_HEAD.size)
-    if len(head) < _HEAD.size:
+def next_record(file: BinaryIO) -> bytes | None:
+    """Return the payload of the record at the file's position, None where no whole one is there."""
+    head = file.read(HEAD)
+    if len(head) < HEAD:
         return None
     length, checksum = _HEAD.unpack(head)
     if length > _LARGEST:

@@ -1,0 +1,194 @@
+"""`tarl watch LOG… --fixture F`: missions judged as they come, an account of them, an exit code."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Event
+from time import monotonic
+
+from pytest_tarl.errors import LogError, SettingsError
+from pytest_tarl.monitoring import dashboard, state, watch, words
+from pytest_tarl.monitoring.status import Status
+from pytest_tarl.monitoring.watch import Watch
+
+STANDARD_OUTPUT = Path("-")
+INTERRUPTED = 130
+TOLD = 1.0  # seconds between two accounts at most, while there is more to read
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is asked for on the command line."""
+
+    logs: tuple[Path, ...]
+    fixture: Path
+    state: Path
+    json: Path | None = None
+    alpha: float = 0.05
+    seed: int = 0
+    interval: float = 1.0  # seconds between two looks at the logs
+    every: float = 60.0  # seconds between two lines while missions come
+    once: bool = False
+    until_alarm: bool = False
+    ros: str = ""  # the library that publishes diagnostics, "rospy" or "rclpy"
+
+
+def run(order: Order) -> int:
+    """Watch until it is over; return 1 where there ever was an alarm, else 0, and 130 for `once` cut short by Ctrl-C.
+
+    Raises LogError where `once` is asked for and a log could not be read, FixtureError, MonitorError, SettingsError.
+    """
+    _check(order)
+    with state.locked(order.state), _stopped() as stopped:
+        watched = watch.begun(order.logs, order.fixture, order.state, alpha=order.alpha, seed=order.seed)
+        with closing(watched):
+            teller = Teller(order, watched, stopped)
+            if not order.once:
+                return _follow(teller)
+            status = teller.look()
+            code = teller.close(status)
+            if watched.problems:
+                raise LogError(" ".join(watched.problems))
+            return INTERRUPTED if stopped.is_set() else code
+
+
+def default_state(fixture: Path) -> Path:
+    """Return where the state of a watch is kept unless another place is named."""
+    return Path(".tarl/watch") / f"{fixture.stem}.npz"
+
+
+class Teller:
+    """Looks at the logs and tells what is new: alarms and problems at once, all else now and then."""
+
+    def __init__(self, order: Order, watched: Watch, stopped: Event) -> None:
+        self.order = order
+        self.watch = watched
+        self.stopped = stopped
+        self._looked = self._told = monotonic()
+        self._before = watched.status()
+        self._problems: tuple[str, ...] = ()
+
+    def look(self) -> Status:
+        """Count what is new in the logs, until that is all, or a reason to end; return the account after it."""
+        for _ in self.watch.poll():
+            if monotonic() - self._looked > TOLD:
+                self._tell(self.watch.status())
+            if self.ending(self._before):
+                self.watch.save()
+                break
+        status = self.watch.status()
+        self._tell(status)
+        return status
+
+    def ending(self, status: Status) -> bool:
+        """Tell whether it is time to end."""
+        return self.stopped.is_set() or (self.order.until_alarm and status.alarm)
+
+    def _tell(self, status: Status) -> None:
+        order, before, now = self.order, self._before, monotonic()
+        problems = tuple(one for one in self.watch.problems if one not in self._problems)
+        fresh = status.missions != before.missions
+        alarms = (status.below, status.drifted) != (before.below, before.drifted)
+        self._before, self._problems, self._looked = status, self.watch.problems, now
+        if order.once:
+            return
+        for problem in problems:
+            print(f"tarl: {problem}", file=sys.stderr, flush=True)
+        kept = order.json is not None and order.json != STANDARD_OUTPUT
+        if kept and (fresh or problems):
+            self.document(status)
+        if alarms or (fresh and now - self._told > order.every):
+            self._told = now
+            if order.json == STANDARD_OUTPUT:
+                self.document(status)
+            else:
+                print(words.headline(self.watch, status), flush=True)
+
+    def document(self, status: Status) -> None:
+        """Write the account for other programs where that was asked for."""
+        found = dashboard.document(self.watch, status)
+        if self.order.json == STANDARD_OUTPUT:
+            print(dashboard.text(found), flush=True)
+        elif self.order.json is not None:
+            dashboard.write(found, self.order.json)
+
+    def close(self, status: Status) -> int:
+        """Tell the whole account; return the exit code."""
+        if self.order.json is not None:
+            self.document(status)
+        if self.order.json != STANDARD_OUTPUT:
+            print("\n".join(words.lines(self.watch, status)), flush=True)
+        return int(status.alarm)
+
+
+def _follow(teller: Teller) -> int:
+    """Look again and again, until an alarm where that ends it, Ctrl-C or SIGTERM."""
+    order = teller.order
+    if not order.ros:
+        status = teller.look()
+        while not teller.ending(status):
+            teller.stopped.wait(order.interval)
+            status = teller.look()
+        return teller.close(status)
+    from pytest_tarl.monitoring import node
+
+    def look() -> tuple[bool, Watch, Status]:
+        status = teller.look()
+        return not teller.ending(status), teller.watch, status
+
+    node.run(order.ros, look, order.interval)
+    return teller.close(teller.watch.status())
+
+
+@contextmanager
+def _stopped() -> Iterator[Event]:
+    """Have Ctrl-C and SIGTERM end a watch between two portions, never within one."""
+    stopped = Event()
+
+    def stop(_number: int, _frame: object) -> None:
+        if stopped.is_set():
+            raise KeyboardInterrupt
+        stopped.set()
+
+    try:
+        before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    except ValueError:  # not in the main thread
+        yield stopped
+        return
+    try:
+        yield stopped
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _check(order: Order) -> None:
+    if not 0.0 < order.alpha < 1.0:
+        raise SettingsError(f"--alpha is a probability between 0 and 1, such as 0.05, got {order.alpha:g}.")
+    for name, value in (("interval", order.interval), ("every", order.every)):
+        if not 0.0 < value < float("inf"):
+            raise SettingsError(f"--{name} is a number of seconds above 0, got {value:g}.")
+    if order.once and (order.until_alarm or order.ros):
+        raise SettingsError(
+            "--once reads what is there and ends: it goes with neither --until-alarm nor --diagnostics."
+        )
+    taken = {path.resolve() for path in (*order.logs, order.fixture, order.state)}
+    if order.json is not None and order.json != STANDARD_OUTPUT and order.json.resolve() in taken:
+        raise SettingsError(f"--json {order.json} would write over what is read: name another file.")
+    twice = _twice(order.logs)
+    if twice is not None:
+        raise SettingsError(f"{twice} is named twice: name each log once.")
+
+
+def _twice(logs: Sequence[Path]) -> Path | None:
+    seen: set[Path] = set()
+    for log in logs:
+        if log.resolve() in seen:
+            return log
+        seen.add(log.resolve())
+    return None

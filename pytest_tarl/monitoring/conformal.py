@@ -1,0 +1,100 @@
+"""Conformal test martingales: are on-line missions exchangeable with those off-line ones that nothing was fitted on?
+
+The pool begins with the scores of the held-out off-line missions, and every on-line mission joins it after it was
+judged. So the smoothed rank of a new score in the pool is uniform and independent of all ranks before, exactly, as
+long as the missions are exchangeable (Vovk, Gammerman & Shafer 2005, theorem 8.1), however few off-line missions
+there are. A pool that stays as it was would not do: what its few missions happened to be would add up to evidence.
+
+Scores are rounded to bins, whose edges come from the other half of the off-line missions and so are a fixed function
+of a score. The pool is then a row of counts: small, whatever the number of missions, and exact, since ties are broken
+at random. A bet is a function of the rank p that is never negative and has integral 1 over [0, 1].
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.learning.tables import Floats, Ints
+
+BINS = 64
+TAIL = 8  # bins beyond the scores that were fitted on, on either side; each twice as wide as the one before
+CLOSE = 1e-4  # of a score's unit: values nearer than that are one value
+
+
+def edges(fitted: NDArray[np.float64], unit: float) -> Floats:
+    """Return the edges of the bins, shape (BINS - 1,), from scores that are never judged by them.
+
+    They lie midway between neighbouring values, so that no rounding of a value moves it into another bin. `unit` is
+    the size of what was summed up to these scores; infinite edges are of bins that stay empty.
+    """
+    unit = unit or 1.0
+    values = np.unique(np.rint(fitted / (CLOSE * unit))) * (CLOSE * unit)
+    if not values.size:
+        values = np.zeros(1)
+    between = (values[1:] + values[:-1]) / 2
+    most = BINS - 1 - 2 * TAIL
+    if between.size > most:
+        ranked = np.quantile(fitted, np.arange(1, most + 1) / (most + 1))
+        between = np.unique(between[np.searchsorted(between, ranked).clip(0, between.size - 1)])
+    spread = float(values[-1] - values[0]) or unit
+    away = spread * 2.0 ** np.arange(1 - TAIL, 1)
+    found = np.concatenate((values[0] - away[::-1], between, values[-1] + away))
+    return np.concatenate((found, np.full(BINS - 1 - found.size, np.inf)))
+
+
+def ranks(pool: Ints, bins: Ints, draws: Floats) -> tuple[Floats, Floats]:
+    """Return the smoothed ranks p and 1 - p of new scores, shape (missions, scores), both above 0.
+
+    `pool` holds the counts before the first of these missions, shape (scores, BINS), `bins` those of the new scores, -1
+    where a mission has none; each joins the pool after it was ranked. `draws` are uniform on (0, 1], one a mission. At
+    most 127 missions.
+    """
+    has, score = bins >= 0, np.arange(bins.shape[1])
+    before = np.cumsum(pool, axis=1)
+    upto = before[score, bins]
+    equal = pool[score, bins]
+    mine = np.where(has, bins, BINS).T.astype(np.int8)  # (scores, missions)
+    earlier = np.tri(len(bins), k=-1, dtype=bool)
+    same, less = (
+        np.add.reduce(
+            (how(mine[:, None, :], mine[:, :, None]) & earlier).view(np.int8), axis=2, dtype=np.int8
+        ).T
+        for how in (np.equal, np.less)
+    )
+    number = before[:, -1] + np.cumsum(has, axis=0) - has
+    equal, below = equal + same, upto - equal + less
+    above = number - below - equal
+    draw, everything = draws[:, None], number + 1.0
+    low = (below + draw * (equal + 1)) / everything
+    high = (above + (1.0 - draw + 2.0**-53) * (equal + 1)) / everything
+    return np.where(has, low, 0.5), np.where(has, high, 0.5)
+
+
+def joined(pool: Ints, bins: Ints) -> Ints:
+    """Return the pool with these scores in it."""
+    score = np.broadcast_to(np.arange(bins.shape[1]), bins.shape)
+    has = bins >= 0
+    added = np.bincount(score[has] * BINS + bins[has], minlength=pool.size)
+    return pool + added.reshape(pool.shape)
+
+
+def factors(low: Floats, high: Floats, found: Floats) -> None:
+    """Write what each bet's stake is multiplied by, shape (missions, bets, scores), from ranks (missions, scores).
+
+    εp^(ε-1) bets on small ranks, the same of 1 - p on large ones and of the distance to the nearer end on both; the
+    lines 1 ± (1 - 2p)/2 bet on small shifts. Powers are made of square roots.
+    """
+    for place, rank in ((0, low), (4, high)):
+        root = np.sqrt(rank)
+        fourth = np.sqrt(root)
+        found[:, place] = 0.75 / fourth
+        found[:, place + 1] = 0.5 / root
+        found[:, place + 2] = 0.25 / (root * fourth)
+        found[:, place + 3] = 0.125 / (root * fourth * np.sqrt(fourth))
+    near = 2.0 * np.minimum(low, high)
+    root = np.sqrt(near)
+    found[:, 8] = 0.5 / root
+    found[:, 9] = 0.25 / (root * np.sqrt(root))
+    found[:, 10] = 1.5 - low
+    found[:, 11] = 0.5 + low

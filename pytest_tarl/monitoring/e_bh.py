@@ -1,0 +1,42 @@
+"""Which cells changed: the e-BH procedure over one e-value a cell, at any time.
+
+Evidence about several cells comes in several filtrations: each cell's ranks are independent of each other, but not
+given those of all cells. An e-process stays one in a finer filtration after its running maximum was adjusted (Choe &
+Ramdas 2024), so that is done before cells are compared; then e-BH (Wang & Ramdas 2022) keeps the share of wrongly
+named cells at α or less in expectation, however they depend on each other and whenever one looks.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.learning.tables import Floats
+
+
+def adjusted(log_peak: NDArray[np.float64]) -> Floats:
+    """Return log2 of the adjusted running maximum x, (x - 1 - ln x) / ln² x, from log2 of it; 0 at the least.
+
+    This is the mean of the adjusters k·x^(1-k) over k in (0, 1): an adjuster F has ∫ F(x)/x² dx ≤ 1 over [1, ∞).
+    """
+    natural = np.asarray(log_peak) * np.log(2.0)
+    small = np.minimum(natural, 30.0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        exact = np.log2((np.expm1(small) - small) / small**2)
+        large = log_peak - 2.0 * np.log2(natural)
+    value = np.where(natural > 30.0, large, exact)
+    return np.where(natural < 1e-3, -1.0, value)  # F(1) = 1/2
+
+
+def chosen(log_evidence: NDArray[np.float64], alpha: float) -> NDArray[np.bool_]:
+    """Return which hypotheses e-BH rejects at the rate α of false discoveries; input is log2 of e-values."""
+    count = len(log_evidence)
+    if not count:
+        return np.zeros(0, bool)
+    order = np.argsort(-log_evidence, kind="stable")
+    needed = np.log2(count / (alpha * np.arange(1, count + 1)))
+    passing = np.flatnonzero(log_evidence[order] >= needed)
+    picked = np.zeros(count, bool)
+    if passing.size:
+        picked[order[: passing[-1] + 1]] = True
+    return picked

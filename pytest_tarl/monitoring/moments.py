@@ -1,0 +1,30 @@
+"""When missions began: some of them, evenly spread, so that a mission's number can be told as a time."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from dataclasses import dataclass, field
+
+MOST = 1024  # moments that are kept
+
+
+@dataclass
+class Moments:
+    """Times of every `stride`-th mission, in seconds since 1970; the stride doubles when there are too many."""
+
+    stride: int = 1
+    times: list[float] = field(default_factory=list)
+
+    def add(self, number: int, time: float) -> None:
+        """Note when a mission began; they come in the order of their numbers."""
+        if number % self.stride:
+            return
+        self.times.append(time)
+        if len(self.times) == MOST:
+            self.times = self.times[::2]
+            self.stride *= 2
+
+    def at(self, number: int) -> float | None:
+        """Return when the latest kept mission up to this one began."""
+        place = bisect_right(range(0, len(self.times) * self.stride, self.stride), number) - 1
+        return self.times[place] if place >= 0 else None

@@ -1,0 +1,139 @@
+"""The monitor: one e-process against each stated bound, one conformal martingale a score, and what raised an alarm.
+
+Two questions share α: is performance below the bound that the fixture states, and are the missions others than those
+off-line? Each is answered by several processes of which each has a share of the question's half of α (a union bound,
+since the scores' martingales live in filtrations of their own). So the probability that there is ever a false alarm
+is at most α, beside the bound's own error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.tables import Floats, Ints, Sample
+from pytest_tarl.monitoring import conformal, e_process, restarts
+from pytest_tarl.monitoring.moments import Moments
+from pytest_tarl.monitoring.restarts import Processes
+from pytest_tarl.monitoring.scores import WHOLE, Missions, Scale, binned, sampled, scale
+from pytest_tarl.monitoring.stated import Bound, bounds
+from pytest_tarl.seeds import generator
+from pytest_tarl.sensors import Cell
+
+PORTION = 512  # missions that are scored together
+MOST_NEW = 256  # new cells that are counted
+TOGETHER = 64  # missions that are judged together
+DRAWS = 4096  # random numbers that are drawn together
+
+
+@dataclass
+class Counts:
+    """How many missions were seen, and of what kind."""
+
+    missions: int = 0
+    passed: int = 0
+    without_steps: int = 0
+    without_rewards: int = 0
+    beyond_range: int = 0  # totals outside of the declared range
+
+
+@dataclass
+class Monitor:
+    """What is known so far. Rows of `processes` are the bounds, then the scores; `pool` has shape (scores, BINS)."""
+
+    scale: Scale
+    bounds: tuple[Bound, ...]
+    alpha: float
+    seed: int
+    processes: Processes
+    pool: Ints
+    counts: Counts = field(default_factory=Counts)
+    moments: Moments = field(default_factory=Moments)
+    new: dict[Cell, int] = field(default_factory=dict)  # missions in cells that no off-line episode was in
+    drawn: tuple[int, NDArray[np.float64]] = (-1, np.empty(0))
+
+    def observe(self, missions: Missions) -> None:
+        """Take some missions, in their order. Any division into portions gives the same state, to the last bit."""
+        self.take(sampled(self.scale, missions), missions.time, missions.new)
+
+    def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
+        """Take missions over the scale's cells and one more for all others, the `new` ones; total NaN: unknown."""
+        bins = binned(self.scale, sample)
+        for number, began in enumerate(time.tolist(), self.counts.missions):
+            self.moments.add(number, began)
+        for begin in range(0, sample.episodes, TOGETHER):
+            some = slice(begin, begin + TOGETHER)
+            self._judge(sample.passed[some], sample.total[some], bins[some])
+        self._count(sample, new)
+
+    def _judge(self, passed: NDArray[np.bool_], total: Floats, bins: Ints) -> None:
+        """Update the processes by some missions and have these join the pool."""
+        first, count = self.counts.missions, len(bins)
+        taken = np.concatenate((*(_told(bound, total) for bound in self.bounds), bins >= 0), axis=1)
+        factors = np.empty((count, restarts.BETS, self.processes.count))
+        for row, bound in enumerate(self.bounds):
+            factors[:, :, row] = _against(bound, passed, total)
+        low, high = conformal.ranks(self.pool, bins, self._draws(first, count))
+        conformal.factors(low, high, factors[:, :, len(self.bounds) :])
+        np.copyto(factors, 1.0, where=~taken[:, None, :])
+        restarts.advance(self.processes, taken, factors, first)
+        self.pool = conformal.joined(self.pool, bins)
+        self.counts.missions += len(bins)
+        self.counts.passed += int(passed.sum())
+
+    def _draws(self, first: int, count: int) -> Floats:
+        """Return the numbers on (0, 1] by which ties of some missions are broken; a function of seed and mission."""
+        found = []
+        for which in range(first // DRAWS, (first + count - 1) // DRAWS + 1):
+            if self.drawn[0] != which:
+                self.drawn = which, 1.0 - generator(self.seed, f"watch/{which}").random(DRAWS)
+            begin = which * DRAWS
+            found.append(self.drawn[1][max(0, first - begin) : max(0, first + count - begin)])
+        return np.concatenate(found)
+
+    def _count(self, sample: Sample, new: Sequence[Cell]) -> None:
+        self.counts.without_steps += int((sample.steps == 0).sum())
+        self.counts.without_rewards += int((np.isnan(sample.total) & (sample.steps > 0)).sum())
+        for bound in self.bounds:
+            if bound.what == "total":
+                outside = (sample.total < bound.low) | (sample.total > bound.high)
+                self.counts.beyond_range += int(outside.sum())
+        for cell in new:
+            if cell in self.new or len(self.new) < MOST_NEW:
+                self.new[cell] = self.new.get(cell, 0) + 1
+
+
+def _told(bound: Bound, total: Floats) -> NDArray[np.bool_]:
+    """Return which missions say something of a bound, shape (missions, 1)."""
+    testable = e_process.testable(float(bound.share(bound.least)))
+    return (testable & (np.isfinite(total) | (bound.what == "success")))[:, None]
+
+
+def _against(bound: Bound, passed: NDArray[np.bool_], total: Floats) -> Floats:
+    """Return what stakes against a bound are multiplied by, shape (missions, bets)."""
+    least = float(bound.share(bound.least))
+    observed = passed.astype(np.float64) if bound.what == "success" else total
+    return e_process.factors(least, bound.share(observed)) if e_process.testable(least) else np.ones((1, 1))
+
+
+def begun(fixture: Fixture, *, alpha: float, seed: int) -> Monitor:
+    """Return a monitor that has seen no mission. Raises FixtureError where the fixture holds too few episodes."""
+    how, held_out = scale(fixture)
+    stated = bounds(fixture)
+    scores = held_out.shape[1]
+    pool = np.zeros((scores, conformal.BINS), np.int64)
+    for row, column in enumerate(held_out.T):
+        pool[row] = np.bincount(column[column >= 0], minlength=conformal.BINS)
+    processes = restarts.begun(-np.log2(alpha * shares(len(stated), scores)))
+    return Monitor(how, stated, alpha, seed, processes, pool)
+
+
+def shares(stated: int, scores: int) -> Floats:
+    """Return each process's share of α: half for the bounds, a quarter for whole missions, a quarter for cells."""
+    cells = scores - len(WHOLE)
+    parts = [(stated, 0.5), (len(WHOLE), 0.25 if cells else 0.5), (cells, 0.25)]
+    return np.concatenate([np.full(count, part / max(count, 1)) for count, part in parts])

@@ -1,0 +1,136 @@
+"""Many e-processes side by side, each a mixture over bets and over the mission before which it was started.
+
+One bet k multiplies its stake by a factor f ≥ 0 of mean at most 1. Started before observation τ it is worth
+∏_{t ≥ τ} f_t, and 1 before. The mixture over k and τ with weights that sum to 1 is again an e-process (Shin, Ramdas &
+Rinaldo 2023, e-detectors): by Ville's inequality it exceeds 1/α ever with probability at most α. A restart before
+every observation costs nothing beyond one product, since
+
+    Σ_{τ ≤ t} w_τ ∏_{s=τ..t} f_s = (Σ_{τ < t} w_τ ∏_{s=τ..t-1} f_s + w_t) · f_t.
+
+Half of the weight is on a change before the first observation; the rest falls geometrically from one octave of τ to
+the next, by 2^(-1/8), so that a change after 100,000 quiet missions pays 15 units of log evidence and not all of it.
+
+Only sums, products and square roots are used, which IEEE 754 rounds the same everywhere: the same observations give
+the same bits, in whatever portions they come.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.learning.tables import Floats, Ints
+
+BETS = 12  # in each process
+LARGE = 600  # binary orders of magnitude at which stakes are scaled down; one factor is below 2^70
+LOOK = 4  # missions between two looks at that, by their numbers, so that portions change nothing
+
+
+@dataclass
+class Processes:
+    """The state of some e-processes, one a column; `stake`, `best` and `since` have shape (bets, processes).
+
+    `stake` is Σ_τ w_τ ∏f and `best` the largest term of that sum, both divided by 2^exponent; `since` is the mission
+    before which that largest term was started. `age` counts the observations of a process; `peak` is the largest
+    log2 of its evidence so far, `alarm` the mission with which that reached `threshold`, -1 where none did.
+    """
+
+    stake: Floats
+    best: Floats
+    since: Ints
+    exponent: Ints
+    age: Ints
+    peak: Floats
+    alarm: Ints
+    threshold: Floats  # log2 of the evidence that raises an alarm
+
+    @property
+    def count(self) -> int:
+        """Return how many processes there are."""
+        return len(self.age)
+
+
+def begun(threshold: Floats) -> Processes:
+    """Return processes without observations; `threshold` is log2 of the evidence of an alarm, shape (processes,)."""
+    count = len(threshold)
+    return Processes(
+        stake=np.zeros((BETS, count)),
+        best=np.zeros((BETS, count)),
+        since=np.zeros((BETS, count), np.int64),
+        exponent=np.zeros(count, np.int64),
+        age=np.zeros(count, np.int64),
+        peak=np.zeros(count),
+        alarm=np.full(count, -1, np.int64),
+        threshold=threshold,
+    )
+
+
+def reserve(age: NDArray[np.int64]) -> Floats:
+    """Return the weight of all restarts that are still to come after so many observations: 1, then ½·age^(-1/8)."""
+    root = np.sqrt(np.sqrt(np.sqrt(np.maximum(age, 1).astype(np.float64))))
+    return np.where(age > 0, 0.5 / root, 1.0)
+
+
+def advance(processes: Processes, taken: NDArray[np.bool_], factors: Floats, first: int) -> None:
+    """Take some missions one after the other, the first of which has the number `first`.
+
+    `taken` tells which processes observed something in which mission, shape (missions, processes); `factors`, shape
+    (missions, bets, processes), is what their stakes are multiplied by, and 1 where nothing was observed.
+    """
+    rows = np.flatnonzero(taken.any(axis=0))
+    if not rows.size:
+        return
+    if rows.size < processes.count:
+        taken, factors = taken[:, rows], factors[:, :, rows]
+    age = processes.age[rows] + np.cumsum(taken, axis=0)
+    left = reserve(age)
+    weight = np.where(taken, reserve(age - taken) - left, 0.0)
+    worth, exponent = _multiplied(processes, rows, weight, factors, first)
+    evidence = np.log2(worth / BETS + np.ldexp(left, -exponent)) + exponent
+    processes.age[rows] = age[-1]
+    processes.peak[rows] = np.maximum(processes.peak[rows], evidence.max(axis=0))
+    above = evidence >= processes.threshold[rows]
+    raised = np.where(above.any(axis=0), first + above.argmax(axis=0), -1)
+    processes.alarm[rows] = np.where(processes.alarm[rows] < 0, raised, processes.alarm[rows])
+
+
+def _multiplied(
+    processes: Processes, rows: Ints, weight: Floats, factors: Floats, first: int
+) -> tuple[Floats, Ints]:
+    """Update stakes, mission by mission; return their sums and the exponents after each, shape (missions, rows)."""
+    both = np.stack((processes.stake[:, rows], processes.best[:, rows]))
+    stake, best = both
+    since, exponent = processes.since[:, rows], processes.exponent[rows]
+    worth, exponents = np.empty(weight.shape), np.empty(weight.shape, np.int64)
+    exponents[:] = exponent
+    scaled = np.ldexp(weight, -exponent)
+    for index, factor in enumerate(factors):
+        stake += scaled[index]
+        fresh = best < scaled[index]
+        np.copyto(since, first + index, where=fresh)
+        np.copyto(best, scaled[index], where=fresh)
+        both *= factor
+        np.add.reduce(stake, axis=0, out=worth[index])
+        if (first + index) % LOOK == 0 and np.maximum.reduce(worth[index]) > 2.0**LARGE:
+            shrunk = np.where(worth[index] > 2.0**LARGE, LARGE, 0)
+            both *= np.ldexp(1.0, -shrunk)
+            exponent += shrunk
+            exponents[index + 1 :] = exponent
+            scaled = np.ldexp(weight, -exponent)
+    processes.stake[:, rows], processes.best[:, rows] = both
+    processes.since[:, rows], processes.exponent[rows] = since, exponent
+    return worth, exponents
+
+
+def log_evidence(processes: Processes) -> Floats:
+    """Return log2 of the evidence of every process as it is now, shape (processes,)."""
+    left = np.ldexp(reserve(processes.age), -processes.exponent)
+    found: Floats = np.log2(np.add.reduce(processes.stake, axis=0) / BETS + left) + processes.exponent
+    return found
+
+
+def onset(processes: Processes, row: int) -> int:
+    """Return the mission before which the restart was made that explains most of a process's evidence."""
+    return int(processes.since[int(np.argmax(processes.best[:, row])), row])

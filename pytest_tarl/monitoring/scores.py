@@ -1,0 +1,187 @@
+"""What a mission is judged by: numbers that are exchangeable with those of held-out off-line missions.
+
+The model is fitted on one half of the fixture's episodes; scores of the other half begin the pools, and on-line
+missions pass through the very representation that the fixture keeps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.errors import FixtureError
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.packing import represented_chain
+from pytest_tarl.learning.residuals import Model, fitted, in_fit, residuals
+from pytest_tarl.learning.statistics import summed, total_reward
+from pytest_tarl.learning.tables import END, Chain, Floats, Ints, Sample, sum_by
+from pytest_tarl.learning.tiles import tiled
+from pytest_tarl.monitoring.conformal import BINS, edges
+from pytest_tarl.sensors import Cell
+
+WHOLE = ("success", "total", "residual", "unknown", "steps")  # scores of a mission, before those of its cells
+FEWEST = 2  # episodes in either half of a fixture
+
+
+@dataclass(frozen=True)
+class Missions:
+    """Some missions in the order in which they count; step columns have shape (steps,).
+
+    `cell` is a row of the scale's cells, one more than the last for any other cell, and -1 where sensors had told
+    nothing yet. A mission may have no steps.
+    """
+
+    passed: NDArray[np.bool_]
+    time: Floats  # seconds since 1970 at which each began, shape (missions,)
+    mission: Ints  # of each step
+    cell: Ints
+    reward: Floats
+    new: tuple[Cell, ...] = ()  # cells that are none of the scale's, once for each mission that was in them
+
+    @property
+    def count(self) -> int:
+        """Return how many missions there are."""
+        return len(self.passed)
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How missions are scored: the off-line model, its cells, and the bins of every score, shape (scores, BINS - 1)."""
+
+    cells: tuple[Cell, ...]
+    known: NDArray[np.bool_]  # cells that the model was fitted in, and one False for all others
+    model: Model
+    edges: Floats
+
+    @property
+    def number(self) -> Mapping[Cell, int]:
+        """Return the row of each cell."""
+        return {cell: row for row, cell in enumerate(self.cells)}
+
+
+def scale(fixture: Fixture) -> tuple[Scale, Ints]:
+    """Return how missions are scored, and the bins of the held-out episodes, shape (episodes, scores).
+
+    Raises FixtureError where a half of the episodes holds too few.
+    """
+    sample = fixture.sample
+    fit = np.array([in_fit(seed) for seed in sample.seeds])
+    if min(fit.sum(), (~fit).sum()) < FEWEST:
+        raise FixtureError(
+            f"The fixture of {fixture.test} holds {sample.episodes} episodes: too few to fit on one half and compare "
+            "with the other. Record more of them with --tarl-episodes."
+        )
+    rows = fit[sample.chain.episode]
+    chain = Chain(*(column[rows] for column in vars(sample.chain).values()))
+    count = len(sample.cells)
+    model = fitted(chain, count, tiled(sample.cells, fixture.sensors))
+    model = Model(*(np.append(getattr(model, one.name), np.nan) for one in fields(Model)))
+    bare = Scale(sample.cells, ~np.isnan(model.utility), model, np.empty((0, BINS - 1)))
+    values = _values(
+        bare, replace(sample, cells=(*sample.cells, ()))
+    )  # as wide as on-line ones, so summed alike
+    units = _units(sample, values)
+    found = [
+        edges(column[fit & ~np.isnan(column)], unit) for column, unit in zip(values.T, units, strict=True)
+    ]
+    whole = Scale(sample.cells, bare.known, model, np.array(found))
+    return whole, _binned(whole, values[~fit])
+
+
+def binned(scale: Scale, sample: Sample) -> Ints:
+    """Return the bin of every score of every mission, shape (missions, scores); -1 where a mission has none.
+
+    A mission without steps has only the score of its success; one without rewards lacks those that need them.
+    """
+    return _binned(scale, _values(scale, sample))
+
+
+def _binned(scale: Scale, values: Floats) -> Ints:
+    found = np.full(values.shape, -1, np.int64)
+    for column in np.flatnonzero(~np.isnan(values).all(axis=0)).tolist():
+        has = ~np.isnan(values[:, column])
+        found[has, column] = np.searchsorted(scale.edges[column], values[has, column], side="right")
+    return found
+
+
+def _values(scale: Scale, sample: Sample) -> Floats:
+    """Return the scores, shape (missions, scores), NaN where a mission has none.
+
+    Those of a cell are what its two residuals are on average of a visit.
+    """
+    found = residuals(sample, scale.model)
+    chain, count = sample.chain, len(scale.cells)
+    width = len(scale.known)
+    visits = sum_by(chain.episode * width + chain.cell, chain.count, sample.episodes * width)
+    visits = visits.reshape(-1, width)
+    inside = np.where(scale.known & (visits > 0), visits, np.nan)[:, :count]
+    moved = np.where(sample.steps > 0, 0.0, np.nan)
+    judged = moved + np.where(np.isfinite(sample.total), 0.0, np.nan)
+    with np.errstate(invalid="ignore"):
+        whole = [
+            sample.passed.astype(np.float64),
+            sample.total + judged,
+            (found.move + found.reward).sum(axis=1) + judged,
+            visits[:, ~scale.known].sum(axis=1) + moved,
+            sample.steps + moved,
+        ]
+    cells = (found.move[:, :count] / inside, found.reward[:, :count] / inside + judged[:, None])
+    return np.concatenate([np.stack(whole, axis=1), *cells], axis=1)
+
+
+def _units(sample: Sample, values: Floats) -> Floats:
+    """Return the size of what each score was summed up from, shape (scores,): its rounding is relative to that."""
+    size = float(np.abs(sample.chain.reward).sum()) / max(1, sample.episodes)
+    step = float(np.abs(sample.chain.reward).sum()) / max(1.0, float(sample.chain.count.sum()))
+    whole = {"success": 1.0, "total": size, "residual": size, "unknown": 1.0, "steps": 1.0}
+    cells = values.shape[1] - len(WHOLE)
+    return np.array([*(whole[name] for name in WHOLE), *([step] * cells)])
+
+
+def sampled(scale: Scale, missions: Missions) -> Sample:
+    """Return missions in the form of recorded episodes over the scale's cells and one more for all others.
+
+    The total of a mission is NaN where it has no steps or an unknown reward.
+    """
+    known = missions.cell >= 0
+    reward = np.where(np.isfinite(missions.reward), missions.reward, 0.0)[known]
+    width = len(scale.known)
+    return Sample(
+        cells=((),) * width,
+        seeds=tuple(range(missions.count)),
+        passed=missions.passed,
+        total=_totals(missions),
+        steps=np.bincount(missions.mission, minlength=missions.count),
+        part_names=(),
+        chain=_chain(missions.mission[known], missions.cell[known], reward, width),
+        lists=(),
+    )
+
+
+def _totals(missions: Missions) -> Floats:
+    ends = np.searchsorted(missions.mission, np.arange(missions.count + 1)).tolist()
+    size = sum_by(missions.mission, np.abs(missions.reward), missions.count)
+    total = [total_reward(missions.reward[a:b]) for a, b in pairwise(ends)]
+    return np.where((np.diff(ends) > 0) & np.isfinite(size), total, np.nan)
+
+
+def _chain(mission: Ints, cell: Ints, reward: Floats, width: int) -> Chain:
+    """Return the transitions of steps in order, as they are recorded and then kept in a fixture."""
+    following = np.append(cell[1:], END)
+    following[np.flatnonzero(np.diff(mission))] = END
+    codes, place, count = np.unique(
+        (mission * width + cell) * (width + 1) + following + 1, return_inverse=True, return_counts=True
+    )
+    chain = Chain(
+        episode=codes // (width + 1) // width,
+        cell=codes // (width + 1) % width,
+        next_cell=codes % (width + 1) - 1,
+        count=count.astype(np.int64),
+        reward=summed(place, reward, codes.size),
+        parts=np.zeros((codes.size, 0)),
+    )
+    return represented_chain(chain)

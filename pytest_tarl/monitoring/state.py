@@ -1,0 +1,168 @@
+"""The state of a watch on disk: a small file, there whole or not at all, from which it goes on as if never stopped.
+
+A `.npz` without pickle, as a fixture is: a JSON header with a digest, and the columns of the processes and the pool.
+
+FORMAT history:
+1  First version.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import io
+import json
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+from zipfile import BadZipFile
+
+import numpy as np
+
+from pytest_tarl.errors import MonitorError
+from pytest_tarl.files import write_atomically
+from pytest_tarl.learning.archive import read_arrays
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.monitoring.moments import Moments
+from pytest_tarl.monitoring.monitor import Counts, Monitor, begun
+from pytest_tarl.monitoring.reading import Progress
+from pytest_tarl.monitoring.restarts import Processes
+
+FORMAT = 1
+HEADER = "header"
+KIND = "state of a watch"  # a fixture has the same form and is none
+_UNREADABLE = (
+    ValueError,
+    LookupError,
+    EOFError,
+    TypeError,
+    AttributeError,
+    zlib.error,
+    BadZipFile,
+)
+
+
+def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: str) -> None:
+    """Write the state whole or not at all; `fixture` is the digest of the fixture. Raises MonitorError."""
+    columns = _columns(monitor)
+    header: dict[str, Any] = {
+        "kind": KIND,
+        "format": FORMAT,
+        "fixture": fixture,
+        "alpha": monitor.alpha,
+        "seed": monitor.seed,
+        "counts": asdict(monitor.counts),
+        "moments": asdict(monitor.moments),
+        "new": [[list(cell), count] for cell, count in monitor.new.items()],
+        "logs": [asdict(one) for one in logs.values()],
+    }
+    header["digest"] = _digest(header, columns)
+    buffer = io.BytesIO()
+    text = np.frombuffer(json.dumps(header).encode(), np.uint8)
+    np.savez_compressed(buffer, allow_pickle=False, **{HEADER: text}, **columns)
+    try:
+        write_atomically(path, buffer.getvalue())
+    except OSError as problem:
+        raise MonitorError(
+            f"The state {path} cannot be written ({problem.strerror}): name another file with --state."
+        ) from problem
+
+
+def load(
+    path: Path, fixture: Fixture, digest: str, *, alpha: float, seed: int
+) -> tuple[Monitor, dict[str, Progress]]:
+    """Return what a state holds, a fresh monitor where there is none.
+
+    Raises MonitorError where it is damaged, or belongs to another fixture, α or seed.
+    """
+    fresh = begun(fixture, alpha=alpha, seed=seed)
+    if not path.exists():
+        return fresh, {}
+    header, columns = _read(path)
+    again = f"Name another file with --state, or remove {path} to begin anew."
+    if header["fixture"] != digest:
+        raise MonitorError(
+            f"The state {path} belongs to another recording of the fixture, and evidence against one says nothing of "
+            f"another. {again}"
+        )
+    for what, mine, theirs in (("alpha", alpha, header["alpha"]), ("seed", seed, header["seed"])):
+        if mine != theirs:
+            raise MonitorError(
+                f"The state {path} was begun with --{what} {theirs}, which cannot be changed to {mine} in the middle "
+                f"of a watch. {again}"
+            )
+    return _restored(fresh, header, columns), {one["log"]: Progress(**one) for one in header["logs"]}
+
+
+@contextmanager
+def locked(path: Path) -> Iterator[None]:
+    """Keep a state to oneself. Raises MonitorError where another watch has it or its folder cannot be written."""
+    lock = path.with_name(f".{path.name}.lock")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file = lock.open("a")
+    except OSError as problem:
+        raise MonitorError(
+            f"The state {path} cannot be written ({problem.strerror}): name another file with --state."
+        ) from problem
+    with file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise MonitorError(
+                f"The state {path} is in use by another watch: end that one, or name another file with --state."
+            ) from None
+        yield
+
+
+def _columns(monitor: Monitor) -> dict[str, np.ndarray[Any, Any]]:
+    processes = {one.name: getattr(monitor.processes, one.name) for one in fields(Processes)}
+    return processes | {"pool": monitor.pool}
+
+
+def _restored(
+    fresh: Monitor, header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, Any]]
+) -> Monitor:
+    fresh.processes = Processes(**{one.name: columns[one.name] for one in fields(Processes)})
+    fresh.pool = columns["pool"]
+    fresh.counts = Counts(**header["counts"])
+    fresh.moments = Moments(**header["moments"])
+    fresh.new = {tuple(cell): count for cell, count in header["new"]}
+    return fresh
+
+
+def _read(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray[Any, Any]]]:
+    try:
+        columns = read_arrays(path.read_bytes())
+        header: dict[str, Any] = json.loads(columns.pop(HEADER).tobytes().decode())
+        digest = header.pop("digest")
+        whole = digest == _digest(header, columns)
+    except OSError as problem:
+        raise MonitorError(f"The state {path} cannot be read ({problem.strerror}).") from problem
+    except _UNREADABLE as problem:
+        raise _damaged(path) from problem
+    if not whole or header.get("kind") != KIND:
+        raise _damaged(path)
+    if header["format"] != FORMAT:
+        raise MonitorError(
+            f"The state {path} has format {header['format']}, this version of tarl reads {FORMAT}: go on with the "
+            "version that wrote it, or remove it to begin anew."
+        )
+    return header, columns
+
+
+def _damaged(path: Path) -> MonitorError:
+    return MonitorError(
+        f"The state {path} is damaged or is none of `tarl watch`: restore it from a backup, or remove it to begin anew."
+    )
+
+
+def _digest(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, Any]]) -> str:
+    digest = hashlib.sha256(json.dumps(header, sort_keys=True).encode())
+    for name in sorted(columns):
+        digest.update(f"{name}:{columns[name].dtype.str}:{columns[name].shape}".encode())
+        digest.update(np.ascontiguousarray(columns[name]).tobytes())
+    return digest.hexdigest()

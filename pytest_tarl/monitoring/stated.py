@@ -1,0 +1,39 @@
+"""The bounds that a fixture states: what is promised of a mission, over the worlds that the test draws."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.learning.bounds import rate
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.tables import Floats
+
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A lower bound of the mean of a quantity within [low, high]; it holds with `confidence` over recordings.
+
+    `what` is "success" or "total".
+    """
+
+    what: str
+    least: float
+    confidence: float
+    low: float = 0.0
+    high: float = 1.0
+
+    def share(self, value: NDArray[np.float64] | float) -> Floats:
+        """Return where in the range values lie, 0 to 1; what is outside counts as at its end."""
+        return np.clip((np.asarray(value) - self.low) / (self.high - self.low), 0.0, 1.0)
+
+
+def bounds(fixture: Fixture) -> tuple[Bound, ...]:
+    """Return what the fixture states: of success always, of the mean total where a range of it was declared."""
+    passed = fixture.sample.passed
+    found = rate(int(passed.sum()), len(passed), CONFIDENCE)
+    return (Bound("success", found.low, found.confidence),)

@@ -1,0 +1,191 @@
+"""What a monitor has to tell now: the evidence on each question, since when, and where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pytest_tarl.learning.tables import Ints
+from pytest_tarl.monitoring import e_bh, restarts
+from pytest_tarl.monitoring.monitor import Monitor
+from pytest_tarl.monitoring.scores import WHOLE
+from pytest_tarl.monitoring.stated import Bound
+from pytest_tarl.sensors import Cell
+
+LOW, HIGH = (0, 1, 2, 3, 10), (4, 5, 6, 7, 11)  # bets of conformal.factors; the others are on both ends
+FEWEST_NEW = 2  # missions that make a cell worth naming as new
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A mission, counted from 1, and when it began, in seconds since 1970; None where that is not known."""
+
+    mission: int
+    time: float | None
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Evidence on one question: log10 of it, now and at its highest, in units in which an alarm is at 1/α.
+
+    `since` is the mission before which the restart was made that explains most of it; `alarm` the one that raised it.
+    """
+
+    now: float
+    highest: float
+    since: Moment | None
+    alarm: Moment | None
+
+
+@dataclass(frozen=True)
+class Score:
+    """A score of missions, of one cell where that is given, and where on-line missions lie in the off-line ones."""
+
+    name: str
+    cell: Cell | None
+    side: str  # "lower", "higher", "spread"
+
+
+@dataclass(frozen=True)
+class Status:
+    """The account of a watch. Evidence on a bound that cannot be broken, as one of 0, is None."""
+
+    missions: int
+    passed: int
+    alpha: float
+    bounds: tuple[tuple[Bound, Evidence | None], ...]
+    world: Evidence
+    lead: Score | None
+    cells: tuple[Cell, ...]
+    new: tuple[Cell, ...]
+    visited: tuple[Cell, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def below(self) -> bool:
+        """Tell whether a bound was found broken."""
+        return any(evidence is not None and evidence.alarm is not None for _, evidence in self.bounds)
+
+    @property
+    def drifted(self) -> bool:
+        """Tell whether the missions were found to be others than those off-line."""
+        return self.world.alarm is not None
+
+    @property
+    def alarm(self) -> bool:
+        """Tell whether there ever was an alarm: it stays, since α is spent over the whole life of a watch."""
+        return self.below or self.drifted
+
+    @property
+    def error(self) -> float:
+        """Return the probability that there is ever a false alarm, the error of the stated bounds included."""
+        stated = {1.0 - bound.confidence for bound, evidence in self.bounds if evidence is not None}
+        return self.alpha + (
+            len([one for one in self.bounds if one[1] is not None]) * max(stated, default=0.0)
+        )
+
+
+def status(monitor: Monitor) -> Status:
+    """Return what a monitor has to tell."""
+    processes, stated = monitor.processes, len(monitor.bounds)
+    scores = np.arange(stated, processes.count)
+    active = scores[processes.age[scores] > 0]
+    world = _evidence(monitor, active if active.size else scores[:1])
+    return Status(
+        missions=monitor.counts.missions,
+        passed=monitor.counts.passed,
+        alpha=monitor.alpha,
+        bounds=tuple(
+            (bound, _evidence(monitor, np.array([row])) if processes.age[row] else None)
+            for row, bound in enumerate(monitor.bounds)
+        ),
+        world=world,
+        lead=_lead(monitor, active),
+        cells=_region(monitor) if world.alarm else (),
+        new=tuple(sorted(cell for cell, count in monitor.new.items() if count >= FEWEST_NEW)),
+        visited=_visited(monitor),
+        notes=tuple(_notes(monitor)),
+    )
+
+
+def _evidence(monitor: Monitor, rows: Ints) -> Evidence:
+    """Return the evidence of the processes in these rows on one question: the largest, each by its share of α."""
+    processes = monitor.processes
+    unit = -processes.threshold[rows] - np.log2(monitor.alpha)
+    now = restarts.log_evidence(processes)[rows] + unit
+    peak = processes.peak[rows] + unit
+    row = int(rows[np.argmax(peak)])
+    raised = processes.alarm[rows]
+    raised = raised[raised >= 0]
+    known = bool(processes.age[row])
+    return Evidence(
+        now=float(now.max() * np.log10(2.0)),
+        highest=float(peak.max() * np.log10(2.0)),
+        since=_moment(monitor, restarts.onset(processes, row)) if known else None,
+        alarm=_moment(monitor, int(raised.min())) if raised.size else None,
+    )
+
+
+def _moment(monitor: Monitor, number: int) -> Moment:
+    return Moment(number + 1, monitor.moments.at(number))
+
+
+def _lead(monitor: Monitor, rows: Ints) -> Score | None:
+    """Return the score with the most evidence."""
+    if not rows.size:
+        return None
+    processes = monitor.processes
+    row = int(rows[np.argmax(processes.peak[rows] - processes.threshold[rows])])
+    bet = int(np.argmax(processes.best[:, row]))
+    side = "lower" if bet in LOW else "higher" if bet in HIGH else "spread"
+    place = row - len(monitor.bounds)
+    if place < len(WHOLE):
+        return Score(WHOLE[place], None, side)
+    part, cell = divmod(place - len(WHOLE), len(monitor.scale.cells))
+    return Score(("move", "reward")[part], monitor.scale.cells[cell], side)
+
+
+def _region(monitor: Monitor) -> tuple[Cell, ...]:
+    """Return the cells that e-BH names: missions that were in them fared otherwise there than off-line."""
+    parts = _of_cells(monitor, monitor.processes.peak)
+    adjusted = np.exp2(np.minimum(e_bh.adjusted(parts), 1000.0)).mean(axis=0)
+    picked = e_bh.chosen(np.log2(adjusted), monitor.alpha)
+    return tuple(monitor.scale.cells[row] for row in np.flatnonzero(picked).tolist())
+
+
+def _visited(monitor: Monitor) -> tuple[Cell, ...]:
+    ages = _of_cells(monitor, monitor.processes.age)
+    return tuple(monitor.scale.cells[row] for row in np.flatnonzero(ages.max(axis=0, initial=0)).tolist())
+
+
+def _of_cells(monitor: Monitor, column: NDArray[Any]) -> NDArray[Any]:
+    """Return a column of the processes by part of the residual and cell, shape (2, cells)."""
+    found: NDArray[Any] = column[len(monitor.bounds) + len(WHOLE) :].reshape(2, -1)
+    return found
+
+
+def _notes(monitor: Monitor) -> list[str]:
+    counts, notes = monitor.counts, []
+    for bound, row in zip(monitor.bounds, range(len(monitor.bounds)), strict=True):
+        if not monitor.processes.age[row] and counts.missions:
+            what = "pass" if bound.what == "success" else "earn more than the least"
+            notes.append(f"The fixture states no bound that missions could break: at least 0 % {what}.")
+    if counts.without_steps:
+        notes.append(f"{_missions(counts.without_steps)} without a step: only success was judged.")
+    if counts.without_rewards:
+        notes.append(
+            f"{_missions(counts.without_rewards)} without rewards (written with --step): totals were not judged."
+        )
+    if counts.beyond_range:
+        notes.append(
+            f"{_missions(counts.beyond_range)} with a total outside of the declared range: counted as at its end, so "
+            "what the evidence says of the mean holds for totals within it."
+        )
+    return notes
+
+
+def _missions(count: int) -> str:
+    return f"{count:,} mission{'s' if count != 1 else ''}"

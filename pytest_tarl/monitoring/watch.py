@@ -1,0 +1,113 @@
+"""A watch: logs that grow, the monitor that judges them, and the state that both go on from."""
+
+from __future__ import annotations
+
+import hashlib
+import heapq
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from pathlib import Path
+from time import monotonic
+
+import numpy as np
+
+from pytest_tarl.errors import FixtureError
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.fixture import load as load_fixture
+from pytest_tarl.monitoring import state
+from pytest_tarl.monitoring.monitor import PORTION, Monitor
+from pytest_tarl.monitoring.reading import Expected, LogReader, Mission, Progress, columns
+from pytest_tarl.monitoring.scores import Missions
+from pytest_tarl.monitoring.status import Status, status
+from pytest_tarl.sensors import binning_digest
+
+SAVED = 1.0  # seconds between two writings of the state while there is more to read
+
+
+@dataclass
+class Watch:
+    """Some logs under watch; `known` is how far each log was counted, by its first record."""
+
+    fixture: Fixture
+    digest: str
+    path: Path
+    monitor: Monitor
+    readers: tuple[LogReader, ...]
+    known: dict[str, Progress]
+
+    def poll(self) -> Iterator[None]:
+        """Count the missions that have ended since the last time, in the order of their times.
+
+        Yields after each portion, with what was counted so far safe on disk whenever `SAVED` seconds have passed and
+        at the end.
+        """
+        coming = heapq.merge(*(one.missions() for one in self.readers), key=lambda mission: mission.time)
+        saved, fresh = monotonic(), False
+        while portion := [*islice(coming, PORTION)]:
+            self.monitor.observe(joined(portion))
+            self.known.update({one.progress.log: one.progress for one in portion})
+            fresh = True
+            if monotonic() - saved > SAVED:
+                self.save()
+                saved, fresh = monotonic(), False
+            yield
+        if fresh:
+            self.save()
+
+    def save(self) -> None:
+        """Write the state."""
+        state.save(self.path, self.monitor, self.known, self.digest)
+
+    def status(self) -> Status:
+        """Return the account of the watch."""
+        found = status(self.monitor)
+        unfinished = sum(one.unfinished for one in self.known.values())
+        more = [f"{unfinished:,} missions have no end and do not count."] if unfinished else []
+        return replace(found, notes=(*found.notes, *more))
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """Return what is wrong with the logs now, as sentences."""
+        return tuple(one.problem for one in self.readers if one.problem)
+
+    def close(self) -> None:
+        """Close the logs."""
+        for reader in self.readers:
+            reader.close()
+
+
+def begun(logs: Sequence[Path], fixture: Path, path: Path, *, alpha: float, seed: int) -> Watch:
+    """Return a watch that goes on from its state, a new one where there is none.
+
+    Raises FixtureError, MonitorError where fixture or state cannot be used.
+    """
+    loaded = load_fixture(fixture)
+    digest = hashlib.sha256(fixture.read_bytes()).hexdigest()
+    monitor, known = state.load(path, loaded, digest, alpha=alpha, seed=seed)
+    expected = expectation(loaded, monitor)
+    owners: dict[str, Path] = {}
+    readers = tuple(LogReader(log, expected, known, owners) for log in logs)
+    return Watch(loaded, digest, path, monitor, readers, known)
+
+
+def expectation(fixture: Fixture, monitor: Monitor) -> Expected:
+    """Return what logs must have been written with. Raises FixtureError where the sensors cannot be watched."""
+    if not fixture.sensors:
+        raise FixtureError(f"The fixture of {fixture.test} has no sensors.")
+    names = tuple(sensor.name for sensor in fixture.sensors)
+    return Expected(fixture.test, names, binning_digest(fixture.sensors), monitor.scale.number)
+
+
+def joined(missions: Sequence[Mission]) -> Missions:
+    """Return missions as columns."""
+    cell, reward = columns(missions)
+    steps = [sum(len(one.reward) for one in mission.steps) // reward.itemsize for mission in missions]
+    return Missions(
+        passed=np.array([one.passed for one in missions]),
+        time=np.array([one.time for one in missions]),
+        mission=np.repeat(np.arange(len(missions)), steps),
+        cell=cell,
+        reward=reward,
+        new=tuple(cell for one in missions for cell in one.new),
+    )

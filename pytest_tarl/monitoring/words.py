@@ -1,0 +1,124 @@
+"""The account of a watch as sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from datetime import datetime
+
+from pytest_tarl.monitoring.stated import Bound
+from pytest_tarl.monitoring.status import Evidence, Moment, Score, Status
+from pytest_tarl.monitoring.watch import Watch
+from pytest_tarl.report.regions import Vocabulary
+
+SCORES = {
+    "success": "the success of missions",
+    "total": "the total reward",
+    "residual": "the total reward, less what each situation lets expect",
+    "unknown": "the steps in situations that no fitted episode was in",
+    "steps": "the number of steps",
+    "move": "what follows on",
+    "reward": "the reward in",
+}
+SIDES = {
+    "lower": "is lower than off-line",
+    "higher": "is higher than off-line",
+    "spread": "is more extreme than off-line",
+}
+
+
+def lines(watch: Watch, status: Status) -> Iterator[str]:
+    """Yield the whole account."""
+    words = vocabulary(watch, status)
+    yield f"{watch.fixture.test}: {_missions(status.missions)}, {_passed(status)}"
+    for bound, evidence in status.bounds:
+        yield f"  bound   {stated(bound)}: {found(evidence, status.alpha)}"
+    yield f"  world   missions as off-line: {found(status.world, status.alpha)}"
+    if status.drifted and status.lead is not None:
+        yield f"          most of all {led(status.lead, words)}"
+    if status.cells:
+        yield f"  where   {words.words(status.cells)}"
+    if status.new:
+        yield f"  new     {words.words(status.new)}: no off-line episode was there"
+    yield f"  error   {promise(status)}"
+    for note in (*watch.problems, *status.notes):
+        yield f"  note    {note}"
+
+
+def headline(watch: Watch, status: Status) -> str:
+    """Return the account in one line, for logs and diagnostics."""
+    parts = [f"{_missions(status.missions)}, {_passed(status)}"]
+    for bound, evidence in status.bounds:
+        if evidence is not None:
+            parts.append(f"{bound.what} bound: {found(evidence, status.alpha)}")
+    parts.append(f"world: {found(status.world, status.alpha)}")
+    if status.cells:
+        parts.append(vocabulary(watch, status).words(status.cells))
+    return "; ".join(parts)
+
+
+def vocabulary(watch: Watch, status: Status) -> Vocabulary:
+    """Return how cells are called."""
+    return Vocabulary(watch.fixture.sensors, {*watch.fixture.sample.cells, *status.new})
+
+
+def stated(bound: Bound) -> str:
+    """Return what a bound promises."""
+    if bound.what == "success":
+        return f"at least {_percent(bound.least)} of missions pass ({_percent(bound.confidence)} confidence)"
+    return f"a mission earns at least {bound.least:.4g} on average ({_percent(bound.confidence)} confidence)"
+
+
+def found(evidence: Evidence | None, alpha: float) -> str:
+    """Return how much evidence there is against a statement, and since when."""
+    if evidence is None:
+        return "nothing to test"
+    now = f"evidence {_number(evidence.now)}, alarm at {1.0 / alpha:.4g}"
+    if evidence.alarm is None:
+        return now
+    since = f", changed before {_moment(evidence.since)}" if evidence.since else ""
+    highest = f", at most {_number(evidence.highest)}" if evidence.highest > evidence.now + 0.5 else ""
+    return f"ALARM with {_moment(evidence.alarm)}{since} ({now}{highest})"
+
+
+def led(score: Score, words: Vocabulary) -> str:
+    """Return which score differs most, and how."""
+    place = ""
+    if score.cell is not None:
+        place = f" {words.words([score.cell])}"
+    return f"{SCORES[score.name]}{place} {SIDES[score.side]}"
+
+
+def promise(status: Status) -> str:
+    """Return how often there would be an alarm without reason."""
+    tested = [bound for bound, evidence in status.bounds if evidence is not None]
+    text = f"a false alarm, ever: at most {_percent(status.alpha)} (alpha)"
+    if not tested:
+        return text
+    each = " and ".join(_percent(1.0 - bound.confidence) for bound in tested)
+    return f"{text}; {_percent(status.error)} with the {each} by which the bound itself may be wrong"
+
+
+def _passed(status: Status) -> str:
+    share = f" ({_percent(status.passed / status.missions)})" if status.missions else ""
+    return f"{status.passed:,} passed{share}"
+
+
+def _missions(count: int) -> str:
+    return f"{count:,} mission{'s' if count != 1 else ''}"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.3g} %"
+
+
+def _number(log10: float) -> str:
+    if log10 >= 5:
+        return f"10^{log10:.0f}"
+    value = 10.0**log10
+    return f"{value:,.0f}" if value >= 10 else f"{value:.2g}"
+
+
+def _moment(moment: Moment) -> str:
+    if moment.time is None or moment.time <= 0:
+        return f"mission {moment.mission:,}"
+    return f"mission {moment.mission:,} ({datetime.fromtimestamp(moment.time):%Y-%m-%d %H:%M})"

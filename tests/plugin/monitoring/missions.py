@@ -1,0 +1,122 @@
+"""Small worlds whose missions are recorded as a fixture and logged as a robot would log them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.learning.fixture import Fixture, load, save
+from pytest_tarl.learning.merging import merge
+from pytest_tarl.learning.statistics import sample
+from pytest_tarl.observing.frames import LogFile, encoded
+from pytest_tarl.observing.observer import packed
+from pytest_tarl.seeds import episode_seed
+from pytest_tarl.sensors import Cell, Sensor, binning_digest
+
+SENSORS = (
+    Sensor("x", topic="/x", field="data", low=0, high=4, bins=4),
+    Sensor("wet", topic="/wet", field="data"),
+)
+TEST = "test_walk.py::test_walk"
+
+
+@dataclass(frozen=True)
+class Walk:
+    """One mission: cells and rewards step by step."""
+
+    cells: tuple[Cell, ...]
+    reward: tuple[float, ...]
+    passed: bool
+
+
+def walk(rng: np.random.Generator, drift: float = 0.0) -> Walk:
+    """Walk over four places; with a drift the third costs more and some missions fail there."""
+    cells, reward, wet = [], [], int(rng.random() < 0.5)
+    passed = True
+    for x in range(4):
+        for _ in range(1 + int(rng.random() < 0.5)):
+            cells.append((x, wet))
+            reward.append(float(rng.normal(1.0, 0.2)) - 0.8 * drift * (x == 2))
+        passed &= not (x == 2 and rng.random() < 0.6 * drift)
+    return Walk(tuple(cells), tuple(reward), passed)
+
+
+def walks(count: int, seed: int, drift: float = 0.0) -> list[Walk]:
+    """Draw some missions."""
+    rng = np.random.default_rng(seed)
+    return [walk(rng, drift) for _ in range(count)]
+
+
+def trace(one: Walk) -> Trace:
+    """Return a mission as it is recorded in a test."""
+    distinct = tuple(dict.fromkeys(one.cells))
+    number = {cell: n for n, cell in enumerate(distinct)}
+    none = np.empty(0, np.int32)
+    steps = np.array([number[cell] for cell in one.cells], np.int32)
+    return Trace(distinct, none, np.empty(0), none, none, steps, np.array(one.reward), {})
+
+
+def fixture(path: Path, missions: list[Walk], sensors: tuple[Sensor, ...] = SENSORS) -> Fixture:
+    """Record missions as a fixture, and read it back as a watch does."""
+    samples = [sample(trace(one), episode_seed(0, "x", n), one.passed, ()) for n, one in enumerate(missions)]
+    save(Fixture(TEST, 0, sensors, (), {}, merge(samples), ()), path)
+    return load(path)
+
+
+def start(**changes: Any) -> dict[str, Any]:
+    """Return the record with which a log begins."""
+    about = {
+        "kind": "start",
+        "format": 1,
+        "time": 1000.0,
+        "node": "walker.py",
+        "test": TEST,
+        "sensors": [sensor.name for sensor in SENSORS],
+        "bins": binning_digest(SENSORS),
+        "sites": [],
+        "judged": False,
+    }
+    return {**about, **changes}
+
+
+def records(one: Walk, time: float = 2000.0, pieces: int = 1) -> list[dict[str, Any]]:
+    """Return the records of a mission, its steps in so many pieces."""
+    distinct = list(dict.fromkeys(one.cells))
+    number = {cell: n for n, cell in enumerate(distinct)}
+    column = np.array([number[cell] for cell in one.cells], np.int32)
+    reward, none = np.array(one.reward), packed(np.empty(0, np.int32))
+    steps = [
+        {
+            "kind": "steps",
+            "cells": [list(cell) for cell in distinct],
+            **dict.fromkeys(("site", "cell", "step", "thread"), none),
+            "flow": packed(np.empty(0)),
+            "step_cell": packed(part),
+            "reward": packed(amounts),
+            "readings": [],
+            "dropped": 0,
+        }
+        for part, amounts in zip(np.array_split(column, pieces), np.array_split(reward, pieces), strict=True)
+    ]
+    end = {"kind": "end", "passed": one.passed, "failure": "", "time": time + 1.0}
+    return [{"kind": "mission", "time": time}, *steps, end]
+
+
+def log(path: Path, missions: list[Walk], first: float = 2000.0, **changes: Any) -> Path:
+    """Write a log, or append to one, as an observer that starts anew does."""
+    file = LogFile(path)
+    file.append(start(**changes))
+    for n, one in enumerate(missions):
+        for record in records(one, first + n):
+            file.append(record)
+    file.close()
+    return path
+
+
+def content(missions: list[Walk]) -> bytes:
+    """Return the records of some missions as they stand in a log, without its beginning."""
+    return b"".join(encoded(record) for n, one in enumerate(missions) for record in records(one, 5000.0 + n))

@@ -1,0 +1,232 @@
+"""Logs that grow, are rotated, cut, damaged or of another world: every mission counts once or not at all."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pytest_tarl.monitoring.reading import Expected, LogReader, Mission, Progress, columns
+from pytest_tarl.observing.frames import MAGIC, encoded
+from pytest_tarl.sensors import binning_digest
+from tests.plugin.monitoring.missions import SENSORS, TEST, content, log, records, start, walks
+
+CELLS = sorted({cell for one in walks(30, 0) for cell in one.cells})
+EXPECTED = Expected(
+    TEST,
+    tuple(one.name for one in SENSORS),
+    binning_digest(SENSORS),
+    {cell: n for n, cell in enumerate(CELLS)},
+)
+
+
+OPEN: list[Reading] = []
+
+
+@pytest.fixture(autouse=True)
+def _closed() -> Iterator[None]:
+    yield
+    while OPEN:
+        OPEN.pop().close()
+
+
+class Reading:
+    """Readers of some logs, and how far each was counted."""
+
+    def __init__(self, *paths: Path) -> None:
+        self.known: dict[str, Progress] = {}
+        owners: dict[str, Path] = {}
+        self.readers = [LogReader(path, EXPECTED, self.known, owners) for path in paths]
+        self.rewards: list[float] = []
+        OPEN.append(self)
+
+    def read(self) -> int:
+        """Read what there is; return how many missions were read so far."""
+        for reader in self.readers:
+            for mission in reader.missions():
+                self.take(mission)
+        return len(self.rewards)
+
+    def take(self, mission: Mission) -> None:
+        self.known[mission.progress.log] = mission.progress
+        self.rewards.append(float(columns([mission])[1].sum()))
+
+    def close(self) -> None:
+        for reader in self.readers:
+            reader.close()
+
+    @property
+    def problems(self) -> list[str]:
+        return [one.problem for one in self.readers if one.problem]
+
+
+def sums(some: list) -> list[float]:  # type: ignore[type-arg]
+    return [float(np.sum(one.reward)) for one in some]
+
+
+@given(cuts=st.lists(st.integers(0, 10_000), max_size=12), restart=st.booleans())
+def test_a_log_that_grows_piece_by_piece_gives_every_mission_once(
+    tmp_path_factory: pytest.TempPathFactory, cuts: list[int], restart: bool
+) -> None:
+    some = walks(6, 3)
+    path = tmp_path_factory.mktemp("grows") / "m.log"
+    whole = MAGIC + encoded(start()) + content(some[:3]) + encoded(start(time=3.0)) + content(some[3:])
+    reading = Reading(path)
+    for end in [*sorted(min(cut, len(whole)) for cut in cuts), len(whole)]:
+        path.write_bytes(whole[:end]) if not path.exists() else _grow(path, whole[:end])
+        reading.read()
+        if restart:
+            again = Reading(path)
+            again.known.update(reading.known)
+            again.rewards = reading.rewards
+            reading.close()
+            reading = again
+    reading.close()
+    assert reading.rewards == sums(some)
+    assert reading.problems == []
+
+
+def _grow(path: Path, content: bytes) -> None:
+    with path.open("ab") as file:
+        file.write(content[path.stat().st_size :])
+
+
+def test_steps_cells_and_new_cells_are_told(tmp_path: Path) -> None:
+    some = walks(4, 7)
+    other = type(some[0])(((9, 9), (0, 0), (9, 9)), (1.0, 2.0, 3.0), True)
+    path = log(tmp_path / "m.log", [*some, other])
+    reader = LogReader(path, EXPECTED, {}, {})
+    missions = list(reader.missions())
+    reader.close()
+    assert missions[-1].new == ((9, 9),)
+    assert columns(missions[-1:])[0].tolist() == [len(CELLS), CELLS.index((0, 0)), len(CELLS)]
+    for mission, one in zip(missions, some, strict=False):
+        assert [CELLS[row] for row in columns([mission])[0].tolist()] == [*one.cells]
+        assert mission.new == ()
+
+
+def test_a_rotated_log_is_read_to_its_end_and_then_the_new_one(tmp_path: Path) -> None:
+    some = walks(6, 2)
+    path, old = tmp_path / "m.log", tmp_path / "m.log.1"
+    log(path, some[:2])
+    reading = Reading(path, old)
+    assert reading.read() == 2
+    with path.open("ab") as file:
+        file.write(content(some[2:4]))
+    path.rename(old)
+    log(path, some[4:], time=5000.0)
+    reading.read()
+    reading.read()
+    assert reading.rewards == sums(some)
+    assert reading.problems == []
+    reading.close()
+    again = Reading(old, path)
+    again.known.update(reading.known)
+    assert again.read() == 0
+
+
+def test_one_log_under_two_names_counts_once_and_says_so(tmp_path: Path) -> None:
+    path = log(tmp_path / "m.log", walks(3, 2))
+    os.link(path, tmp_path / "same.log")
+    reading = Reading(path, tmp_path / "same.log")
+    assert reading.read() == 3
+    assert "is the same log as" in reading.problems[0]
+
+
+def test_a_log_that_was_cut_short_is_named_and_nothing_counts_twice(tmp_path: Path) -> None:
+    some = walks(5, 2)
+    path = log(tmp_path / "m.log", some)
+    reading = Reading(path)
+    reading.read()
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) // 2])
+    reading.read()
+    assert "was cut short or changed" in reading.problems[0]
+    path.write_bytes(whole + content(some[:1]))
+    reading.read()
+    assert reading.rewards == sums([*some, some[0]])
+    assert reading.problems == []
+
+
+def test_another_log_in_its_place_is_read_from_its_beginning(tmp_path: Path) -> None:
+    some = walks(5, 2)
+    path = log(tmp_path / "m.log", some[:3])
+    reading = Reading(path)
+    reading.read()
+    path.unlink()
+    log(path, some[3:], time=9.0)
+    reading.read()
+    assert reading.rewards == sums(some)
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"sensors": ["y"]}, "was written with the sensors y, the fixture"),
+        ({"test": "test_other.py::test_x"}, "was written for the fixture of test_other.py::test_x"),
+        ({"bins": "0123"}, "had other bins"),
+    ],
+)
+def test_missions_of_another_fixture_are_named_and_never_mixed(
+    tmp_path: Path, changes: dict[str, object], says: str
+) -> None:
+    some = walks(4, 2)
+    path = log(tmp_path / "m.log", some[:2])
+    log(path, some[2:3], **changes)
+    reading = Reading(path)
+    assert reading.read() == 2
+    assert says in reading.problems[0]
+    again = Reading(path)  # the state does not forget it
+    again.known.update({one._at.log: one._at for one in reading.readers})
+    assert again.read() == 0
+    assert says in again.problems[0]
+    log(path, some[3:])
+    assert reading.read() == 3
+    assert reading.problems == []
+
+
+def test_a_log_of_an_older_version_without_bins_is_read(tmp_path: Path) -> None:
+    begin = start()
+    del begin["bins"]
+    path = tmp_path / "m.log"
+    path.write_bytes(MAGIC + encoded(begin) + content(walks(2, 2)))
+    assert Reading(path).read() == 2
+
+
+def test_a_damaged_record_is_named(tmp_path: Path) -> None:
+    path = log(tmp_path / "m.log", walks(5, 2))
+    whole = bytearray(path.read_bytes())
+    whole[len(whole) // 2] ^= 1
+    path.write_bytes(whole)
+    reading = Reading(path)
+    assert 0 < reading.read() < 5
+    assert "is damaged at byte" in reading.problems[0]
+
+
+def test_files_that_are_none_or_not_there_are_named(tmp_path: Path) -> None:
+    other = tmp_path / "picture.png"
+    other.write_bytes(b"\x89PNG")
+    reading = Reading(other, tmp_path / "none.log", tmp_path)
+    assert reading.read() == 0
+    assert [
+        next(words for words in ("is no log", "is not there yet", "cannot be read") if words in one)
+        for one in reading.problems
+    ] == ["is no log", "is not there yet", "cannot be read"]
+    log(tmp_path / "none.log", walks(1, 0))
+    assert reading.read() == 1
+
+
+def test_missions_without_an_end_are_counted_apart(tmp_path: Path) -> None:
+    some = walks(3, 2)
+    path = tmp_path / "m.log"
+    pieces = [encoded(record) for one in some for record in records(one, pieces=3)]
+    path.write_bytes(MAGIC + encoded(start()) + b"".join(pieces[:4] + pieces[5:]))
+    reading = Reading(path)
+    assert reading.read() == 2
+    assert reading.readers[0]._at.unfinished == 1
+    assert reading.rewards == sums(some[1:])

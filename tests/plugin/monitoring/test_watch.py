@@ -1,0 +1,214 @@
+"""`tarl watch` as it is typed: what it says, what it exits with, what it leaves behind."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from jsonschema import validate
+
+from pytest_tarl.commands.cli import main
+from pytest_tarl.monitoring import dashboard, monitor, watch
+from pytest_tarl.monitoring.reading import LogReader
+from tests.plugin.monitoring.missions import Walk, content, fixture, log, walks
+
+
+@pytest.fixture
+def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The working directory, with the fixture of a small world."""
+    monkeypatch.chdir(tmp_path)
+    fixture(tmp_path / "f.npz", walks(80, 1))
+    return tmp_path
+
+
+def test_missions_as_off_line_raise_no_alarm(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log(root / "m.log", walks(200, 2))
+    assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 0
+    out = capsys.readouterr().out
+    assert "200 missions, 200 passed (100 %)" in out
+    assert "at least 96.3 % of missions pass (95 % confidence): evidence" in out
+    assert "a false alarm, ever: at most 5 % (alpha); 10 % with the 5 % by which" in out
+    assert "ALARM" not in out
+    assert "where" not in out
+    assert (root / ".tarl/watch/f.npz").exists()
+
+
+def test_a_drift_after_a_quiet_life_is_told_with_when_and_where(
+    root: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log(root / "m.log", [*walks(300, 2), *walks(60, 3, drift=1.0)])
+    assert main(["watch", "m.log", "--fixture", "f.npz", "--once", "--json", "-"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    validate(found, dashboard.schema())
+    assert abs(found["world"]["evidence"]["since"]["mission"] - 301) < 10
+    assert 301 <= found["world"]["evidence"]["alarm"]["mission"] < 330
+    assert 301 <= found["bounds"][0]["evidence"]["alarm"]["mission"] < 340
+    assert {cell[0] for cell in found["where"]["cells"]} == {2}
+    assert found["where"]["words"] == "x 2-3"
+    assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 1
+    out = capsys.readouterr().out
+    assert "360 missions" in out  # nothing counts twice
+    assert "where   x 2-3" in out
+
+
+def test_new_cells_are_named(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    elsewhere = [Walk((*one.cells, (3, 5)), (*one.reward, 1.0), True) for one in walks(30, 4)]
+    log(root / "m.log", elsewhere)
+    assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 1
+    assert "new     x 3-4, wet 5: no off-line episode was there" in capsys.readouterr().out
+
+
+def test_logs_of_other_worlds_are_named_and_the_others_counted(
+    root: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log(root / "m.log", walks(5, 2))
+    log(root / "other.log", walks(5, 2), sensors=["speed"])
+    assert main(["watch", "m.log", "other.log", "none.log", "--fixture", "f.npz", "--once"]) == 2
+    said = capsys.readouterr()
+    assert "5 missions" in said.out
+    assert "other.log was written with the sensors speed, the fixture of" in said.err
+    assert "none.log is not there yet" in said.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["--alpha", "1.5"], "--alpha is a probability between 0 and 1"),
+        (["--interval", "0"], "--interval is a number of seconds above 0"),
+        (["--once", "--until-alarm"], "--once reads what is there and ends"),
+        (["--once", "--json", "m.log"], "--json m.log would write over what is read"),
+        (["--once", "--fixture", "none.npz"], "There is no utility fixture none.npz"),
+        (["--once", "--state", "f.npz"], "The state f.npz is damaged or is none of `tarl watch`"),
+        (["--once", "--state", "f.npz/s"], "cannot be written"),
+        (["--once", "--json", "f.npz/s"], "f.npz/s cannot be written"),
+    ],
+)
+def test_what_cannot_be_is_a_sentence(
+    root: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], says: str
+) -> None:
+    log(root / "m.log", walks(5, 2))
+    before = (root / "f.npz").read_bytes()
+    assert main(["watch", "m.log", "--fixture", "f.npz", *arguments]) == 2
+    assert says in capsys.readouterr().err
+    assert (root / "f.npz").read_bytes() == before
+
+
+def test_a_fixture_in_which_every_mission_failed_states_nothing_to_test(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    fixture(tmp_path / "f.npz", [Walk(one.cells, one.reward, False) for one in walks(40, 1)])
+    log(tmp_path / "m.log", walks(20, 2))
+    assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 1  # that missions pass is news
+    out = capsys.readouterr().out
+    assert "at least 0 % of missions pass (95 % confidence): nothing to test" in out
+    assert "a false alarm, ever: at most 5 % (alpha)\n" in out
+
+
+def test_missions_without_rewards_and_without_steps_are_told(
+    root: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    some = walks(6, 2)
+    unjudged = [Walk(one.cells, (float("nan"),) * len(one.cells), True) for one in some]
+    log(root / "m.log", [*unjudged, Walk((), (), True)])
+    assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 0
+    out = capsys.readouterr().out
+    assert "6 missions without rewards" in out
+    assert "1 mission without a step" in out
+
+
+def started(root: Path, *arguments: str) -> subprocess.Popen[str]:
+    command = [
+        sys.executable,
+        "-m",
+        "pytest_tarl",
+        "watch",
+        "m.log",
+        "--fixture",
+        "f.npz",
+        "--interval",
+        "0.02",
+    ]
+    return subprocess.Popen(
+        [*command, *arguments], cwd=root, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+def until(what: object, process: subprocess.Popen[str]) -> None:
+    """Wait until a call returns something true; a watch that ended by itself would never get there."""
+    for _ in range(3000):
+        if what():  # type: ignore[operator]
+            return
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.02)
+    raise AssertionError(process.kill() or process.communicate())
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_it_follows_a_log_that_comes_later_and_grows_and_ends_with_a_signal(
+    root: Path, number: signal.Signals
+) -> None:
+    process = started(root, "--json", "w.json")
+
+    def missions() -> int:
+        return int(json.loads((root / "w.json").read_text())["missions"]) if (root / "w.json").exists() else 0
+
+    log(root / "m.log", walks(20, 2))
+    until(lambda: missions() == 20, process)
+    with (root / "m.log").open("ab") as file:
+        file.write(content(walks(10, 3)))
+    until(lambda: missions() == 30, process)
+    process.send_signal(number)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 0, err
+    assert "30 missions" in out
+    assert "Traceback" not in err
+    validate(json.loads((root / "w.json").read_text()), dashboard.schema())
+
+
+def test_until_alarm_ends_with_the_first_one(root: Path) -> None:
+    log(root / "m.log", walks(60, 3, drift=1.0))
+    process = started(root, "--until-alarm")
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 1, err
+    assert "ALARM with mission" in out
+    assert "most of all" in out
+
+
+def test_without_output_to_write_to_it_ends_quietly(root: Path) -> None:
+    log(root / "m.log", walks(5, 2))
+    command = f"{sys.executable} -m pytest_tarl watch m.log --fixture f.npz --once | true"
+    done = subprocess.run(
+        command, shell=True, cwd=root, capture_output=True, text=True, check=False, env={**os.environ}
+    )
+    assert "Traceback" not in done.stderr
+
+
+def test_a_log_that_is_named_twice_is_refused(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log(root / "m.log", walks(5, 2))
+    assert main(["watch", "m.log", "./m.log", "--fixture", "f.npz", "--once"]) == 2
+    assert "m.log is named twice: name each log once." in capsys.readouterr().err
+
+
+def test_false_alarms_are_as_rare_as_promised_with_a_fresh_fixture_each(tmp_path: Path) -> None:
+    """60 short lives at α = 30 %, each with a fixture of its own."""
+    alarms = 0
+    rng = np.random.default_rng(0)
+    for life in range(60):
+        seeds = rng.integers(2**31, size=2).tolist()
+        recorded = fixture(tmp_path / "f.npz", walks(24, seeds[0]))
+        watched = monitor.begun(recorded, alpha=0.3, seed=life)
+        reader = LogReader(
+            log(tmp_path / f"{life}.log", walks(60, seeds[1])), watch.expectation(recorded, watched), {}, {}
+        )
+        watched.observe(watch.joined(list(reader.missions())))
+        reader.close()
+        alarms += bool((watched.processes.alarm >= 0).any())
+    assert alarms <= 25  # 18 at most in expectation, and two standard errors
