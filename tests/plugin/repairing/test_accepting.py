@@ -89,7 +89,7 @@ class Field:
                 sample=SimpleNamespace(seeds=tuple(range(100, 140)), total=totals, episodes=40)
             ),
             reference=Reference(totals.tolist(), 1.0, 0.5),
-            options=SimpleNamespace(seed=0, alpha=0.05),
+            options=SimpleNamespace(seed=0, alpha=0.05, edit="use"),
             drift="mud",
             permanent=False,
             neighbours=tuple,
