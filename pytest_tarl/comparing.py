@@ -10,6 +10,7 @@ import numpy as np
 from pytest_tarl import seeds
 from pytest_tarl.bagged import bagged
 from pytest_tarl.designation import Designation
+from pytest_tarl.drifts import sizes as drawn_sizes
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.learning import judgements, localize, parts
@@ -23,7 +24,7 @@ from pytest_tarl.learning.sarsa import LEARNERS
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled, tiled_batch
 from pytest_tarl.logged import read_log
-from pytest_tarl.model import Comparison, ListComparison, Region, SitePlace, TaintList, Verdict
+from pytest_tarl.model import Comparison, ListComparison, Region, SitePlace, Sizes, TaintList, Verdict
 from pytest_tarl.options import Options
 from pytest_tarl.recording import Progress, Recorded, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.rollout import Rollout
@@ -97,9 +98,22 @@ def run_online(
             [one.text for one in designation.requirements.formulas],
             {"offline": offline.judgements, "online": online.judgements},
         ),
+        sizes=_sizes(designation, drift, recorded.sample.seeds),
         permanent=drift is not None and designation.drifts[drift].permanent,
     )
     return Online(comparison, recorded, learned)
+
+
+def _sizes(designation: Designation, drift: str | None, drawn_by: Sequence[int]) -> dict[str, Sizes]:
+    """Return the ranges of a drift, and what the episodes of the seeds drew from them."""
+    if drift is None:
+        return {}
+    whole = designation.drifts[drift]
+    drawn = [drawn_sizes(whole, drift, seed) for seed in drawn_by]
+    return {
+        part: Sizes(part, span.low, span.high, {"online": tuple(one[part] for one in drawn)})
+        for part, span in whole.spans.items()
+    }
 
 
 @dataclass(frozen=True)

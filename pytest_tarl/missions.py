@@ -215,6 +215,7 @@ class Mission:
                 self.tarl / "patches",
                 self.fixture_path,
                 self._neighbours,
+                self.designation.drifts.get(self.drift or ""),
             )
             repaired = repair(order)
             comparison = repaired.comparison

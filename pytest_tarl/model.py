@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from pytest_tarl.sensors import Cell, Sensor
@@ -28,6 +29,7 @@ Reason = Literal[
     "worse than unrepaired",
     "another test gets worse",
     "not at its definition",
+    "not over the whole range",
 ]
 
 
@@ -198,6 +200,37 @@ class Repair:
 
 
 @dataclass(frozen=True, slots=True)
+class Band:
+    """A part of the range that a drift is drawn from; `part` names the range in a dictionary, else it is empty."""
+
+    part: str
+    low: float
+    high: float
+
+    def __str__(self) -> str:
+        """Write it for people: `mud 0.1 to 0.27`."""
+        return f"{self.part or 'sizes'} {self.low:.3g} to {self.high:.3g}"
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """A range and what was drawn from it: by world, aligned with its totals."""
+
+    part: str
+    low: float
+    high: float
+    of: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+
+    BANDS = 3
+
+    @property
+    def bands(self) -> tuple[Band, ...]:
+        """Return the range in equal parts."""
+        ends = [self.low + (self.high - self.low) * at / self.BANDS for at in range(self.BANDS)] + [self.high]
+        return tuple(Band(self.part, low, high) for low, high in pairwise(ends))
+
+
+@dataclass(frozen=True, slots=True)
 class SearchTrace:
     """Average-total-reward curve of one search: `totals[i]` is the reward of its i-th episode, `labels[i]` what ran."""
 
@@ -263,4 +296,5 @@ class Comparison:
     flags: tuple[str, ...] = ()  # options of the run that are not the default ones
     changes: Mapping[Cell, float] = field(default_factory=dict)  # how far on-line differs, by cell
     formulas: tuple[FormulaRow, ...] = ()
+    sizes: Mapping[str, Sizes] = field(default_factory=dict)  # by part of the drift, where it has a range
     permanent: bool = False  # whether the drift is for good, so that the designed world is the old one

@@ -12,6 +12,7 @@ from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.neighbours import NOTHING_BESIDE, Beside, beside
 from pytest_tarl.repairing.placing import Placing
+from pytest_tarl.repairing.ranges import Ranged, over_the_range
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import LOOKS, Acceptance, World, accept
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
@@ -60,6 +61,7 @@ class Examiner:
         self.order = mutants.order
         self.guards = guards
         self.placing = Placing(mutants)
+        self.ranged: dict[Candidate, Ranged] = {}  # where the drift has a range
         self.tested = 0
         self.spent = 0
         self.bar = float("-inf")  # what a candidate has to gain on known seeds, once one that did was refused
@@ -160,13 +162,18 @@ class Examiner:
         firing = len(self._firing(candidate)) / order.fixture.sample.episodes
         losing = sum(total < order.goal.near for total in order.comparison.totals["online"])
         nominal = self._world(candidate, None, firing) if firing else None
-        return accept(
-            self._world(candidate, order.drift, losing / len(order.comparison.totals["online"]) or 1.0),
-            nominal,
-            seeds.episode_seeds(order.options.seed, f"acceptance {self.tested}", LOOKS[-1]),
-            order.reference,
-            order.options.alpha / 2**self.tested,
-        )
+
+        def test(fresh: Sequence[int], designed: bool) -> Acceptance:
+            return accept(
+                self._world(candidate, order.drift, losing / len(order.comparison.totals["online"]) or 1.0),
+                nominal if designed else None,
+                fresh,
+                order.reference,
+                order.options.alpha / 2**self.tested,
+            )
+
+        found, self.ranged[candidate] = over_the_range(order, f"acceptance {self.tested}", LOOKS[-1], test)
+        return found
 
     def _world(self, candidate: Candidate, drift: str | None, exposure: float) -> World:
         return World(

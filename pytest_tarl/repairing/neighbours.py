@@ -34,8 +34,7 @@ NOTHING_BESIDE = Beside()
 def beside(mutants: Mutants, candidate: Candidate) -> Beside:
     """Run the recorded missions of other tests of the changed files, until one of them loses."""
     changed = {path.resolve() for path in mutants.source(candidate)}
-    root = mutants.order.root
-    concerned = [one for one in mutants.order.neighbours() if _uses(one, changed, root)]
+    concerned = [one for one in mutants.order.neighbours() if _uses(one, changed, mutants.order.root)]
     held: list[str] = []
     episodes = 0
     for neighbour in concerned[:MOST]:

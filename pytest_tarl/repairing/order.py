@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from statistics import fmean, stdev
 
 from pytest_tarl.comparing import Online
+from pytest_tarl.drifts import Drift, sizes
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison
 from pytest_tarl.options import Options
@@ -45,6 +46,7 @@ class Order:
     patches: Path
     recorded: Path | None = None  # the file of the fixture
     neighbours: Callable[[], Sequence[Neighbour]] = tuple  # asked for when a candidate has held otherwise
+    world: Drift | None = None  # what the drift is
 
     @property
     def comparison(self) -> Comparison:
@@ -74,12 +76,28 @@ class Order:
         """Return what the search is after."""
         online = self.online.recorded.sample
         pairs = [Pair(seed, total) for seed, total in zip(online.seeds, online.total.tolist(), strict=True)]
-        return goal(pairs, self.reference, self.comparison.verdict.loss)
+        found = goal(pairs, self.reference, self.comparison.verdict.loss)
+        if not self.comparison.sizes or self.world is None or self.drift is None:
+            return found
+        part = next(iter(self.comparison.sizes))
+        drawn = [(sizes(self.world, self.drift, pair.seed)[part], at) for at, pair in enumerate(found.pairs)]
+        return replace(found, pairs=tuple(found.pairs[at] for at in spread(drawn)))
 
     @cached_property
     def worst(self) -> float:
         """Return the lowest reward that any recorded episode had: what a candidate earns that breaks the test."""
         return float(min(self.fixture.sample.total.min(), self.online.recorded.sample.total.min()))
+
+
+def spread(drawn: Sequence[tuple[float, int]]) -> Iterator[int]:
+    """Yield the indices of (size, index) pairs so that the first few of them span the sizes."""
+    parts = [[index for _, index in sorted(drawn)]]
+    while parts:
+        part = parts.pop(0)
+        if part:
+            middle = len(part) // 2
+            yield part[middle]
+            parts += [part[:middle], part[middle + 1 :]]
 
 
 def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:

@@ -15,13 +15,16 @@ from pytest_tarl.repairing.accepting import Accepted, Examiner, Refused
 from pytest_tarl.repairing.delivering import attempts, delivered, withheld
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.ranges import Ranged, bands_in_words, fits_a_part, repaired_sizes
 from pytest_tarl.repairing.sureness import sureness
 from pytest_tarl.repairing.unnamed import unnamed_modules
 from pytest_tarl.repairing.watching import Watch
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.ranking import Ranking
-from pytest_tarl.searching.search import BudgetSpentError, Candidate, Strategy, Trials
+from pytest_tarl.searching.search import BudgetSpentError, Candidate, Strategy, Trials, label
+
+NAMED_FROM = 3  # episodes from which a candidate that fits a part of a range is named
 
 
 @dataclass(frozen=True)
@@ -124,7 +127,9 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
     history = attempts(order, [*watch.unconfirmed(examiner.tried), *examiner.tried])
     chosen = accepted.candidate if accepted else examiner.refused.candidate
     totals = dict(order.comparison.totals)
+    sizes = order.comparison.sizes
     if accepted:
+        sizes = repaired_sizes(order, examiner.ranged.get(accepted.candidate, Ranged()))
         totals["repaired"] = tuple(outcome.total for outcome in accepted.acceptance.drifted)
         nominal = tuple(outcome.total for outcome in accepted.acceptance.nominal)
         totals["nominal_repaired"] = nominal or totals["offline"]
@@ -140,10 +145,11 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         ),
         searches=found.curves,
         totals=totals,
+        sizes=sizes,
         repair=delivered(mutants, accepted, found.episodes, examiner.spent, history)
         if accepted
         else withheld(order, refused, history),
-        notes=(*order.comparison.notes, *_notes(order, examiner, found)),
+        notes=(*order.comparison.notes, *_notes(order, examiner, found, watch)),
         ranking=sureness(order, found.effects or {}, accepted, found.ranking),
     )
     episodes = {"search": found.episodes, "acceptance": examiner.spent}
@@ -168,13 +174,14 @@ def _ended(examiner: Examiner, found: _Findings) -> Refused:
     return examiner.refused
 
 
-def _notes(order: Order, examiner: Examiner, found: _Findings) -> Iterator[str]:
+def _notes(order: Order, examiner: Examiner, found: _Findings, watch: Watch) -> Iterator[str]:
     """Say what was not searched, what was dropped for the sake of others, and what cut the search short."""
     accepted = found.accepted is not None
     told = found.accepted.candidate if found.accepted else examiner.refused.candidate
     if told is not None:
         yield from dict.fromkeys(examiner.placing.notes(told))
     yield from unnamed_modules(order)
+    yield from _of_the_range(order, examiner, watch)
     yield from (
         f"a candidate was dropped since another test loses: {told}" for told in dict.fromkeys(examiner.lost)
     )
@@ -188,6 +195,18 @@ def _notes(order: Order, examiner: Examiner, found: _Findings) -> Iterator[str]:
             f"the search ended because its {order.options.budget} episodes were spent: "
             f"--tarl-budget {2 * order.options.budget} goes on for as long again"
         )
+
+
+def _of_the_range(order: Order, examiner: Examiner, watch: Watch) -> Iterator[str]:
+    """Say which candidates fit a part of the range only."""
+    for one in examiner.tried:
+        ranged = examiner.ranged.get(one.candidate)
+        if one.reason == "not over the whole range" and ranged is not None:
+            yield f"{label(one.candidate)}: {bands_in_words(ranged)}"
+    for candidate, runs in watch.seen.items():
+        told = fits_a_part(order, runs) if len(runs) > NAMED_FROM else ""
+        if told and candidate.changes not in [one.candidate.changes for one in examiner.tried]:
+            yield f"{label(candidate)}: {told}"
 
 
 def _ranked(order: Order) -> list[tuple[SitePlace, float]]:

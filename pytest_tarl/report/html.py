@@ -16,7 +16,7 @@ from typing import Any
 from pytest_tarl.errors import TarlError
 from pytest_tarl.files import advice_on, write_atomically
 from pytest_tarl.model import Comparison, ListComparison
-from pytest_tarl.report import formulas, words
+from pytest_tarl.report import formulas, sizes, words
 from pytest_tarl.report.figures import MOST_ROWS, plane, reward_curves, utility_figure
 from pytest_tarl.report.slices import chart
 
@@ -137,6 +137,7 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
             _list(comparison, compared, figure)
             for compared, figure in zip(comparison.lists, drawn["utility"], strict=True)
         ],
+        "sizes": sizes.plots(comparison),
         "curves": _curves_in_words(drawn["curves"]),
         "clipped": _clipped(drawn["curves"]),
         "repair_words": words.repair_words(comparison.repair) if comparison.repair else "",

@@ -13,6 +13,7 @@ from pytest_tarl.errors import TarlError
 from pytest_tarl.files import advice_on, write_atomically
 from pytest_tarl.model import Comparison, Culprit, FormulaRow, Repair, SitePlace, Slice
 from pytest_tarl.report.regions import boxes
+from pytest_tarl.report.sizes import rows as size_rows
 from pytest_tarl.report.words import atr, expected
 from pytest_tarl.sensors import Cell, Sensor
 
@@ -68,7 +69,22 @@ def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, A
         "culprits": [_culprit(culprit) for culprit in comparison.culprits],
         "repair": _repair(repair) if repair else None,
         **({"formulas": [_formula(row) for row in comparison.formulas]} if comparison.formulas else {}),
+        **({"sizes": _sizes(comparison)} if comparison.sizes else {}),
     }
+
+
+def _sizes(comparison: Comparison) -> list[dict[str, Any]]:
+    """Return what episodes earn in each part of a drift's range."""
+    return [
+        {
+            "part": row.band.part,
+            "low": row.band.low,
+            "high": row.band.high,
+            "online": _finite(row.before),
+            "repaired": _finite(row.after),
+        }
+        for row in size_rows(comparison)
+    ]
 
 
 def rectangles(cells: Iterable[Cell], sensors: Sequence[Sensor]) -> list[dict[str, list[Any]]]:

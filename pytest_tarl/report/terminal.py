@@ -7,7 +7,7 @@ from pathlib import Path
 from textwrap import wrap
 
 from pytest_tarl.model import Comparison, Culprit, ListComparison, Slice
-from pytest_tarl.report import formulas, words
+from pytest_tarl.report import formulas, sizes, words
 
 SHOWN = 3  # culprits, lists and notes before "(and 3 more)"
 LABEL = 9  # width of the column of labels
@@ -36,6 +36,7 @@ def _entries(
     yield "verdict", [words.verdict_sentence(comparison)]
     yield "reward", [_rewards(comparison)]
     yield "loss", list(_loss(comparison))
+    yield "sizes", list(sizes.lines(comparison))
     yield "formula", list(formulas.lines(comparison))
     if comparison.verdict.result != "no difference":
         yield "parts", list(_parts(comparison))

@@ -28,6 +28,7 @@ REASONS: dict[Reason, str] = {
     "not confirmed": "it came near once, and not on further seeds",
     "worse than unrepaired": "on fresh seeds the best change found earns less than no repair",
     "another test gets worse": "the best change found makes another recorded test of the node worse",
+    "not over the whole range": "the best change found holds for a part of the range only",
     "not at its definition": "the best change found helps at its use only, and --tarl-edit=definition was asked for",
 }
 
@@ -39,6 +40,7 @@ ENDS: dict[Reason, str] = {
     "not confirmed": "dropped, not confirmed on further seeds",
     "worse than unrepaired": "dropped, worse than no repair",
     "another test gets worse": "dropped, another test of the node gets worse",
+    "not over the whole range": "dropped, it holds for a part of the range only",
     "not at its definition": "dropped, it helps at its use and not at the definition",
 }
 

@@ -84,7 +84,7 @@ class Field:
         pairs = tuple(Pair(seed, DRIFTED) for seed in KNOWN)
         self.order: Any = SimpleNamespace(
             goal=Goal(pairs, near=9.0, enough=9.5, online=DRIFTED),
-            comparison=SimpleNamespace(totals={"online": [DRIFTED] * 10}, sensors=()),
+            comparison=SimpleNamespace(totals={"online": [DRIFTED] * 10}, sensors=(), sizes={}),
             fixture=SimpleNamespace(
                 sample=SimpleNamespace(seeds=tuple(range(100, 140)), total=totals, episodes=40)
             ),

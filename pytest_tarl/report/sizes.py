@@ -1,0 +1,97 @@
+"""Reward against the size of a drift that has a range: in words, and as points for the page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from statistics import fmean
+
+from pytest_tarl.model import Band, Comparison, Sizes
+from pytest_tarl.report import words
+
+WORLDS = ("online", "repaired")  # before and after
+WIDTH, HEIGHT = 640, 240  # of the drawing, without its margins
+
+
+@dataclass(frozen=True)
+class Row:
+    """The mean reward in a part of a range, before and after the repair; None where there is no episode."""
+
+    band: Band
+    before: float | None
+    after: float | None
+    episodes: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Plot:
+    """One range as a drawing: points in pixels by world, ticks with their texts."""
+
+    part: str
+    points: Mapping[str, tuple[tuple[float, float], ...]]
+    across: tuple[tuple[float, str], ...]
+    up: tuple[tuple[float, str], ...]
+    offline: float  # height of the off-line average
+    rows: tuple[Row, ...]
+
+
+def rows(comparison: Comparison) -> Iterator[Row]:
+    """Yield every part of every range with its rewards."""
+    for one in comparison.sizes.values():
+        for band in one.bands:
+            earned = [_within(comparison, one, band, world) for world in WORLDS]
+            means = [fmean(totals) if totals else None for totals in earned]
+            yield Row(band, means[0], means[1], (len(earned[0]), len(earned[1])))
+
+
+def lines(comparison: Comparison) -> Iterator[str]:
+    """Say what an episode earns in each part of the range, `before → after`."""
+    repaired = bool(comparison.totals.get("repaired"))
+    for row in rows(comparison):
+        after = f" → {words.amount(row.after)} repaired" if repaired else ""
+        yield f"{row.band}: {words.amount(row.before)}{after}"
+
+
+def plots(comparison: Comparison) -> list[Plot]:
+    """Return a drawing for every range."""
+    found = list(rows(comparison))
+    return [
+        _plot(comparison, one, tuple(row for row in found if row.band.part == one.part))
+        for one in comparison.sizes.values()
+    ]
+
+
+def _within(comparison: Comparison, one: Sizes, band: Band, world: str) -> list[float]:
+    pairs = zip(one.of.get(world, ()), comparison.totals.get(world, ()), strict=False)
+    last = band.high == one.high
+    return [total for size, total in pairs if band.low <= size and (size < band.high or last)]
+
+
+def _plot(comparison: Comparison, one: Sizes, found: tuple[Row, ...]) -> Plot:
+    offline = words.atr(comparison, "offline") or 0.0
+    totals = [offline, *(total for world in WORLDS for total in comparison.totals.get(world, ()))]
+    low, high = min(totals), max(totals)
+    room = (high - low) or 1.0
+
+    def height(total: float) -> float:
+        return round(HEIGHT * (high - total) / room, 1)
+
+    def across(size: float) -> float:
+        return round(WIDTH * (size - one.low) / (one.high - one.low), 1)
+
+    points = {
+        world: tuple(
+            (across(size), height(total))
+            for size, total in zip(one.of.get(world, ()), comparison.totals.get(world, ()), strict=False)
+        )
+        for world in WORLDS
+    }
+    ends = [one.low, *(band.high for band in one.bands)]
+    return Plot(
+        one.part,
+        points,
+        tuple((across(end), f"{end:.3g}") for end in ends),
+        tuple((height(value), words.amount(value)) for value in sorted({low, offline, high})),
+        height(offline),
+        found,
+    )
