@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal
 
 from tarl_lint import catalog
 from tarl_lint.evidence import Outline
@@ -13,18 +13,23 @@ from tarl_lint.held import FUNCTIONS, in_loop, locks_around
 from tarl_lint.trees import children, walk
 
 MUTATORS: Final = catalog.MUTATORS | {"pop", "popleft", "remove", "clear", "sort", "reverse", "discard"}
+How = Literal["replaces", "adds", "inside", "reads", "length"]  # what an access does to what a name holds
 CONTAINERS: Final = frozenset(["OrderedDict", "Counter", "ChainMap", "UserDict", "UserList"])
 
 
 @dataclass(frozen=True)
 class Access:
-    """An access as written, with the locks held around it in its function. `constant`: it stores one, as flags do."""
+    """An access as written, with the locks held around it in its function.
+
+    `constant`: it stores one, as flags do.
+    """
 
     node: ast.Attribute | ast.Name
     locks: frozenset[str]
     writes: bool
     constant: bool
     repeated: bool
+    how: How = "reads"
 
     @property
     def name(self) -> str:
@@ -49,7 +54,8 @@ def accesses(function: ast.AST, receiver: str, outline: Outline) -> Iterator[Acc
         writes = _writes(node, outline)
         if writes or not _asks_presence(node, outline):
             constant = writes and _stores_constant(node, outline)
-            yield Access(node, locks_around(node, outline), writes, constant, in_loop(node, outline))
+            how = _changes(node, outline) if writes else _looks(node, outline)
+            yield Access(node, locks_around(node, outline), writes, constant, in_loop(node, outline), how)
 
 
 def _globals(outline: Outline) -> frozenset[str]:
@@ -105,6 +111,19 @@ def _writes(node: ast.Attribute | ast.Name, outline: Outline) -> bool:
             return False
         current = outer
     return False
+
+
+def _changes(node: ast.Attribute | ast.Name, outline: Outline) -> How:
+    """Tell whether a name gets something new, or what it holds is changed."""
+    if isinstance(node.ctx, ast.Load):
+        return "inside"
+    return "adds" if isinstance(outline.parents.get(node), ast.AugAssign) else "replaces"
+
+
+def _looks(node: ast.expr, outline: Outline) -> How:
+    outer = outline.parents.get(node)
+    asks = isinstance(outer, ast.Call) and isinstance(outer.func, ast.Name) and outer.func.id == "len"
+    return "length" if asks else "reads"
 
 
 def _mutates(method: ast.expr, node: ast.Attribute | ast.Name, outline: Outline) -> bool:

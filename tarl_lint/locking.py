@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from tarl_lint.accesses import Access, accesses
+from tarl_lint.accesses import Access, How, accesses
 from tarl_lint.evidence import Evidence
 from tarl_lint.held import asked_before, in_loop, locks_around
 from tarl_lint.threads import EXECUTOR, MAIN, Threads
@@ -45,6 +45,7 @@ class Use:
     thread: object
     writes: bool
     constant: bool = False
+    how: How = "reads"
 
     @property
     def locks(self) -> frozenset[str]:
@@ -92,14 +93,14 @@ class Locking:
         asked = asked_before(node, self.evidence.outline(path))
         spot = Spot(path, pos, frame.function.name, access.locks | above, asked)
         name = access.name if access.is_global else f"self.{access.name}"
-        return Use(name, (spot, *callers), thread, access.writes, access.constant)
+        return Use(name, (spot, *callers), thread, access.writes, access.constant, access.how)
 
     def _callers(self, frame: Frame) -> tuple[list[Spot], bool]:
         """Return the calls that lead to a frame, the nearest first, and whether one is made again and again."""
         spots: list[Spot] = []
         repeated = False
         current: Frame = frame
-        while current.caller is not None and current.call_pos is not None:
+        while current.caller is not None and current.call is not None and current.call_pos is not None:
             path, pos, caller = current.caller.program.path, current.call_pos, current.caller
             outline = self.evidence.outline(path)
             call = outline.call(pos)
@@ -139,6 +140,44 @@ def unguarded(uses: Sequence[Use]) -> Iterator[tuple[Use, Spot]]:
         spot = next((s for s in use.spots if (s.path, s.pos) not in held), use.spots[-1])
         if use.writes or not spot.asked & locks:
             yield use, spot
+
+
+class Harm:
+    """Tells where an access without lock can go wrong beside one that holds it.
+
+    Python stores a reference at once: one look at something that is only ever replaced sees the old or the new one,
+    and storing something new is lost only where another changes what is there, or relies on it for longer.
+    """
+
+    def __init__(self, uses: Mapping[State, Sequence[Use]]) -> None:
+        self._times: dict[object, set[Pos]] = {}  # by state and function: where it is accessed
+        self._read: dict[object, set[State]] = {}  # by function: what it reads without lock
+        self._written: dict[object, set[State]] = {}  # by function: what it writes under a lock
+        for state, every in uses.items():
+            for use in every:
+                self._times.setdefault((state, *_by(use)), set()).add(use.spots[0].pos)
+                if use.writes and use.locks:
+                    self._written.setdefault(_by(use), set()).add(state)
+                elif not use.writes and not use.locks:
+                    self._read.setdefault(_by(use), set()).add(state)
+
+    def between(self, state: State, use: Use, guarded: Use) -> bool:
+        """Tell whether `use`, without lock, can go wrong beside `guarded`."""
+        if use.how == "length":
+            return False
+        if use.writes:
+            return use.how != "replaces" or guarded.how in ("adds", "inside") or self._often(state, guarded)
+        torn = self._read.get(_by(use), set()) & self._written.get(_by(guarded), set())
+        return guarded.how == "inside" or self._often(state, use) or len(torn) > 1
+
+    def _often(self, state: State, use: Use) -> bool:
+        """Tell whether a function relies on the same state several times."""
+        return len(self._times[(state, *_by(use))]) > 1
+
+
+def _by(use: Use) -> tuple[object, ...]:
+    """Return what tells one function's accesses from others': where it is written, its thread, the locks held."""
+    return use.spots[0].path, use.spots[0].function, use.thread, use.locks
 
 
 def _state(access: Access, frame: Frame, receiver: Obj | None) -> State | None:

@@ -11,7 +11,8 @@ from pytest_tarl.flags import FLAGS
 
 ROOT = Path(__file__).parent.parent
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").rglob("*.md")])
-SOURCE = "\n".join(path.read_text("utf-8") for path in sorted((ROOT / "pytest_tarl").rglob("*.py")))
+CODE = sorted(p for package in ("pytest_tarl", "tarl_lint") for p in (ROOT / package).rglob("*.py"))
+SOURCE = "\n".join(path.read_text("utf-8") for path in CODE)
 SPOKEN = re.sub(r'"\s*\n\s*f?"', "", SOURCE)  # sentences that are written over several lines
 
 

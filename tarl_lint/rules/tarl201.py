@@ -3,10 +3,13 @@
 In rospy every subscriber, timer and service calls back in a thread of its own, beside the main loop. In rclpy this is
 so only with a MultiThreadedExecutor and callback groups that allow it, or with threads of one's own. An attribute or
 global that is accessed under a lock in one thread, and changed or read without it in another, may be seen half
-changed, or a change may be lost. Only what a lock is used for somewhere is reported. Not reported are flags that are
-set to constants, questions whether something is there yet or whether to leave before the lock is taken, methods of
-objects that may guard themselves, and what runs before the threads start. Where a function is called with the lock in
-one place and without it in another, the call without it is named.
+changed, or a change may be lost. Only what a lock is used for somewhere is reported, and only where it can go wrong: a
+container is changed while another thread reads it, something is counted or changed in place, a function looks at it
+twice and may see two different things, or reads parts that belong together. One look at a value that is only ever
+replaced is harmless: Python stores it at once. Not reported are flags that are set to constants, questions whether
+something is there yet, how long it is or whether to leave before the lock is taken, methods of objects that may guard
+themselves, and what runs before the threads start. Where a function is called with the lock in one place and without it
+in another, the call without it is named.
 """
 
 from __future__ import annotations
@@ -15,7 +18,7 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tarl_lint.evidence import Evidence
-from tarl_lint.locking import Locking, Use, unguarded
+from tarl_lint.locking import Harm, Locking, Use, unguarded
 from tarl_lint.model import Finding
 
 CODE: Final = "TARL201"
@@ -42,6 +45,7 @@ INVALID: Final = (
         def run(self):
             while not rospy.is_shutdown():
                 cmd = Twist()
+                cmd.linear.x = max(-1.0, min(1.0, -self.pose.position.x))
                 cmd.angular.z = max(-1.0, min(1.0, -self.pose.position.y))
                 self.pub.publish(cmd)
 
@@ -79,6 +83,32 @@ VALID: Final = (
     """,
     """
     import threading
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+
+    class Keeper:
+        def __init__(self):
+            self.lock = threading.Lock()
+            self.pose = None
+            self.pub = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+            rospy.Subscriber("/odom", Odometry, self.on_odom)
+
+        def on_odom(self, msg):
+            with self.lock:
+                self.pose = msg.pose.pose
+
+        def run(self):
+            while not rospy.is_shutdown():
+                pose = self.pose
+                cmd = Twist()
+                cmd.angular.z = max(-1.0, min(1.0, -pose.position.y))
+                self.pub.publish(cmd)
+
+    Keeper().run()
+    """,
+    """
+    import threading
     import rclpy
     from nav_msgs.msg import Odometry
     from rclpy.node import Node
@@ -108,13 +138,15 @@ VALID: Final = (
 
 def findings(evidence: Evidence) -> Iterator[Finding]:
     """Yield a hazard for each function that uses shared state without its lock, beside another thread."""
-    for uses in Locking(evidence).uses().values():
+    every = Locking(evidence).uses()
+    harm = Harm(every)
+    for state, uses in every.items():
         written = [u for u in uses if u.writes]
         if not written or all(u.constant for u in written):
             continue
         told: set[tuple[str, str]] = set()
         for use, spot in sorted(unguarded(uses), key=lambda found: (found[1].path, found[1].pos)):
-            other = _conflict(use, uses)
+            other = _conflict(use, [u for u in uses if u.locks and harm.between(state, use, u)])
             if other is None or (spot.path, spot.function) in told:
                 continue
             told.add((spot.path, spot.function))

@@ -5,8 +5,9 @@ on the way bounds it: no `min`, `max`, `clip` or function of such a name, no ang
 the value when it is too large. Sensors send infinity, jumps and nonsense sometimes, and the command then follows.
 Clamp it where it is computed; that is the line that is named. Conditions that only ask whether the value is large
 enough (`while distance > tolerance`) do not bound it. What passes through code that is not here is not reported, nor
-what somebody decided (a subscribed `Twist`, joystick, goal or target), nor speeds that may be measurements: a Float64
-on `/speed` made from ticks, from `twist`, or from a way and a time.
+speeds that may be measurements: a Float64 on `/speed` made from ticks, from `twist`, or from a way and a time. Sensors
+are known by their messages (`LaserScan`, `Odometry`, `Imu` …), and numbers by their topic (`/range`, `/cte`); what is
+neither may be decided by somebody, as commands, goals and parameters are, and is not reported.
 """
 
 from __future__ import annotations
@@ -137,11 +138,26 @@ SPEEDS: Final = re.compile(
 NO_COMMAND: Final = re.compile(
     r"estimat|measur|actual|current|state|feedback|error|odom|debug|filter|status", re.I
 )
-NO_SENSOR: Final = re.compile(
-    r"^(Bool|Empty|String|Char|Byte|U?Int8|Joy\w*|\w*Image|CameraInfo|Twist|TwistStamped|Ackermann\w*|\w*Trajectory|Path"
-    r"|\w*(Cmd|Command|Control|Goal|Request)\w*|)$"
+SENSOR_TYPES: Final = frozenset(
+    ["LaserScan", "MultiEchoLaserScan", "Range", "PointCloud", "PointCloud2", "Imu", "Odometry", "NavSatFix",
+     "MagneticField", "FluidPressure", "Temperature", "RelativeHumidity", "Illuminance", "BatteryState", "JointState",
+     "ContactsState", "ModelStates", "LinkStates", "DepthSensor", "AMCLPose", "Pose", "PoseStamped",
+     "PoseWithCovariance", "PoseWithCovarianceStamped", "Pose2D", "Point", "PointStamped", "TransformStamped"]
+)  # fmt: skip
+NUMBERS: Final = re.compile(
+    r"^(Float(32|64)|U?Int(16|32|64))(MultiArray)?$|^(Vector3|Wrench|Accel|Quaternion)(Stamped)?$"
 )
-ASKED_FOR: Final = re.compile(r"cmd|command|setpoint|target|goal|desired|joy|teleop|key", re.I)
+SENSOR_TOPICS: Final = re.compile(
+    r"range|dist|sonar|lidar|laser|scan|imu|gyro|accel|odom|encoder|tick|yaw|heading|compass|depth|altitude|height|gps"
+    r"|temperature|pressure|force|weight|position|pose|tilt|angle|offset|deviation|cte|error|light|sensor|measur|detect"
+    r"|track|state",
+    re.I,
+)
+ASKED_FOR: Final = re.compile(
+    r"cmd|command|setpoint|set_point|target|goal|desired|wish|reference|joy|teleop|key|param|request|plan|waypoint|mode"
+    r"|drive|control|ctrl|throttle|steer",
+    re.I,
+)  # what somebody decided
 
 
 def findings(evidence: Evidence) -> Iterator[Finding]:
@@ -188,11 +204,16 @@ def _hazardous(flow: Flow) -> bool:
 
 
 def _sensor(source: Source) -> bool:
-    """Tell whether messages are measured, rather than sent by a person or program that decides."""
+    """Tell whether messages are measured: by their type, of mere numbers by the topic."""
     if not on_topic(source.api) or not ("ubscri" in source.api or "wait_for_message" in source.api):
         return False
     types = (source.type or "").split(" | ")
-    return not any(map(NO_SENSOR.match, types)) and not any(map(ASKED_FOR.search, source.topics))
+    if any(map(ASKED_FOR.search, (*source.topics, *types))):
+        return False
+    if set(types) <= SENSOR_TYPES:
+        return True
+    numbers = all(t in SENSOR_TYPES or NUMBERS.match(t) for t in types)
+    return numbers and any(map(SENSOR_TOPICS.search, source.topics))
 
 
 def _command(flow: Flow) -> bool:

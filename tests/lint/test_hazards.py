@@ -235,3 +235,35 @@ def test_a_hazard_has_no_flow_in_json(in_directory, capsys):
     (diagnostic,) = json.loads(capsys.readouterr().out)["diagnostics"]
     assert diagnostic["code"] == "TARL204"
     assert "flow" not in diagnostic
+
+
+DECIDED = """
+    import rospy
+    from race.msg import {kind}
+    from ackermann_msgs.msg import AckermannDriveStamped
+    pub = rospy.Publisher("/drive", AckermannDriveStamped, queue_size=1)
+    def on_message(msg):
+        made = AckermannDriveStamped()
+        made.drive.speed = 0.3 * msg.{field}
+        pub.publish(made)
+    rospy.Subscriber("{topic}", {kind}, on_message)
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "field", "topic", "found"),
+    [
+        ("drive_param", "velocity", "/drive_parameters", 0),
+        ("drive_param", "velocity", "/sensors", 0),
+        ("Float64", "data", "/velocity_msg", 0),
+        ("Twist", "linear.x", "/base/vel", 0),
+        ("Joy", "axes", "/joy", 0),
+        ("Odometry", "pose.pose.position.x", "/target_odom", 0),
+        ("Float64", "data", "/front_distance", 1),
+        ("Odometry", "pose.pose.position.x", "/base/pose", 1),
+        ("Range", "range", "/anything", 1),
+        ("Unheard", "range", "/scan", 0),
+    ],
+)
+def test_only_what_measures_is_a_sensor(kind, field, topic, found):
+    assert len(lines("TARL202", DECIDED.format(kind=kind, field=field, topic=topic))) == found

@@ -4,6 +4,8 @@ from textwrap import dedent
 
 import pytest
 
+from tarl_lint.config import Config, Options
+from tarl_lint.runner import run
 from tests.lint.hazardous import inside, lines
 
 ROSPY = """
@@ -24,7 +26,7 @@ ROSPY = """
         def on_timer(self, event):
 {body}
         def send(self):
-            self.pub.publish(self.value)
+            self.pub.publish(self.value * self.value)
     Node()
     rospy.spin()
 """
@@ -50,7 +52,7 @@ RCLPY = """
             with self.lock:
                 self.value = msg.data
         def on_timer(self):
-            self.pub.publish(Float64(data=self.value))
+            self.pub.publish(Float64(data=self.value * self.value))
     rclpy.init()
     executor = {executor}()
     executor.add_node(Relay())
@@ -61,7 +63,10 @@ RCLPY = """
 @pytest.mark.parametrize(
     ("body", "found"),
     [
-        ("self.pub.publish(self.value)", 1),
+        ("self.pub.publish(self.value)", 0),
+        ("self.pub.publish(self.value - self.value / 2)", 1),
+        ("value = self.value\nself.pub.publish(value - value / 2)", 0),
+        ("self.value = 1.5 * event.last_duration", 0),
         ("self.value += 1.0", 1),
         ("self.send()", 1),
         ("with self.lock:\n    self.send()", 0),
@@ -70,7 +75,7 @@ RCLPY = """
         ("self.lock.acquire()\nself.lock.release()\nself.send()", 1),
         ("if self.value is None:\n    return", 0),
         ("if self.value == 0.5:\n    return\nwith self.lock:\n    self.send()", 0),
-        ("if self.value == 0.5:\n    return\nself.pub.publish(1.0)", 1),
+        ("if self.value == 0.5:\n    return\nself.pub.publish(1.0)", 0),
         ("with self.lock:\n    self.send()\nself.send()", 1),
         ("pass", 0),
     ],
@@ -141,7 +146,9 @@ GLOBAL = """
 @pytest.mark.parametrize(
     ("body", "found"),
     [
-        ("pub.publish(value)", 1),
+        ("pub.publish(value)", 0),
+        ("pub.publish(value * value)", 1),
+        ("pub.publish(len(values))", 0),
         ("pub.publish(sum(values))", 1),
         ("with lock:\n    pub.publish(value)", 0),
         ("value = 1.0\npub.publish(value)", 0),
@@ -159,3 +166,66 @@ def test_flags_and_state_without_any_lock_are_not_reported():
     assert lines("TARL201", flag) == []
     bare = inside(ROSPY, "self.pub.publish(self.value)", 12).replace("with self.lock:", "if msg.data:")
     assert lines("TARL201", bare) == []
+
+
+TWO_PARTS = """
+    import threading
+    import rospy
+    from std_msgs.msg import Float64
+    class Node:
+        def __init__(self):
+            self.lock = threading.Lock()
+            self.x = self.y = 0.0
+            self.pub = rospy.Publisher("/out", Float64, queue_size=1)
+            rospy.Subscriber("/in", Float64, self.on_value)
+            rospy.Timer(rospy.Duration(0.1), self.on_timer)
+        def on_value(self, msg):
+            with self.lock:
+{written}
+        def on_timer(self, event):
+            self.pub.publish(self.x + self.y)
+    Node()
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("written", "found"),
+    [("self.x = msg.data\nself.y = 2.0 * msg.data", 2), ("self.x = msg.data", 0)],
+)
+def test_parts_that_are_written_together_must_be_read_together(written, found):
+    body = "\n".join(f"{' ' * 16}{line}" for line in written.split("\n"))
+    assert len(lines("TARL201", TWO_PARTS.format(written=body))) == found
+
+
+def test_a_function_that_ros_and_others_call_is_named_itself_in_its_own_file(tmp_path):
+    """What ROS calls without the lock has no calling line: none of another file may be named in its place."""
+    files = {
+        "a_first.py": "import rospy\n\n\ndef name():\n    return 'x'\n",
+        "node.py": """
+            import threading
+            import rospy
+            from std_msgs.msg import Float64
+            from a_first import name
+            class Node:
+                def __init__(self):
+                    self.lock = threading.Lock()
+                    self.values = []
+                    self.pub = rospy.Publisher("/out", Float64, queue_size=1)
+                    rospy.Subscriber("/" + name(), Float64, self.keep)
+                    rospy.Subscriber("/other", Float64, self.on_other)
+                def keep(self, msg):
+                    self.values.append(msg.data)
+                def on_other(self, msg):
+                    with self.lock:
+                        self.keep(msg)
+                        self.pub.publish(sum(self.values))
+            Node()
+            rospy.spin()
+        """,
+    }
+    for file, text in files.items():
+        (tmp_path / file).write_text(dedent(text))
+    result = run(Options(paths=(tmp_path,), cache=False), Config(root=tmp_path, select=("TARL201",)))
+    (finding,) = result.findings
+    assert (finding.span.path.rpartition("/")[2], finding.span.line) == ("node.py", 14)
