@@ -131,7 +131,7 @@ def _side(
 ) -> _Side:
     """Return the test's own world, a log or bags, as asked for."""
     if options.log is not None:
-        logged = read_log(options.log, fixture, plan, designation.judge)
+        logged = read_log(options.log, fixture, plan, designation.judge, designation.requirements)
         return _Side(logged, range(logged.count), 1, logged.notes)
     if options.bags:
         missions = bagged(rollout, fixture, designation, options)

@@ -4,9 +4,9 @@ Time is counted in whole nanoseconds, as on the virtual clock. Signals are const
 is every subformula. Where a window reaches beyond the end of what is known, a subformula keeps the value that it had
 last, and before the beginning the value that it had first; so values are finite wherever signals are.
 
-Differences from rtamt 0.4 in dense time: `until` and `since` need their left side up to the instant before only, as in
-discrete time; timed ones with a lower bound above zero do not let the left side be false before it; a comparison at
-equality has the sign of its truth; an empty window is no infinity; units of bounds are converted the right way.
+Differences from rtamt 0.4 in dense time: `until` and `since` need no left side at the instant of the right one, as in
+discrete time; a comparison at equality has the sign of its truth; an empty window is no infinity; units of bounds are
+converted the right way round.
 """
 
 from __future__ import annotations

@@ -54,7 +54,14 @@ def observe(order: Order) -> str:
         "judged": order.step is not None,
     }
     _warn_of_mute_sensors(fixture)
-    observer = Observer(fixture.sensors, LogFile(order.log), about, idle=order.idle)
+    observer = Observer(
+        fixture.sensors,
+        LogFile(order.log),
+        about,
+        idle=order.idle,
+        signals=[signal for signal in fixture.signals if signal.topic is not None],
+        following=fixture.sample.judgements is not None,
+    )
     try:
         with (
             watched(library, observer, _topics(order, fixture), idle=order.idle is not None),

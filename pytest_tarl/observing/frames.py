@@ -4,7 +4,8 @@ A record is `length, crc32` (two little-endian 32-bit numbers) and that many byt
 ends the writer, everything before the last whole record can be read; what is torn is cut off when writing goes on.
 
 FORMAT history:
-1  Records start, mission, steps, end.
+1  Records start, mission, steps, end. Where there are formulas, steps and end also hold `changes` of signals, steps
+   the `times` at which they were closed, and end how long the mission `lasted`; older readers pass over them.
 """
 
 from __future__ import annotations

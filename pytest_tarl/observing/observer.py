@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import threading
+from collections import deque
 from collections.abc import Mapping, Sequence
 from time import monotonic, time
 from typing import Any
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from pytest_tarl.errors import TarlError
+from pytest_tarl.formulas.signals import Signal, signal_value
 from pytest_tarl.instrumentation.trace import Floats, Ints
 from pytest_tarl.observing.frames import FORMAT, LogFile, Record
 from pytest_tarl.observing.stream import Chunk, Stream
@@ -26,14 +28,28 @@ class Observer:
     """One node under observation. Messages may come from any thread."""
 
     def __init__(
-        self, sensors: Sequence[Sensor], log: LogFile, about: Mapping[str, Any], *, idle: float | None = None
+        self,
+        sensors: Sequence[Sensor],
+        log: LogFile,
+        about: Mapping[str, Any],
+        *,
+        idle: float | None = None,
+        signals: Sequence[Signal] = (),
+        following: bool = False,
     ) -> None:
         self.stream = Stream()
         self.sensors = tuple(sensors)
+        self.signals = tuple(signals)  # that formulas name, and that messages hold
+        self._following = following  # whether there are formulas, for which every change is written down
+        self._changes: deque[list[Any]] = deque()  # [seconds, name, value]; any thread appends
+        self._times: list[float] = []  # when steps were closed
+        self._begun = monotonic()
         self._log = log
         self._idle = idle
         self._bins: dict[str, int | None] = {}
         self._values: dict[str, Any] = {}
+        self._numbers: dict[str, float] = {}  # what signals are, as heard in this mission
+        self._before: dict[str, float] = {}  # and what they were before it, for those that stay silent
         self._readings: list[list[Any]] = []
         self._active = monotonic()
         self.running = False  # whether a mission runs
@@ -53,8 +69,26 @@ class Observer:
             self.problem = self.problem or f"Sensor {sensor.name!r}: {problem}"
         self.stream.relieve()
 
+    def signalled(self, signal: Signal, message: Any) -> None:
+        """Note the value of a signal."""
+        try:
+            self._note(signal.name, reading(message, signal.field or ""))
+        except (TarlError, AttributeError, LookupError, TypeError, ValueError) as problem:
+            self.problem = self.problem or f"Signal {signal.name!r}: {problem}"
+
+    def _note(self, name: str, value: Any) -> None:
+        if not self._following:
+            return
+        number = signal_value(name, value)
+        if self._numbers.get(name) != number:
+            self._numbers[name] = number
+            if self.running:
+                self._changes.append([monotonic() - self._begun, name, number])
+
     def _latch(self, sensor: Sensor, value: Any) -> None:
         self._values[sensor.name] = value
+        if not sensor.categories:
+            self._note(sensor.name, value)
         bin_ = sensor.bin(value)
         if self._bins.get(sensor.name, self) == bin_:
             return
@@ -64,6 +98,7 @@ class Observer:
     def step(self, reward: float) -> None:
         """Close a step with its reward; NaN where the test's own `judge` is to say it later."""
         with self._lock:
+            self._times.append(monotonic() - self._begun)
             self._readings.append([_plain(self._values.get(sensor.name)) for sensor in self.sensors])
             self.stream.reward(reward)
 
@@ -73,6 +108,10 @@ class Observer:
             self.end(passed=True)
             self._flush()
             self._readings.clear()
+            self._times.clear()
+            self._changes.clear()
+            self._begun = monotonic()
+            self._before, self._numbers = self._before | self._numbers, {}
             self.running = True
             self._log.append({"kind": "mission", "time": time()})
 
@@ -82,7 +121,11 @@ class Observer:
             if not self.running:
                 return
             self._flush()
-            self._log.append({"kind": "end", "passed": passed, "failure": failure, "time": time()})
+            end = {"kind": "end", "passed": passed, "failure": failure, "time": time()}
+            if self._following:
+                silent = [[0.0, name, one] for name, one in self._before.items() if name not in self._numbers]
+                end |= {"lasted": monotonic() - self._begun, "changes": [*self._taken(), *silent]}
+            self._log.append(end)
             self.running = False
 
     def active(self) -> None:
@@ -124,7 +167,16 @@ class Observer:
         if self.running and not chunk.empty:
             steps = chunk.reward.size
             readings, self._readings = self._readings[:steps], self._readings[steps:]
-            self._log.append(_steps(chunk, readings, self.stream.dropped))
+            times, self._times = self._times[:steps], self._times[steps:]
+            followed = {"times": times, "changes": self._taken()} if self._following else {}
+            self._log.append(_steps(chunk, readings, self.stream.dropped) | followed)
+
+    def _taken(self) -> list[list[Any]]:
+        """Return the changes of signals that are not written yet."""
+        taken = []
+        while self._changes:
+            taken.append(self._changes.popleft())
+        return taken
 
 
 def _steps(chunk: Chunk, readings: list[list[Any]], dropped: int) -> Record:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from importlib import import_module
 from typing import Any
 
@@ -57,6 +58,11 @@ def _listeners(observer: Observer, topics: Topics) -> list[tuple[str, type[Any],
         (sensor.topic, _class(topics.type_of(sensor.topic)), _telling(observer, sensor))
         for sensor in observer.sensors
         if sensor.topic is not None
+    ]
+    found += [
+        (signal.topic, _class(topics.type_of(signal.topic)), partial(observer.signalled, signal))
+        for signal in observer.signals
+        if signal.topic is not None
     ]
     orders: dict[str, Listener] = {
         topics.reward: lambda message: observer.step(float(message.data)),
