@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from pytest_tarl import seeds
+from pytest_tarl import remarks, seeds
 from pytest_tarl.bagged import bagged
 from pytest_tarl.designation import Designation
 from pytest_tarl.drifts import sizes as drawn_sizes
@@ -17,22 +17,20 @@ from pytest_tarl.learning import judgements, localize, parts
 from pytest_tarl.learning.drift import Difference, compare, paper_region
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.looks import Look, certain, concluded, planned
+from pytest_tarl.learning.marginal import lent
 from pytest_tarl.learning.merging import aligned, merge
 from pytest_tarl.learning.packing import represented
-from pytest_tarl.learning.permutation import permutations_for, permuted_loss
+from pytest_tarl.learning.permutation import permutations_for
 from pytest_tarl.learning.sarsa import LEARNERS
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled, tiled_batch
 from pytest_tarl.logged import read_log
-from pytest_tarl.model import Comparison, ListComparison, Region, SitePlace, Sizes, TaintList, Verdict
+from pytest_tarl.model import Comparison, ListComparison, Region, Sizes, TaintList
 from pytest_tarl.options import Options
 from pytest_tarl.recording import Progress, Recorded, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.rollout import Rollout
-from pytest_tarl.searching.accept import PASS_RATE_LOSS
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import Cell, Sensor
-
-MOST_NAMED = 3  # lost sites that a note names
 
 
 @dataclass(frozen=True)
@@ -52,8 +50,12 @@ def run_online(
     plan: Plan,
     drift: str | None,
     progress: Progress,
+    changeable: Collection[str] | None = None,
 ) -> Online:
-    """Run the on-line episodes of one scenario, or read the missions of a log, and compare them with the fixture."""
+    """Run the on-line episodes of one scenario, or read the missions of a log, and compare them with the fixture.
+
+    `changeable` are the ids of the sites that hold an operand, where they are known: they are ranked before others.
+    """
     members = current_members(fixture, plan)
     learner = _learner(fixture, options)
     side = _side(rollout, fixture, designation, options, plan)
@@ -67,10 +69,16 @@ def run_online(
         tables = _learned_tables(fixture, recorded, learned, offline.cells)
     else:
         tables = _solved_tables(offline, online, fixture.sensors)
+    without = difference.region.without
+    if without:
+        tables = [
+            (lent(before, one, offline.cells, without), after)
+            for (before, after), one in zip(tables, offline.lists, strict=True)
+        ]
     near_half = _paper_cells(tables, offline.cells)
     chosen = _rows(difference.region, near_half, offline.cells)
     lists = _compared(_current(fixture, plan), tables, chosen)
-    ranked = localize.prior(one.slices for one in lists)
+    ranked = localize.prior((one.slices for one in lists), changeable)
     comparison = Comparison(
         test=fixture.test,
         drift=drift,
@@ -86,10 +94,11 @@ def run_online(
         notes=(
             *side.notes,
             *recorded.notes,
-            *_early(recorded.sample, count),
-            *lost_sites(fixture, plan),
-            *failing(offline, online, difference.verdict, options),
-            *other_formulas(offline, online),
+            *remarks.early(recorded.sample, count),
+            *remarks.unheard_of(offline, online, difference, fixture.sensors),
+            *remarks.lost_sites(fixture, plan),
+            *remarks.failing(offline, online, difference.verdict, options),
+            *remarks.other_formulas(offline, online),
         ),
         parts=parts.means(offline, online),
         lost=parts.lost(offline, online, options.alpha, seeds.generator(options.seed, "parts")),
@@ -186,84 +195,6 @@ def current_members(fixture: Fixture, plan: Plan) -> tuple[tuple[int, ...], ...]
     """Return, per list of the fixture, the sites' numbers in the node as it is now; -1 for a site that is gone."""
     number = {place.id: n for n, place in enumerate(plan.places)}
     return tuple(tuple(number.get(site.id, -1) for site in one.sites) for one in fixture.lists)
-
-
-def _early(online: Sample, planned: int) -> tuple[str, ...]:
-    """Tell that not all episodes were needed."""
-    if online.episodes == planned:
-        return ()
-    return (
-        f"stopped after {online.episodes} of {planned} episodes: the verdict was certain (--tarl-looks 1 runs all).",
-    )
-
-
-def lost_sites(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
-    """Tell which recorded sites the node no longer has; their slices are lost, verdict and region are not."""
-    present = {place.id for place in plan.places}
-    gone: dict[str, SitePlace] = {}
-    for one in fixture.lists:
-        gone.update({site.id: site for site in one.sites if site.id not in present})
-    if not gone:
-        return ()
-    named = [f"{site.path}:{site.line} `{site.code}`" for site in gone.values()][:MOST_NAMED]
-    more = f" and {len(gone) - MOST_NAMED} more" if len(gone) > MOST_NAMED else ""
-    return (
-        (
-            f"the node was edited since the recording: the slices of {', '.join(named)}{more} are lost; verdict and "
-            "region stand. Record again with --tarl-record once the change is meant to stay."
-        ),
-        *_moved(fixture, plan),
-    )
-
-
-def _moved(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
-    """Tell which recorded sites stand on another line: they keep their slices."""
-    now = {place.id: place for place in plan.places}
-    moved = {
-        f"`{site.code}` from line {site.line} to {now[site.id].line}": None
-        for one in fixture.lists
-        for site in one.sites
-        if site.id in now and now[site.id].line != site.line
-    }
-    if not moved:
-        return ()
-    named = ", ".join(list(moved)[:MOST_NAMED])
-    more = f" and {len(moved) - MOST_NAMED} more" if len(moved) > MOST_NAMED else ""
-    return (f"beside that, {named}{more} moved and keep their slices.",)
-
-
-def failing(offline: Sample, online: Sample, verdict: Verdict, options: Options) -> tuple[str, ...]:
-    """Tell when missions fail more often on-line and the reward does not say so."""
-    before, after = (world.passed.astype(np.float64) for world in (offline, online))
-    draws = seeds.generator(options.seed, "success")
-    if verdict.result == "degraded" or before.mean() - after.mean() <= PASS_RATE_LOSS:
-        return ()
-    if permuted_loss(before, after, draws) >= options.alpha:
-        return ()
-    return (
-        (
-            f"missions succeed in {after.mean():.0%} of the on-line episodes and in {before.mean():.0%} off-line, but "
-            "no loss of reward was found: a mission that ends early may earn more than one that is carried on. Let "
-            "the reward count a failed mission."
-        ),
-    )
-
-
-def other_formulas(offline: Sample, online: Sample) -> tuple[str, ...]:
-    """Tell which formulas were not required when the test was recorded, and which no mission was long enough for."""
-    if online.judgements is None:
-        return ()
-    recorded = offline.judgements.formulas if offline.judgements is not None else ()
-    added = [repr(one) for one in online.judgements.formulas if one not in recorded]
-    late = [repr(one) for one in judgements.never_judged(online.judgements)]
-    return (
-        *(
-            (f"not required when the test was recorded: {', '.join(added)}. Record again to compare.",)
-            if added
-            else ()
-        ),
-        *((f"no on-line episode was long enough to judge {', '.join(late)}.",) if late else ()),
-    )
 
 
 def _current(fixture: Fixture, plan: Plan) -> list[TaintList]:

@@ -78,10 +78,16 @@ class Guard:
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """The cells in which the on-line world differs, and those never seen off-line."""
+    """Where the on-line world differs: cells that on-line episodes were in, and among them those never seen off-line.
+
+    `left` are cells of which on-line episodes differ by not being there. Where all on-line cells are new, `without` are
+    the sensors, by place, that were left out so that something could be compared.
+    """
 
     cells: tuple[Cell, ...] = ()
     novel: tuple[Cell, ...] = ()
+    left: tuple[Cell, ...] = ()
+    without: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from pytest_tarl.learning.bounds import loss_between
 from pytest_tarl.learning.evidence import gathered
+from pytest_tarl.learning.marginal import groups, left_out, projected
 from pytest_tarl.learning.merging import aligned
 from pytest_tarl.learning.packing import represented_chain
 from pytest_tarl.learning.permutation import PERMUTATIONS, max_statistic, permuted_loss
@@ -65,6 +66,9 @@ def compare(
     p_loss = permuted_loss(offline.total, online.total, generator, permutations)
     loss = float(offline.total.mean() - online.total.mean())
     p_drift, region, changes = _drift(offline, online, alpha, generator, sensors, permutations)
+    without = left_out(offline, online)
+    if without:
+        region, changes = _compared_without(without, offline, online, alpha, generator, sensors, region)
     detectable = max(margin, smallest_detectable_loss(offline.total, online.total, alpha))
     interval = LossInterval(*loss_bounds(offline.total, online.total, alpha), 1 - 2 * alpha)
     verdict = judged(Verdict("no difference", p_drift, p_loss, loss, detectable, margin, interval), alpha)
@@ -105,6 +109,31 @@ def smallest_detectable_loss(offline: Floats, online: Floats, alpha: float) -> f
     return float((normal.inv_cdf(1 - alpha) + normal.inv_cdf(POWER)) * spread)
 
 
+def _compared_without(
+    without: Sequence[int],
+    offline: Sample,
+    online: Sample,
+    alpha: float,
+    generator: np.random.Generator,
+    sensors: Sequence[Sensor],
+    found: Region,
+) -> tuple[Region, dict[Cell, float]]:
+    """Return the region and the change by cell when some sensors are left out, as cells that on-line episodes were in.
+
+    They add nothing to p_drift, so looking for them costs no false alarm.
+    """
+    kept = [sensor for d, sensor in enumerate(sensors) if d not in without]
+    shorter = projected(offline, without), projected(online, without)
+    _, region, changes = _drift(*shorter, alpha, generator, kept, PERMUTATIONS)
+    rows = np.unique(online.chain.cell).tolist()
+    short = dict(zip(online.cells, groups(online.cells, without)[1].tolist(), strict=True))
+    chosen = {*region.cells, *region.novel}
+    alike = {online.cells[row]: shorter[0].cells[short[online.cells[row]]] for row in rows}
+    cells = tuple(cell for cell in alike if alike[cell] in chosen)
+    widened = {cell: changes[one] for cell, one in alike.items() if one in changes}
+    return replace(found, cells=cells, without=tuple(without)), widened
+
+
 def _drift(
     offline: Sample,
     online: Sample,
@@ -129,10 +158,28 @@ def _drift(
     difference = part[: online.episodes].mean(axis=0) - part[online.episodes :].mean(axis=0)
     seen = np.zeros(len(offline.cells), dtype=bool)
     seen[offline.chain.cell] = True
-    chosen = (outstanding(difference, significant), novel & ~seen)
-    region = Region(*(tuple(offline.cells[i] for i in np.flatnonzero(one)) for one in chosen))
+    met = np.zeros(len(offline.cells), dtype=bool)
+    met[online.chain.cell] = True
+    chosen = (outstanding(difference, significant) & met, novel & ~seen, avoided(offline, online, alpha))
+    cells, new, left = (tuple(offline.cells[i] for i in np.flatnonzero(one)) for one in chosen)
+    region = Region(cells, new, left)
     changes = {offline.cells[i]: abs(float(difference[i])) for i in np.flatnonzero(difference)}
     return float(p_values.min(initial=1.0)), region, changes
+
+
+def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
+    """Return the cells that no on-line episode was in, though so many off-line ones were that it is no chance.
+
+    Were it one world, all its n on-line episodes would be among the N - K of all N that avoid the cell with probability
+    C(N - K, n) / C(N, n), which must be below α over the number of cells. Shape (cells,).
+    """
+    been = np.unique(offline.chain.episode * len(offline.cells) + offline.chain.cell) % len(offline.cells)
+    often = np.bincount(been, minlength=len(offline.cells))
+    often[online.chain.cell] = 0
+    everyone, few = offline.episodes + online.episodes, online.episodes
+    limit = alpha / max(int((often > 0).sum()), 1)
+    chance = [comb(everyone - int(k), few) / comb(everyone, few) if k else 1.0 for k in often]
+    return np.array(chance) < limit
 
 
 def outstanding(difference: Floats, significant: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from pytest_tarl.learning.packing import ROUNDING
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.model import Culprit, OperandEffect, SitePlace, Slice, TaintList
+
+BELOW = 0.49  # the highest score of a site without an operand, where others have one
 
 
 def slices(taint_list: TaintList, offline: Floats, online: Floats, region: Ints) -> tuple[Slice, ...]:
@@ -24,18 +28,35 @@ def slices(taint_list: TaintList, offline: Floats, online: Floats, region: Ints)
     )
 
 
-def prior(per_list: Iterable[Sequence[Slice]]) -> tuple[tuple[SitePlace, float], ...]:
-    """Rank sites by the size of their slice difference, in (0, 1]; over several lists a site keeps its best rank."""
-    best: dict[str, tuple[int, float, SitePlace]] = {}
+def prior(
+    per_list: Iterable[Sequence[Slice]], changeable: Collection[str] | None = None
+) -> tuple[tuple[SitePlace, float], ...]:
+    """Rank sites by their score, the size of their slice difference as a share of the largest one of a taint list.
+
+    Of several lists a site has its best score; one that does not differ is left out. `changeable` are the ids of the
+    sites that hold an operand: their scores lie above a half and all others below, since nothing can be changed there.
+    """
+    best: dict[str, tuple[float, SitePlace]] = {}
     for ranked in per_list:
-        ordered = sorted(ranked, key=lambda one: -abs(one.difference))
-        largest = abs(ordered[0].difference) if ordered else 0.0
-        for rank, one in enumerate(ordered):
-            score = abs(one.difference) / largest if largest else 0.0
-            if one.site.id not in best or (rank, -score) < (best[one.site.id][0], -best[one.site.id][1]):
-                best[one.site.id] = (rank, score, one.site)
-    order = sorted(best.values(), key=lambda entry: (entry[0], -entry[1], entry[2].path, entry[2].line))
-    return tuple((site, score) for _, score, site in order)
+        sizes = [_difference(one) for one in ranked]
+        largest = max(sizes, default=0.0)
+        for one, size in zip(ranked, sizes, strict=True):
+            if size > 0 and size / largest > best.get(one.site.id, (0.0, one.site))[0]:
+                best[one.site.id] = (size / largest, one.site)
+    scored = [(site, _banded(score, site, changeable)) for score, site in best.values()]
+    return tuple(sorted(scored, key=lambda entry: (-entry[1], entry[0].path, entry[0].line, entry[0].id)))
+
+
+def _difference(one: Slice) -> float:
+    """Return the size of a slice's difference, 0 where rounding makes as much of equal ones, or one is unknown."""
+    size = abs(one.difference)
+    return size if size > 4 * ROUNDING * (abs(one.offline) + abs(one.online)) else 0.0
+
+
+def _banded(score: float, site: SitePlace, changeable: Collection[str] | None) -> float:
+    if changeable is None:
+        return score
+    return (1.0 + score) / 2 if site.id in changeable else BELOW * score
 
 
 def culprits(
@@ -45,15 +66,19 @@ def culprits(
     loss: float,
     method: str = "sweep",
 ) -> tuple[Culprit, ...]:
-    """Rank sites: those of the confirmed repair, then by simulated effect, then by slice.
+    """Rank sites by their score: that of what simulation by `method` found, or of their slices where it found nothing.
 
-    `effects` maps site ids to what simulation by `method` found; `loss` (reward per episode) is an effect of score 1.
+    `effects` maps site ids to what was found; an effect of `loss` (reward per episode) has the score 1. A site of the
+    confirmed repair has no lower score than any other, what was not simulated none.
     """
     found = [_simulated(site, effects[site.id], loss, method) for site, _ in ranked if effects.get(site.id)]
     guessed = [Culprit(site, 0.0, "slices") for site, _ in ranked if not effects.get(site.id)]
     if not found:
-        return tuple(Culprit(site, round(score, 4), "slices") for site, score in ranked)
-    found.sort(key=lambda culprit: (culprit.site.id not in repaired, -culprit.score))
+        scored = ((site, round(score, 4)) for site, score in ranked)
+        return tuple(Culprit(site, score, "slices") for site, score in scored if score > 0)
+    highest = max(one.score for one in found)
+    found = [replace(one, score=highest) if one.site.id in repaired else one for one in found]
+    found.sort(key=lambda culprit: (-culprit.score, culprit.site.id not in repaired))
     return (*found, *guessed)
 
 

@@ -63,6 +63,7 @@ def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, A
         },
         "region": rectangles(comparison.region.cells, comparison.sensors),
         "novel": rectangles(comparison.region.novel, comparison.sensors),
+        "no_longer_visited": rectangles(comparison.region.left, comparison.sensors),
         "sites": [
             _site(one) for one in _widest(one for compared in comparison.lists for one in compared.slices)
         ],

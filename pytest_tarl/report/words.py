@@ -126,7 +126,7 @@ def loss_words(comparison: Comparison) -> str:
     if min(len(offline), len(online)) < 2:
         return ""
     effect = effect_size(offline, online)
-    size = "" if math.isnan(effect) else f"{abs(effect):.2g} standard deviations"
+    size = "" if math.isnan(effect) else f"{deviations(effect)} standard deviations"
     interval = loss_interval(comparison)
     verdict = comparison.verdict
     known = (
@@ -135,6 +135,12 @@ def loss_words(comparison: Comparison) -> str:
         else ""
     )
     return "; ".join(filter(None, (known, size)))
+
+
+def deviations(effect: float) -> str:
+    """Write an effect size; beyond a hundred standard deviations its digits mean nothing."""
+    size = abs(effect)
+    return "over 100" if size > 100 else f"{size:.0f}" if size >= 10 else f"{size:.2g}"
 
 
 def loss_interval(comparison: Comparison) -> str:
@@ -158,13 +164,29 @@ def _capital(text: str) -> str:
 
 def region_words(comparison: Comparison) -> str:
     """Say where the on-line world differs, never-seen situations apart; empty when nowhere."""
-    vocabulary = Vocabulary(comparison.sensors, comparison.cells)
-    novel = set(comparison.region.novel)
-    known = [cell for cell in comparison.region.cells if cell not in novel]
-    parts = [vocabulary.words(known)] if known else []
+    vocabulary, region = Vocabulary(comparison.sensors, comparison.cells), comparison.region
+    novel = set(region.novel)
+    known = [cell for cell in region.cells if cell not in novel]
+    parts = [vocabulary.words(known)] if known and not region.without else []
+    if region.cells and region.without:
+        parts.append(_words_without(comparison))
     if novel:
         parts.append(f"never seen off-line: {vocabulary.words(novel)}")
+    if region.left:
+        parts.append(f"no longer visited: {vocabulary.words(region.left)}")
     return "; ".join(parts)
+
+
+def _words_without(comparison: Comparison) -> str:
+    """Name the region by those sensors that tell something of both worlds."""
+    without = comparison.region.without
+    kept = [d for d in range(len(comparison.sensors)) if d not in without]
+    short, chosen = (
+        {tuple(cell[d] for d in kept) for cell in cells}
+        for cells in (comparison.cells, comparison.region.cells)
+    )
+    named = Vocabulary([comparison.sensors[d] for d in kept], short).words(chosen)
+    return f"{named}, told without {' and '.join(comparison.sensors[d].name for d in without)}"
 
 
 def lost_words(comparison: Comparison, part: str) -> str:

@@ -39,6 +39,7 @@ def test_the_document_has_the_agreed_keys_in_their_order(shuttle, tmp_path):
         "verdict",
         "region",
         "novel",
+        "no_longer_visited",
         "sites",
         "culprits",
         "repair",

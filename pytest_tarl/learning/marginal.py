@@ -1,0 +1,79 @@
+"""Where every on-line situation is new: what can still be compared when the sensors that make it new are left out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+
+from pytest_tarl.learning.tables import END, START, Floats, Ints, ListSample, Sample, sum_by
+from pytest_tarl.sensors import Cell
+
+FEW = 0.05  # of the on-line steps in known cells: with no more, worlds do not meet
+ENOUGH = 0.5  # of them in cells that are known once a sensor is left out
+
+
+def left_out(offline: Sample, online: Sample) -> tuple[int, ...]:
+    """Return the sensors without which the worlds meet, as few as possible; none where they meet, or never do."""
+    width = len(offline.cells[0]) if offline.cells else 0
+    if _met(offline, online, tuple(range(width))) > FEW:
+        return ()
+    for size in range(width - 1, 0, -1):
+        kept = max(combinations(range(width), size), key=lambda one: _met(offline, online, one))
+        if _met(offline, online, kept) >= ENOUGH:
+            return tuple(d for d in range(width) if d not in kept)
+    return ()
+
+
+def apart(offline: Sample, online: Sample) -> bool:
+    """Tell whether hardly any on-line step was in a cell that off-line episodes know."""
+    return _met(offline, online, tuple(range(len(offline.cells[0]) if offline.cells else 0))) <= FEW
+
+
+def _met(offline: Sample, online: Sample, kept: Sequence[int]) -> float:
+    """Return the share of the on-line steps in cells that off-line episodes know, told by these sensors alone."""
+    known = {_shortened(offline.cells[i], kept) for i in np.unique(offline.chain.cell).tolist()}
+    steps = sum_by(online.chain.cell, online.chain.count, len(online.cells))
+    inside = sum(steps[i] for i, cell in enumerate(online.cells) if _shortened(cell, kept) in known)
+    return float(inside / steps.sum()) if steps.sum() else 1.0
+
+
+def groups(cells: Sequence[Cell], without: Sequence[int]) -> tuple[tuple[Cell, ...], Ints]:
+    """Return the cells without some sensors, sorted, and the row of each cell among them, shape (cells,)."""
+    kept = [d for d in range(len(cells[0])) if d not in without] if cells else []
+    short = [_shortened(cell, kept) for cell in cells]
+    found = tuple(sorted(set(short)))
+    row = {cell: i for i, cell in enumerate(found)}
+    return found, np.array([row[cell] for cell in short], dtype=np.int64)
+
+
+def projected(sample: Sample, without: Sequence[int]) -> Sample:
+    """Return the sample as it would be without some sensors; taint lists are left out."""
+    cells, row = groups(sample.cells, without)
+    place = np.append(row, END)  # the last entry is where END goes
+    chain = replace(sample.chain, cell=place[sample.chain.cell], next_cell=place[sample.chain.next_cell])
+    return replace(sample, cells=cells, chain=chain, lists=())
+
+
+def lent(table: Floats, recorded: ListSample, cells: Sequence[Cell], without: Sequence[int]) -> Floats:
+    """Fill a table, shape (cells, sites), where it is unknown, by what cells alike are worth on average.
+
+    Cells are alike that differ in the left-out sensors only; each counts as often as it was visited.
+    """
+    _, row = groups(cells, without)
+    visits = recorded.visits
+    events = visits.state != START
+    flat = sum_by(visits.state[events] - 1, visits.count[events], table.size).reshape(table.shape)
+    weight = np.where(np.isnan(table), 0.0, flat)
+    worth, often = (np.zeros((int(row.max(initial=-1)) + 1, table.shape[1])) for _ in range(2))
+    np.add.at(worth, row, np.where(np.isnan(table), 0.0, table) * weight)
+    np.add.at(often, row, weight)
+    with np.errstate(invalid="ignore"):
+        mean = (worth / often)[row]
+    return np.where(np.isnan(table), mean, table)
+
+
+def _shortened(cell: Cell, kept: Sequence[int]) -> Cell:
+    return tuple(cell[d] for d in kept)
