@@ -153,8 +153,11 @@ class Harm:
         self._times: dict[object, set[Pos]] = {}  # by state and function: where it is accessed
         self._read: dict[object, set[State]] = {}  # by function: what it reads without lock
         self._written: dict[object, set[State]] = {}  # by function: what it writes under a lock
+        self._locked: set[object] = set()  # by state and function: what it accesses under a lock
         for state, every in uses.items():
             for use in every:
+                if use.locks:
+                    self._locked.add((state, *_by(use)[:3]))
                 self._times.setdefault((state, *_by(use)), set()).add(use.spots[0].pos)
                 if use.writes and use.locks:
                     self._written.setdefault(_by(use), set()).add(state)
@@ -166,9 +169,14 @@ class Harm:
         if use.how == "length":
             return False
         if use.writes:
-            return use.how != "replaces" or guarded.how in ("adds", "inside") or self._often(state, guarded)
+            changed = guarded.how in ("adds", "inside") or (guarded.writes and self._relied_on(state, use))
+            return use.how != "replaces" or changed or self._often(state, guarded)
         torn = self._read.get(_by(use), set()) & self._written.get(_by(guarded), set())
         return guarded.how == "inside" or self._often(state, use) or len(torn) > 1
+
+    def _relied_on(self, state: State, use: Use) -> bool:
+        """Tell whether a function that stores something without lock takes the lock to work with it."""
+        return (state, *_by(use)[:3]) in self._locked
 
     def _often(self, state: State, use: Use) -> bool:
         """Tell whether a function relies on the same state several times."""

@@ -67,6 +67,7 @@ RCLPY = """
         ("self.pub.publish(self.value - self.value / 2)", 1),
         ("value = self.value\nself.pub.publish(value - value / 2)", 0),
         ("self.value = 1.5 * event.last_duration", 0),
+        ("self.value = 1.5\nwith self.lock:\n    self.pub.publish(self.value)", 1),
         ("self.value += 1.0", 1),
         ("self.send()", 1),
         ("with self.lock:\n    self.send()", 0),
