@@ -48,7 +48,7 @@ def examine(
     cache.save()
     errors = sorted((e for r in reports for e in r.errors), key=lambda e: (e.path, e.line, e.message))
     findings = tuple(f for r in reports for f in r.findings)
-    return Report(findings, tuple(errors), sum(r.hurried for r in reports))
+    return Report(findings, tuple(errors), tuple(sorted({c for r in reports for c in r.cut})))
 
 
 def _tasks(scripts: Sequence[Script], config: Config) -> list[Task]:
@@ -109,9 +109,9 @@ def perform(task: Task, config: Config) -> Report:
             return Report((), errors)
         from tarl_lint import engine  # takes longer to import than most files to check
 
-        findings, failures, hurried = engine.examine(modules, config, isolate=not debugging())
+        findings, failures, cut = engine.examine(modules, config, isolate=not debugging())
     mistakes = (failure(path, error) for path, error in failures.items())
-    return Report(findings, (*errors, *mistakes), len(modules) if hurried else 0)
+    return Report(findings, (*errors, *mistakes), cut)
 
 
 def _parsed(script: Script) -> Module | SourceError:

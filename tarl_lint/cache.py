@@ -18,7 +18,7 @@ from typing import Any, Final, TypeVar
 from tarl_lint import __version__
 from tarl_lint.config import Config
 from tarl_lint.files import write_whole
-from tarl_lint.model import Finding, Flow, Sink, SiteId, Source, Span, Step
+from tarl_lint.model import Cut, Finding, Flow, Sink, SiteId, Source, Span, Step
 from tarl_lint.source import SourceError
 
 try:
@@ -28,7 +28,7 @@ except ImportError:
 
 T = TypeVar("T")
 
-FORMAT: Final = 3
+FORMAT: Final = 4
 PLACE: Final = (".tarl", "cache", "lint")
 AFTERWARDS: Final = frozenset(
     ["root", "exclude", "baseline", "fail_on", "per_file_ignores", "file", "origins"]
@@ -39,12 +39,12 @@ AFTERWARDS: Final = frozenset(
 class Report:
     """What was found in some files: findings without fingerprints, and files that could not be analysed.
 
-    `hurried` counts the files in programs so large that not everything in them was followed to its end.
+    `cut` are programs so large that not everything in them was followed to its end.
     """
 
     findings: tuple[Finding, ...] = ()
     errors: tuple[SourceError, ...] = ()
-    hurried: int = 0
+    cut: tuple[Cut, ...] = ()
 
 
 class Cache:
@@ -65,14 +65,14 @@ class Cache:
         if packed is None:
             return None
         self._used[key] = packed
-        findings, errors, hurried = packed
+        findings, errors, cut = packed
         found = tuple(_unpacked(Finding, f) for f in findings)
-        return Report(found, tuple(SourceError(*e) for e in errors), hurried)
+        return Report(found, tuple(SourceError(*e) for e in errors), tuple(Cut(*c) for c in cut))
 
     def put(self, key: str, report: Report) -> None:
         """Store a report, unless a mistake of ours is in it: the next version may do better."""
         if self._file is not None and not any(error.bug for error in report.errors):
-            self._used[key] = [_packed(report.findings), _packed(report.errors), report.hurried]
+            self._used[key] = [_packed(report.findings), _packed(report.errors), _packed(report.cut)]
 
     def plan(self, key: str) -> Sequence[str]:
         """Return the keys of the reports of a whole run, empty when one of them is missing."""

@@ -9,7 +9,8 @@ from tarl_lint.config import Config
 from tarl_lint.deep_stack import with_deep_stack
 from tarl_lint.evidence import Evidence
 from tarl_lint.memory import without_collection
-from tarl_lint.model import Finding, Flow
+from tarl_lint.model import Cut, Finding, Flow
+from tarl_lint.node_names import node_name
 from tarl_lint.onesided import one_sided
 from tarl_lint.relevance import groups, relevant
 from tarl_lint.rules import tarl101, tarl102, tarl103, tarl201, tarl202, tarl203, tarl204
@@ -27,22 +28,22 @@ def lint(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
 
 def examine(
     modules: Sequence[Module], config: Config, *, isolate: bool = False
-) -> tuple[tuple[Finding, ...], dict[str, Exception], bool]:
-    """Return the findings in modules that belong together, on which files we failed, and whether it was too much.
+) -> tuple[tuple[Finding, ...], dict[str, Exception], tuple[Cut, ...]]:
+    """Return the findings in modules that belong together, on which files we failed, and programs that were too much.
 
     Unless isolated, failures are raised. The rest is found all the same, as if what failed did nothing.
     """
     if one_sided(modules, config):
-        return (), {}, False
+        return (), {}, ()
     failures: dict[str, Exception] | None = {} if isolate else None
     with without_collection():
-        found, hurried = with_deep_stack(lambda: _found(modules, config, failures))
-    return found, failures or {}, hurried
+        found, cut = with_deep_stack(lambda: _found(modules, config, failures))
+    return found, failures or {}, cut
 
 
 def _found(
     modules: Sequence[Module], config: Config, failures: dict[str, Exception] | None
-) -> tuple[tuple[Finding, ...], bool]:
+) -> tuple[tuple[Finding, ...], tuple[Cut, ...]]:
     machine = Linker(modules, config, failures, thorough=False)
     machine.link()
     tracer = Tracer(machine)
@@ -50,7 +51,8 @@ def _found(
     found = (*findings(flows), *hazards(tracer, flows, config))
     tracer.texts.release()
     machine.release()
-    return found, machine.hurried
+    trees = {module.path: module.tree for module in modules}
+    return found, tuple(sorted(Cut(path, node_name(trees[path])) for path in machine.cut if path in trees))
 
 
 def analyse(modules: Sequence[Module], config: Config) -> tuple[Flow, ...]:

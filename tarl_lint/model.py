@@ -121,6 +121,23 @@ class Finding:
     package: str = ""
 
 
+@dataclass(frozen=True, slots=True, order=True)
+class Cut:
+    """A program that was too large to follow in every detail: flows of it may be missing.
+
+    `path` is the file that is run, `node` the name of its node, "" where that is not written there.
+    """
+
+    path: str
+    node: str = ""
+
+    @property
+    def message(self) -> str:
+        """Say what that means."""
+        node = f" (node {self.node})" if self.node else ""
+        return f"{self.path}{node}: too large to follow in every detail; flows may be missing"
+
+
 @dataclass(frozen=True, slots=True)
 class Operand:
     """The use of a constant by a site: what a repair may replace.

@@ -18,7 +18,7 @@ from tarl_lint.discover import Notes, SourceFile
 from tarl_lint.errors import AnalysisBug, UsageError
 from tarl_lint.fingerprints import Fingerprint, of_finding
 from tarl_lint.layout import Layout
-from tarl_lint.model import CODES, OFF_BY_DEFAULT, RULES, Finding, Kind
+from tarl_lint.model import CODES, OFF_BY_DEFAULT, RULES, Cut, Finding, Kind
 from tarl_lint.perfile import FileIgnores
 from tarl_lint.progress import Tell, silent
 from tarl_lint.source import Script, SourceError
@@ -30,12 +30,12 @@ UNREADABLE: Final = "TARL001"
 
 @dataclass(frozen=True)
 class Statistics:
-    """Counts of one run: files and lines analysed, what was left out, files not followed in every detail."""
+    """Counts of one run: files and lines analysed, what was left out, programs not followed in every detail."""
 
     files: int = 0
     lines: int = 0
     notes: Notes = field(default_factory=Notes)
-    hurried: int = 0
+    cut: tuple[Cut, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
         unused=tuple(s for s in unused if _in_vain(s, config)),
         unmatched=unmatched(config, texts.values()),
         texts=texts,
-        statistics=Statistics(len(texts), lines, discovery.notes, report.hurried),
+        statistics=Statistics(len(texts), lines, discovery.notes, report.cut),
         baseline=config.baseline if known.entries else None,
         names_errors=config.enabled(UNREADABLE),
         left_out=len(heard) - len(reported),

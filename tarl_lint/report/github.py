@@ -18,7 +18,7 @@ _GRAVEST: Final[Sequence[Level]] = ("note", "warning", "error")
 
 def report(result: Result, view: View) -> Iterator[Line]:
     """Yield annotations, the gravest first since GitHub shows ten of a kind, then the closing words."""
-    noted = [*_errors(result), *_flows(result), *_hazards(result), *_unused(result)]
+    noted = [*_errors(result), *_flows(result), *_hazards(result), *_unused(result), *_incomplete(result)]
     for grade in reversed(_GRAVEST):
         for own, span, title, text in noted:
             if own == grade:
@@ -60,6 +60,11 @@ def _unused(result: Result) -> Iterator[_Note]:
         span = Span(comment.path, comment.line, comment.column, comment.line, comment.column)
         text = summary.in_vain(comment)
         yield "note", span, "tarl-lint", text[:1].upper() + text[1:]
+
+
+def _incomplete(result: Result) -> Iterator[_Note]:
+    for cut in result.statistics.cut:
+        yield "note", Span(cut.path, 1, 1, 1, 1), "tarl-lint: incomplete", cut.message
 
 
 def _command(grade: Level, span: Span, title: str, text: str) -> str:

@@ -6,7 +6,8 @@ import json
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from tarl_lint.model import Span
+from tarl_lint.fingerprints import digest
+from tarl_lint.model import Cut, Span
 from tarl_lint.report.grading import Level, level, of_error, told_apart
 from tarl_lint.report.line import Line, View
 from tarl_lint.runner import UNREADABLE, Result
@@ -20,7 +21,7 @@ def report(result: Result, _view: View) -> Iterator[Line]:
 
 
 def document(result: Result) -> list[dict[str, Any]]:
-    """Return unreadable files and new findings; each fingerprint is used once."""
+    """Return unreadable files, new findings and programs that were cut short; each fingerprint is used once."""
     errors = [
         _entry(UNREADABLE, e.message, of_error(e), Span(e.path, e.line, 1, e.line, 1), "warning")
         for e in result.errors
@@ -31,7 +32,12 @@ def document(result: Result) -> list[dict[str, Any]]:
         for f, identity in told_apart(result.findings)
         if f.status == "new"
     ]
-    return errors + found
+    return errors + found + [_incomplete(cut) for cut in result.statistics.cut]
+
+
+def _incomplete(cut: Cut) -> dict[str, Any]:
+    identity = digest(("incomplete", cut.path))
+    return _entry("incomplete", cut.message, identity, Span(cut.path, 1, 1, 1, 1), "note")
 
 
 def _entry(code: str, message: str, identity: str, span: Span, grade: Level) -> dict[str, Any]:

@@ -26,8 +26,16 @@ def document(result: Result) -> dict[str, Any]:
         "tool": {"name": "tarl-lint", "version": __version__},
         "files": result.statistics.files,
         "errors": [{"path": e.path, "line": e.line, "message": e.message} for e in result.errors],
+        **incomplete(result),
         "diagnostics": [_diagnostic(finding) for finding in result.findings],
     }
+
+
+def incomplete(result: Result) -> dict[str, Any]:
+    """Return the programs that were not followed in every detail; no key where there is none."""
+    cut = result.statistics.cut
+    each = [{"path": c.path, "node": c.node, "message": c.message} for c in cut]
+    return {"incomplete": each} if each else {}
 
 
 def _diagnostic(finding: Finding) -> dict[str, Any]:

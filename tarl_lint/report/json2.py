@@ -9,6 +9,7 @@ from typing import Any, Final, TypeVar
 from tarl_lint import __version__
 from tarl_lint.model import Finding, Flow, Sink, Source, Span, Step
 from tarl_lint.report import summary
+from tarl_lint.report.json import incomplete
 from tarl_lint.report.line import Line, View, plain
 from tarl_lint.runner import Result
 
@@ -47,6 +48,7 @@ def document(result: Result) -> dict[str, Any]:
         "files": result.statistics.files,
         "notes": [plain(line) for line in summary.not_analysed(result)],
         "errors": [{"path": e.path, "line": e.line, "message": e.message} for e in result.errors],
+        **incomplete(result),
         "steps": [_step(step) for step in steps],
         "sources": [_source(source) for source in sources],
         "sinks": [_sink(sink) for sink in sinks],

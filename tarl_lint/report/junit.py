@@ -37,7 +37,8 @@ class _Case(NamedTuple):
 
 def report(result: Result, _view: View) -> Iterator[Line]:
     """Yield the document. What makes the run fail has failed, what is accepted or unreadable was skipped."""
-    cases = _numbered([*_errors(result), *(_case(finding, result) for finding in result.findings)])
+    found = (_case(finding, result) for finding in result.findings)
+    cases = _numbered([*_errors(result), *_incomplete(result), *found])
     cases = cases or [_Case("tarl-lint", "no findings", "passed", "", "")]
     yield (('<?xml version="1.0" encoding="utf-8"?>', ""),)
     yield ((f"<testsuites{_attributes({'name': 'tarl-lint', **_counts(cases)})}>", ""),)
@@ -49,6 +50,11 @@ def report(result: Result, _view: View) -> Iterator[Line]:
 def _errors(result: Result) -> Iterator[_Case]:
     for error in result.errors if result.names_errors else ():
         yield _Case(error.path, f"{UNREADABLE} the file can be analysed", "skipped", error.message, "")
+
+
+def _incomplete(result: Result) -> Iterator[_Case]:
+    for cut in result.statistics.cut:
+        yield _Case(cut.path, "followed in every detail", "skipped", cut.message, "")
 
 
 def _case(finding: Finding, result: Result) -> _Case:

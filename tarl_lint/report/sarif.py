@@ -51,13 +51,12 @@ def document(result: Result, cut: Cut = EVERYTHING) -> dict[str, Any]:
     ]
     driver = {"name": "tarl-lint", "version": __version__, "rules": [_rule(code) for code in codes]}
     left_out = [*_left_out(len(named) - len(chosen)), *_shortened([pair[0] for pair in chosen], cut.steps)]
+    notes = [*_notifications(result), *_incomplete(result), *left_out]
     run = {
         "tool": {"driver": driver},
         "columnKind": "unicodeCodePoints",
         "originalUriBaseIds": {ROOT: {"description": {"text": "The directory that tarl-lint ran in."}}},
-        "invocations": [
-            {"executionSuccessful": True, "toolExecutionNotifications": [*_notifications(result), *left_out]}
-        ],
+        "invocations": [{"executionSuccessful": True, "toolExecutionNotifications": notes}],
         "results": errors[: cut.results] + found,
     }
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
@@ -119,6 +118,18 @@ def _rule(code: str) -> dict[str, Any]:
 
 def _notifications(result: Result) -> list[dict[str, Any]]:
     return [_notification("not-analysed", plain(line)) for line in summary.not_analysed(result)]
+
+
+def _incomplete(result: Result) -> list[dict[str, Any]]:
+    return [
+        {
+            "level": "warning",
+            "message": {"text": _escaped(cut.message)},
+            "descriptor": {"id": "budget-spent"},
+            "locations": [{"physicalLocation": {"artifactLocation": _artifact(cut.path)}}],
+        }
+        for cut in result.statistics.cut
+    ]
 
 
 def _unreadable(error: SourceError, codes: Sequence[str]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any, Final
 from tarl_lint.baseline import Accepted, Baseline
 from tarl_lint.files import shown
 from tarl_lint.fingerprints import OfFlow, OfHazard, topic_text
-from tarl_lint.model import Finding, Flow
+from tarl_lint.model import Cut, Finding, Flow
 from tarl_lint.report.line import Line, View, one_line
 from tarl_lint.runner import UNREADABLE, Result
 from tarl_lint.suppress import Suppression
@@ -126,8 +126,8 @@ def _missed(result: Result) -> Iterator[str]:
     if result.errors:
         verb = "is" if len(result.errors) == 1 else "are"
         yield f"{many(len(result.errors), 'file')} that {verb} not readable as Python 3 ({UNREADABLE})"
-    if hurried := result.statistics.hurried:
-        yield f"all details of {many(hurried, 'file')} of large programs"
+    if cut := result.statistics.cut:
+        yield f"all details of {many(len(cut), 'large program')} ({_named(cut)})"
     if notes.unreadable:
         yield f"{many(len(notes.unreadable), 'unreadable place')} ({', '.join(notes.unreadable[:3])})"
     if notes.cpp_nodes:
@@ -136,6 +136,13 @@ def _missed(result: Result) -> Iterator[str]:
         yield f"remaps in {many(notes.remapping_launch_files, 'launch file')}"
     if unknown := unknown_topics(result):
         yield f"the names of {many(unknown, 'topic')} computed at run time"
+
+
+def _named(cut: Sequence[Cut]) -> str:
+    """Name programs by file and node, the first ones of many."""
+    names = [f"{c.path} as {c.node}" if c.node else c.path for c in cut]
+    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    return ", ".join(names[:_SHOWN]) + more
 
 
 def unknown_topics(result: Result) -> int:

@@ -37,18 +37,18 @@ class Activations(Evaluation):
             return None
         function, outer, program, cls = closure.info
         runs = self.activations[function] = self.activations.get(function, 0) + 1
-        if (
-            self.spent > self.limit
-            or (self.spent > MANY and runs > OFTEN)
-            or len(self.stack) > MAX_CALLS
-            or [f.function for f in self.stack].count(function) > 1
-        ):
+        if len(self.stack) > MAX_CALLS or [f.function for f in self.stack].count(function) > 1:
+            return None
+        if self.spent > self.limit or (self.spent > MANY and runs > OFTEN):
+            self.cut[self.program] = None
             return None
         statement = caller.statement.id if caller.statement is not None else -1
         key = (caller.id, statement, call.slot, closure.key, receiver, *caller.turn)
         frame = self.frames.get(key)
         if frame is None:
-            if len(self.frames) > MAX_FRAMES:
+            made = self.frames_of[self.program] = self.frames_of.get(self.program, 0) + 1
+            if made > MAX_FRAMES:
+                self.cut[self.program] = None
                 return None
             frame = Frame(key, len(self.frames) + 1, function, program, self.module_objects[program.name])
             self.frames[key] = frame

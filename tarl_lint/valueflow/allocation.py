@@ -47,6 +47,7 @@ class Allocation(Machine):
             older = self.objects["lib", (obj.key, "older")] = Obj("lib", (obj.key, "older"))
             older.many = True
         self._copy_fields(obj, older)
+        self.graph.asked += len(obj.holders)
         without: dict[frozenset[Obj], frozenset[Obj]] = {}  # many hold the same objects
         for key in holders:
             value = self.store.get(key)

@@ -67,7 +67,10 @@ class Branches(Raising):
             frame.jumps.pop()
             self.store.cut(depth)
             again = self.joined([head, *backs]) if backs else head
-            if again == head or self.spent > MAX_STATEMENTS:
+            if again == head:
+                break
+            if self.spent > MAX_STATEMENTS:
+                self.cut[self.program] = None
                 break  # loops in loops in loops take as many passes as all of theirs multiplied
             head = again
         return self._loop_end(s, done, table["break"], frame)

@@ -9,8 +9,6 @@ from tarl_lint.valueflow.heap import ANY, HOLLOW
 from tarl_lint.valueflow.storing import Storing
 from tarl_lint.valueflow.values import NONE, ClassInfo, Nodes, Obj, Value
 
-LOOKS = 20  # looks into objects that take as long as a statement
-
 
 class Contents(Storing):
     """Collects the data inside objects."""
@@ -33,15 +31,10 @@ class Contents(Storing):
         found = NONE
         for obj in in_order(objects):
             found |= self._deep(obj, known, 0)
-        self._count(len(known))
+        self.count(len(known))
         if self.graph.grown == now[0]:
             self.store.insides[objects] = found
         return found
-
-    def _count(self, looks: int) -> None:
-        """Count looks into objects, and what was asked of the graph meanwhile, as work."""
-        self.spent += (looks + self.graph.asked) // LOOKS
-        self.graph.asked %= LOOKS
 
     def _deep(self, obj: Obj, known: dict[Obj, Nodes], depth: int, *, counted: bool = False) -> Nodes:
         """Return what is inside one object. What holds itself is left out at the second time.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from tarl_lint.valueflow import ir
+from tarl_lint.valueflow.bounds import LOOKS
 from tarl_lint.valueflow.control import raised
 from tarl_lint.valueflow.defining import Defining
 from tarl_lint.valueflow.ends import Publisher
@@ -36,6 +37,8 @@ class Execution(Defining):
         for statement in body:
             frame.statement = statement
             self.spent += 1
+            if self.graph.asked > LOOKS:
+                self.count()
             if self.watch is not None:
                 self.watch(frame, statement)
             if not EXECUTE[type(statement)](self, statement, frame):

@@ -56,11 +56,11 @@ class Graph:
     arriving: dict[tuple[int, int], None] = field(
         default_factory=dict
     )  # (node of a carrier, what it carries)
-    edges: int = 0  # of data
+    edges: int = 0  # of data, that the program at work made
     grown: int = 0  # how often something new was inside an object that was passed on
     live: set[int] = field(default_factory=set)  # nodes that sources lead to, by data or by decisions
     onward: dict[int, list[int]] = field(default_factory=dict)  # where nodes lead that are not live yet
-    asked: int = 0  # how much was looked at to tell through whom content arrives
+    asked: int = 0  # edges, and how much was looked at to tell through whom content arrives
     asking: set[tuple[int, int]] = field(default_factory=set)  # questions that are being answered
 
     def node(self, key: Hashable, place: Place, branches: Branches) -> int:
@@ -79,6 +79,7 @@ class Graph:
         edges = self.data[node]
         mine = self.branches[node]
         for dep in deps if self.edges < MAX_EDGES else islice(deps, FEW):
+            self.asked += 1
             if dep == node:
                 self.depend(node, [branch[0] for branch in mine])  # how often it ran is a choice, too
             if dep in edges or dep == node:

@@ -201,6 +201,7 @@ class Heap(Userdata):
         """Return what any element of an object may be."""
         result = self.content(obj)
         self.store.look(obj)
+        self.graph.asked += len(obj.fields)
         for name in list(obj.fields):
             if name.startswith("["):
                 value = self.store.get((obj, name))
@@ -228,6 +229,7 @@ class Heap(Userdata):
         if not value.pts:
             return Value(value.deps)
         result = Value(value.deps, consts=frozenset())
+        self.graph.asked += len(value.pts)
         for obj in value.pts:
             if obj.kind == "instance":
                 result = join(result, Value(self.deep(frozenset([obj]))))

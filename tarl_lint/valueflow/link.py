@@ -10,6 +10,7 @@ from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.bounds import EXCHANGED, HASTE, LARGE, LEISURE, MAX_ROUNDS, MAX_STATEMENTS, PATIENCE
 from tarl_lint.valueflow.frames import Frame
+from tarl_lint.valueflow.graph import MAX_EDGES
 from tarl_lint.valueflow.lower import lower_module
 from tarl_lint.valueflow.store import Root, Store
 from tarl_lint.valueflow.uncalled import Uncalled
@@ -105,7 +106,8 @@ class Linker(Uncalled):
             small = [root for root in batch if self.took.get(root, 0) < LARGE]
             for root in small or batch:
                 self.pending.pop(root, None)
-                if self.hurried and (self.took.get(root, 0) > HASTE or self.total > 2 * PATIENCE):
+                late = self.hurried(root.program)
+                if late and (self.took.get(root, 0) > HASTE or self.totals[root.program] > 2 * PATIENCE):
                     continue
                 self._run(root, self.roots[root.key][1])
                 for news in self.shared.dirty:
@@ -126,7 +128,8 @@ class Linker(Uncalled):
         self.store = Store(self.shared, root)
         self.stack = []
         self.spent = 0
-        self.limit = HASTE if self.hurried else MAX_STATEMENTS
+        self.limit = HASTE if self.hurried(root.program) else MAX_STATEMENTS
+        self.graph.edges = self.edges_of.get(root.program, 0)
         self.activations.clear()
         self.leisure, self.idled = None, 0
         self.delivered = frozenset()
@@ -137,7 +140,10 @@ class Linker(Uncalled):
             self._failed(where.path, error)
             return
         finally:
-            self.total += self.spent
+            self.totals[root.program] = self.totals.get(root.program, 0) + self.spent
+            self.edges_of[root.program] = self.graph.edges
+            if self.graph.edges >= MAX_EDGES:
+                self.cut[root.program] = None
             self.took[root] = self.spent
         for key in self.store.own():
             value = self._at_end(key)
@@ -186,7 +192,7 @@ class Linker(Uncalled):
         return frame
 
     def _module_root(self, program: ir.Program) -> None:
-        root = Root(("module", program.path), "module", program.name, once=True)
+        root = Root(("module", program.path), "module", program.name, once=True, program=program.path)
 
         def run(root: Root) -> None:  # noqa: ARG001 - one signature for all
             key = ("module", program.path)

@@ -8,10 +8,7 @@ from tarl_lint.config import Config
 from tarl_lint.names import Index
 from tarl_lint.source import Module
 from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.bounds import (
-    MAX_STATEMENTS,
-    PATIENCE,
-)
+from tarl_lint.valueflow.bounds import LOOKS, MAX_STATEMENTS, PATIENCE
 from tarl_lint.valueflow.control import Branch, Control, control_dependence
 from tarl_lint.valueflow.ends import SinkRecord, SourceRecord
 from tarl_lint.valueflow.frames import Frame
@@ -57,8 +54,11 @@ class Machine:
             int, dict[Root, None]
         ] = {}  # decision or node that no source led to → roots that went by that
         self.guards: list[tuple[int, str]] = []  # decisions inside the expression that is being evaluated
-        self.spent = 0  # statements executed in this run of a root, and looks into objects for so many
-        self.total = 0  # the same in all runs before
+        self.spent = 0  # statements executed in this run of a root, and looks and edges for so many
+        self.totals: dict[str, int] = {}  # the same in all runs before, of each program
+        self.edges_of: dict[str, int] = {}  # edges that the runs of each program made
+        self.frames_of: dict[str, int] = {}  # activations of each program
+        self.cut: dict[str, None] = {}  # programs of which not everything was followed
         self.limit = MAX_STATEMENTS
         self.idled = 0  # of it in calls that can matter little
         self.leisure: int | None = None  # what may be spent until a call ends that can matter little
@@ -76,9 +76,26 @@ class Machine:
         self.watch: Callable[[Frame, ir.Stmt], None] | None = None
 
     @property
-    def hurried(self) -> bool:
-        """Tell whether there was too much to follow everything to its end."""
-        return self.total > PATIENCE or self.graph.edges >= MAX_EDGES
+    def total(self) -> int:
+        """Return how much work was done in all runs before."""
+        return sum(self.totals.values())
+
+    @property
+    def program(self) -> str:
+        """Return the program whose budget is being spent."""
+        return self.store.root.program
+
+    def hurried(self, program: str) -> bool:
+        """Tell whether there is too much in a program to follow everything to its end."""
+        spent = self.totals.get(program, 0) > PATIENCE or self.edges_of.get(program, 0) >= MAX_EDGES
+        if spent:
+            self.cut[program] = None
+        return spent
+
+    def count(self, looks: int = 0) -> None:
+        """Count looks into objects, and what was asked of the graph and added to it meanwhile, as work."""
+        self.spent += (looks + self.graph.asked) // LOOKS
+        self.graph.asked %= LOOKS
 
     # --- places -----------------------------------------------------------------------------------------
 

@@ -24,6 +24,7 @@ class Root:
     once: bool = False
     function: ir.Function | None = None  # what it runs, where that is known
     maker: Root | None = None  # in whose run it was added
+    program: str = ""  # the file that it is of, whose budget it spends
     number: int = 0  # in the order in which they were added
     heeds: set[Key] = field(default_factory=set)  # what it stores itself and reads after it has waited
 

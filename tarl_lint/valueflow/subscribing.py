@@ -204,10 +204,12 @@ class Sources(Sinks):
         fresh: Fresh = (),
         answer: Publisher | None = None,
         named: Mapping[str, Value] = NOTHING,
+        program: str = "",
     ) -> None:
         """Run a function on its own with these arguments; `answer` takes what it returns."""
         root = Root((key, target.kind, target.key), kind, target.name, kind == "thread", function_of(target))
         root.maker = self.store.root
+        root.program = program or root.maker.program
         if root.key not in self.roots and self._too_many(root):
             return
         before = self.passed.get(root.key, [])

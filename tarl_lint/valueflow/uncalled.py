@@ -38,14 +38,14 @@ class Uncalled(Execution):
             return
         for obj in self._values(module, function.name):
             if obj.kind == "closure":
-                self._start(obj, "main")
+                self._start(obj, "main", self.programs[module.name].path)
 
     def _values(self, holder: Obj, name: str) -> list[Obj]:
         owners = self.shared.ends.get((holder, name), {})
         return sorted({o for v in owners.values() for o in v.pts}, key=lambda o: str(o.key))
 
-    def _start(self, target: Obj, kind: str) -> None:
-        root = Root((kind, target.kind, target.key), kind, target.name, once=True)
+    def _start(self, target: Obj, kind: str, path: str) -> None:
+        root = Root((kind, target.kind, target.key), kind, target.name, once=True, program=path)
 
         def run(root: Root) -> None:
             self.call_object(target, ([], {}), self.root_frame(root), ROOT_CALL)
@@ -56,7 +56,7 @@ class Uncalled(Execution):
         """Make an instance of a class that a package names for others to make."""
         for cls in self._values(module, statement.name):
             if cls.kind == "class" and (cls in self.plugins or cls.key not in self.made):
-                self._start(cls, "node")
+                self._start(cls, "node", self.programs[module.name].path)
                 self.plugins.add(cls)
 
     def _node_class(self, statement: ir.Class, program: ir.Program, starting: bool) -> None:
@@ -68,7 +68,7 @@ class Uncalled(Execution):
                 not self._has_made_heir(cls) if starting and registers(statement) else self._last_node(cls)
             )
             if wanted:
-                self._start(cls, "node")
+                self._start(cls, "node", program.path)
                 self.guests.add(cls)
 
     def _last_node(self, cls: Obj) -> bool:
@@ -115,7 +115,8 @@ class Uncalled(Execution):
     def _start_method(self, closure: Obj, obj: Obj, owner: Obj, given: list[Value]) -> None:
         method = self.intern("bound", (closure.key, obj), closure.name)
         method.info = (closure, obj, owner)
-        self.call_when("framework", method, given, "callback")
+        program = closure.info[2].path if isinstance(closure.info, tuple) else ""
+        self.call_when("framework", method, given, "callback", program=program)
 
 
 def _registers_itself(info: ClassInfo) -> bool:

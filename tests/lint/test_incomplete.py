@@ -1,0 +1,95 @@
+"""A program that is too large to follow in every detail is named in every format, by file and node."""
+
+from __future__ import annotations
+
+import ast
+import json
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import pytest
+
+from tarl_lint.config import Config
+from tarl_lint.deep_stack import with_deep_stack
+from tarl_lint.model import Cut
+from tarl_lint.node_names import node_name
+from tarl_lint.report import FORMATS
+from tarl_lint.runner import Result
+from tarl_lint.source import Module
+from tarl_lint.valueflow.bounds import MAX_STATEMENTS
+from tarl_lint.valueflow.link import Linker
+from tests.lint.reports import everything, text_of
+
+CUT = Cut("src/pilot.py", "pilot")
+
+
+@pytest.fixture
+def result(example) -> Result:
+    whole = everything(example)
+    return replace(whole, statistics=replace(whole.statistics, cut=(CUT,)))
+
+
+@pytest.mark.parametrize("name", [n for n in FORMATS if n not in ("dot", "mermaid", "topics")])
+def test_it_is_named_in_every_format(name, result):
+    text = text_of(name, result)
+    assert "src/pilot.py" in text
+    assert "pilot" in text.replace("src/pilot.py", "")
+
+
+def test_json_names_it_under_a_key_that_is_there_only_then(result, example):
+    entry = {"path": "src/pilot.py", "node": "pilot", "message": CUT.message}
+    assert json.loads(text_of("json", result))["incomplete"] == [entry]
+    assert "incomplete" not in json.loads(text_of("json", everything(example)))
+
+
+def test_sarif_has_a_notification_at_the_file(result):
+    (run,) = json.loads(text_of("sarif", result))["runs"]
+    notes = run["invocations"][0]["toolExecutionNotifications"]
+    (note,) = [n for n in notes if n["descriptor"]["id"] == "budget-spent"]
+    assert note["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] == "src/pilot.py"
+
+
+def test_junit_has_a_skipped_case(result):
+    tree = ElementTree.fromstring(text_of("junit", result))
+    (case,) = [c for c in tree.iter("testcase") if c.get("classname") == "src/pilot.py"]
+    assert "may be missing" in str(case.find("skipped").get("message"))
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("rospy.init_node('pilot')", "pilot"),
+        ("rospy.init_node(name='pilot', anonymous=True)", "pilot"),
+        ("def main():\n    node = rclpy.create_node('pilot')", "pilot"),
+        ("class A(Node):\n    def __init__(self):\n        super().__init__('pilot')", "pilot"),
+        ("class A(Thread):\n    def __init__(self):\n        super().__init__('worker')", ""),
+        ("rospy.init_node(sys.argv[1])", ""),
+        ("x = 1", ""),
+    ],
+)
+def test_the_name_of_a_node_is_read_off_the_syntax(text, name):
+    assert node_name(ast.parse(text)) == name
+
+
+LIBRARY = "def helper(x):\n    return x\n"
+SMALL = (
+    "import rospy\nfrom lib import helper\npub = rospy.Publisher('b', F)\n"
+    "def on(msg):\n    pub.publish(helper(msg.data))\nrospy.Subscriber('a', F, on)\n"
+)
+
+
+def large() -> str:
+    """Return a node in which one run takes more statements than one may."""
+    body = "".join(f"    x = helper(x) + {n}\n" for n in range(MAX_STATEMENTS))
+    return SMALL.replace(
+        "    pub.publish(helper(msg.data))\n", f"    x = msg.data\n{body}    pub.publish(x)\n"
+    )
+
+
+def test_a_program_spends_its_own_budget_and_not_that_of_others_that_import_the_same():
+    texts = {"lib.py": LIBRARY, "large.py": large(), "small.py": SMALL}
+    modules = [Module(p, p.removesuffix(".py"), t, ast.parse(t)) for p, t in texts.items()]
+    machine = Linker(modules, Config(), thorough=False)
+    with_deep_stack(machine.link)
+    assert list(machine.cut) == ["large.py"]
+    assert machine.totals["small.py"] < 50
