@@ -55,6 +55,10 @@ class RepairError(TarlError):
     """A mutation cannot be written into the source."""
 
 
+class StaleTextError(TarlError):
+    """A candidate was written into a file, and the text of before ran."""
+
+
 class SearchError(TarlError):
     """A search that was plugged in does not do what is asked of it."""
 

@@ -30,6 +30,10 @@ Reason = Literal[
     "another test gets worse",
     "not at its definition",
     "not over the whole range",
+    "fails too often",
+    "not shown",
+    "cannot be written",
+    "never tested",
 ]
 
 

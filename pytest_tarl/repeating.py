@@ -58,6 +58,7 @@ class Episode:
     values: Mapping[str, Sequence[float]] = field(default_factory=dict)
     replayed: bool = False  # a bag, to its end
     judged: tuple[Judged, ...] = ()
+    older: tuple[Path, ...] = ()  # edited files that ran as they were before
 
 
 EPISODE = pytest.StashKey[Episode]()
@@ -117,7 +118,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
             episode.replayed = replay is not None and replay.done
         finally:
             tarl.close()
-            episode.notes = tarl.notes()
+            episode.notes, episode.older = tarl.notes(), imports.older
 
 
 def _replay(episode: Episode) -> Replay | None:
@@ -301,6 +302,7 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
         notes=episode.notes,
         values=episode.values,
         judged=episode.judged,
+        older=episode.older,
     )
 
 

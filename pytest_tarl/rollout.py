@@ -37,6 +37,8 @@ class EpisodeRun:
     what else the user should hear. `values` is what sensors read whose bins are yet to be learned. `judged` tells of
     formulas.
 
+    `older` are files of the overlay whose text of before ran all the same: nothing can be learned of the overlay.
+
     `broken` holds what is neither a pass nor a failed mission, such as an error in the test's own code, as text.
     """
 
@@ -51,6 +53,7 @@ class EpisodeRun:
     notes: tuple[str, ...] = ()
     values: Mapping[str, Sequence[float]] = field(default_factory=dict)
     judged: tuple[Judged, ...] = ()
+    older: tuple[Path, ...] = ()
 
 
 class Pending(Protocol):

@@ -23,6 +23,7 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.seeds import episode_seeds
 
 HELD_OUT = 30  # episodes of each world
+JUDGED = 400  # episodes of each world that an accepted repair is judged on
 RESTORED = 0.95
 Overlay = Mapping[Path, str]
 
@@ -75,20 +76,22 @@ class Seen:
 
 def judged(order: Order, overlay: Overlay | None) -> dict[str, Any]:
     """Look at a repair on held-out seeds in both worlds; without one, nothing is restored."""
-    designed = seen(order, None, {})
+    episodes = HELD_OUT if overlay is None else JUDGED
+    designed = seen(order, None, {}, episodes)
     found: dict[str, Any] = {"offline": designed.mean}
     for name, drift in (("drifted", order.drift), ("nominal", None)):
-        world = seen(order, drift, overlay or {})
+        world = seen(order, drift, overlay or {}, episodes)
         found[name] = world.mean
+        found[f"{name} passed"] = world.passed
         found[f"{name} restored"] = overlay is not None and world.mean >= designed.mean - (
             1 - RESTORED
         ) * abs(designed.mean)
     return found
 
 
-def seen(order: Order, drift: str | None, overlay: Overlay) -> Seen:
+def seen(order: Order, drift: str | None, overlay: Overlay, episodes: int) -> Seen:
     """Run the held-out episodes of one world."""
-    chosen = episode_seeds(order.options.seed, "held out", HELD_OUT)
+    chosen = episode_seeds(order.options.seed, "held out", episodes)
     runs = [_outcome(order, EpisodePlan(seed, drift, overlay)) for seed in chosen]
     return Seen(fmean(run.total for run in runs), fmean(run.passed for run in runs))
 

@@ -21,9 +21,16 @@ from typing import Any
 
 from pytest_tarl.instrumentation.codecache import CodeCache
 from pytest_tarl.instrumentation.instrument import HOOK
-from pytest_tarl.instrumentation.launching import importable, on_search_path, restored_interpreter, shown
+from pytest_tarl.instrumentation.launching import (
+    importable,
+    on_search_path,
+    restored_interpreter,
+    shown,
+    workspace,
+)
 from pytest_tarl.instrumentation.nodecode import NodeCode
 from pytest_tarl.instrumentation.sites import Position, Positions
+from pytest_tarl.stale import holders, of_tests, outlived
 
 Bind = Callable[[dict[str, Any]], None]
 _INSTALLED = frozenset({"site-packages", "dist-packages"})
@@ -53,8 +60,10 @@ class NodeImports:
         publishes: Collection[int] = (),
         bind: Bind | None = None,
     ) -> None:
-        self._root = _resolved(root)
-        self._code = NodeCode(plan, overlay, publishes, inline=bind is not None, cache=code_cache(self._root))
+        self._projects = {_resolved(root), *(workspace(path) for path in (*plan, *overlay))}
+        self._code = NodeCode(
+            plan, overlay, publishes, inline=bind is not None, cache=code_cache(_resolved(root))
+        )
         self._overlay = overlay
         self._bind = bind or (lambda namespace: namespace.update({HOOK: hook}))
         self._tails = {_tail(path) for path in self._code.files}
@@ -62,10 +71,16 @@ class NodeImports:
         self._imported: set[str] = set()  # names of modules that belong to this episode
         self._namespaces: list[dict[str, Any]] = []
         self._open = contextlib.ExitStack()
+        self._before: set[str] = set()  # names of modules that were there before the episode
+        self.older: tuple[
+            Path, ...
+        ] = ()  # edited files that ran as they were before, known once it is closed
 
     def __enter__(self) -> NodeImports:
         """Begin to watch imports."""
         early = self._early()
+        self._before = set(sys.modules)
+        self._open.callback(self._look_for_older, early)
         self._open.callback(self._warn, early)
         self._open.callback(self._forget_modules)
         self._open.enter_context(restored_interpreter())
@@ -134,6 +149,7 @@ class NodeImports:
         """Give a module what its instrumented code needs, before it is executed."""
         file = path.resolve()
         self._executed.add(file)
+        self._projects.add(workspace(file))
         self._namespaces.append(module.__dict__)
         if self._code.recorded(file):
             self._bind(module.__dict__)
@@ -201,25 +217,34 @@ class NodeImports:
                 stacklevel=2,
             )
 
+    def _look_for_older(self, early: Mapping[Path, str]) -> None:
+        """Note edited files that were not executed though something of them is in use: it is the text of before."""
+        missed = {path.resolve() for path in self._overlay} - self._executed
+        if missed:
+            self.older = tuple(sorted({*outlived(missed), *(missed & early.keys())}))
+
     def _forget_modules(self) -> None:
-        for name in sorted(self._imported, reverse=True):  # submodules before their packages
-            module = sys.modules.get(name)
-            if module is not None and self._belongs(module):
-                del sys.modules[name]
-                package, _, tail = name.rpartition(".")
-                outer = sys.modules.get(package)
-                if outer is not None and outer.__dict__.get(tail) is module:
-                    delattr(outer, tail)
+        """Forget the project's modules, and others that hold something of them since this episode."""
+        own = [name for name in self._imported if name in sys.modules and self._belongs(sys.modules[name])]
+        new = sys.modules.keys() - self._before - set(own) if own else set()
+        others = holders((sys.modules[name] for name in own), sorted(new))
+        for name in sorted((*own, *others), reverse=True):  # submodules before their packages
+            module = sys.modules.pop(name)
+            package, _, tail = name.rpartition(".")
+            outer = sys.modules.get(package)
+            if outer is not None and outer.__dict__.get(tail) is module:
+                delattr(outer, tail)
 
     def _belongs(self, module: ModuleType) -> bool:
-        """Tell whether a module is the project's own source."""
+        """Tell whether a module is source of the node's own workspace, or of the tests' one."""
         spec = module.__dict__.get("__spec__")
         if spec is None or not isinstance(spec.loader, SourceFileLoader) or not spec.origin:
             return False
         file = Path(spec.origin).resolve()
         if file in self._code.files:
             return True
-        return file.is_relative_to(self._root) and _INSTALLED.isdisjoint(file.parts) and not _of_tests(file)
+        within = any(file.is_relative_to(project) for project in self._projects)
+        return within and _INSTALLED.isdisjoint(file.parts) and not of_tests(file)
 
 
 class NodeLoader(SourceFileLoader):
@@ -258,7 +283,3 @@ def code_cache(root: Path) -> CodeCache:
 def _tail(path: Path) -> str:
     """Return the last part of the name under which a file can be imported."""
     return path.parent.name if path.stem == "__init__" else path.stem
-
-
-def _of_tests(file: Path) -> bool:
-    return file.name == "conftest.py" or file.name.startswith("test_") or file.name.endswith("_test.py")

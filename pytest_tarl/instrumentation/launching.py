@@ -6,7 +6,11 @@ import contextlib
 import linecache
 import sys
 from collections.abc import Iterator
+from functools import lru_cache
 from pathlib import Path
+
+_BUILT = ("build", "install", "devel")  # what building a workspace leaves beside its src
+_PACKAGE = ("package.xml", "pyproject.toml", "setup.py")
 
 
 def importable(path: Path) -> tuple[Path, str]:
@@ -15,6 +19,24 @@ def importable(path: Path) -> tuple[Path, str]:
     while (root / "__init__.py").is_file():
         root, parts = root.parent, [root.name, *parts]
     return root, ".".join(parts)
+
+
+@lru_cache(maxsize=256)
+def workspace(path: Path) -> Path:
+    """Return the folder of everything that a node may be developed with.
+
+    That is the git repository around it; without one, the folder above the `src` of a colcon or catkin workspace, or
+    the outermost folder with a `package.xml`, `pyproject.toml` or `setup.py`; without these, the folder that the
+    node is imported from.
+    """
+    file = path.resolve()
+    for folder in file.parents:
+        if (folder / ".git").exists():
+            return folder
+        if folder.name == "src" and any((folder.parent / one).is_dir() for one in _BUILT):
+            return folder.parent
+    packages = [one for one in file.parents if any((one / name).is_file() for name in _PACKAGE)]
+    return packages[-1] if packages else importable(file)[0]
 
 
 def on_search_path(*folders: Path) -> None:

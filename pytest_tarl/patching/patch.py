@@ -21,7 +21,6 @@ CONTEXT = 3  # unchanged lines around a change
 BASE = "paths are relative to"  # the fact of the header that says so
 SEAL = "digest of all other lines"  # the fact of the header by which an edited or damaged patch is known
 TITLE = "Repair by tarl "
-_FILE = re.compile(r"^--- a/([^\t\n]+)", re.MULTILINE)
 _NO_NEWLINE = "\\ No newline at end of file\n"
 
 
@@ -80,16 +79,16 @@ def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
 
 
 def apply_command(patch: Path, cwd: Path) -> str:
-    """Return the shell command that applies a patch of `<root>/.tarl/patches` when it is run in `cwd`."""
+    """Return the shell command that applies a patch of `<root>/.tarl/patches` when it is run in `cwd`.
+
+    Run in another folder, it does not find the patch and says so.
+    """
     here = cwd.resolve()
     text = patch.read_bytes().decode("utf-8", "surrogateescape")
     base = (patch.resolve().parents[2] / _stated_base(text)).resolve()
     if shutil.which("git") is None:
         return shlex.join(["patch", "-p1", "-d", _shown(base, here), "-i", str(patch.resolve())])
-    files = [base / name for name in _FILE.findall(text)]
-    inside = (base / ".git").exists() and here.is_relative_to(base)
-    within = inside and all(file.is_relative_to(here) for file in files)
-    if within or base == here:
+    if base == here:  # in a subfolder, git passes over the files beside it and exits with 0
         return shlex.join(["git", "apply", _shown(patch.resolve(), here)])
     return shlex.join(["git", "-C", _shown(base, here), "apply", _shown(patch.resolve(), base)])
 

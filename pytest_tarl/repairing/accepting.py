@@ -9,19 +9,23 @@ from statistics import fmean
 from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
-from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.repairing.between import Between
+from pytest_tarl.repairing.ledger import Ledger, Tried, alike, of_fresh_seeds, operands
+from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.repairing.neighbours import NOTHING_BESIDE, Beside, beside
 from pytest_tarl.repairing.placing import Placing
 from pytest_tarl.repairing.ranges import Ranged, over_the_range
 from pytest_tarl.searching import candidates
-from pytest_tarl.searching.accept import LOOKS, Acceptance, World, accept
+from pytest_tarl.searching.accept import SEEDS, TOO_LITTLE, Acceptance, World, accept, risk_of
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
+from tarl_lint.model import Operand
 
 QUICK = 3  # seeds on which a guard is looked at before it is tested on fresh ones
-CLOSE = 0.01  # share of the loss within which two gains on the same seeds are equal
 HELD: tuple[Reason, ...] = ("nominal gets worse", "another test gets worse")  # in one world, in both of them
 OLD_WORLD = 8  # episodes that show what a repair for good earns in the old world
-MOST = 5  # candidates that are tested on fresh seeds
+MOST = 5  # candidates that are tested ...
+SHARE = 2  # ... and how many of them may be of the same operands while others wait
+SCREENED = 20  # candidates that are run on fresh seeds
 
 
 @dataclass(frozen=True)
@@ -43,18 +47,8 @@ class Refused:
     episodes: int = 0
 
 
-@dataclass(frozen=True)
-class Tried:
-    """A candidate that was confirmed and then examined, and what became of it; accepted without a reason."""
-
-    candidate: Candidate
-    reason: Reason
-    totals: tuple[float, ...]
-    fresh: bool
-
-
 class Examiner:
-    """Tries guards on confirmed candidates and tests them at α/2ᵏ; remembers the best that was refused."""
+    """Tries guards on confirmed candidates and tests each of them once; remembers the best that was refused."""
 
     def __init__(self, mutants: Mutants, guards: Sequence[Guard]) -> None:
         self.mutants = mutants
@@ -62,51 +56,110 @@ class Examiner:
         self.guards = guards
         self.placing = Placing(mutants)
         self.ranged: dict[Candidate, Ranged] = {}  # where the drift has a range
+        self.ledger = Ledger()
+        self.waiting: list[
+            Candidate
+        ] = []  # they held on known seeds, and their operands have had their share
+        self._bisected: set[tuple[frozenset[Operand], Guard]] = set()
         self.tested = 0
         self.spent = 0
-        self.bar = float("-inf")  # what a candidate has to gain on known seeds, once one that did was refused
         self.refused = Refused(None, "no operand helps")
-        self.tried: list[Tried] = []
         self.lost: tuple[str, ...] = ()  # what other tests lost under candidates
         self.cut = False  # whether the budget ended it
+
+    @property
+    def tried(self) -> Sequence[Tried]:
+        """Return what became of the candidates, in order."""
+        return self.ledger.tried
 
     def first(self, confirmed: Iterator[Candidate], trials: Trials) -> Accepted | None:
         """Take candidates until one is accepted, no more may be tested or the budget of the trials is spent."""
         try:
             for candidate in confirmed:
-                for guard in self.guards:
-                    if self.tested >= MOST:
-                        return None
-                    examined = self._examined(replace(candidate, guard=guard), trials)
-                    if isinstance(examined, Accepted):
-                        return examined
-                    if examined == "gain too small" and guard in (candidate.guard, candidates.ALWAYS):
-                        break  # where the guard is as wide as the search had it, no other one makes more of it
+                accepted = self._under_guards(candidate, trials)
+                if accepted is not None or self._exhausted():
+                    return accepted
         except BudgetSpentError:
             self.cut = True
             if self.refused.candidate is None:
                 self.refused = replace(self.refused, reason="budget")
+        return self._of_those_waiting()
+
+    def _under_guards(self, candidate: Candidate, trials: Trials) -> Accepted | None:
+        """Examine a candidate under every guard, then what lies between it and the original."""
+        for guard in self.guards:
+            examined = self._examined(replace(candidate, guard=guard), trials)
+            if isinstance(examined, Accepted):
+                return examined
+            if self._exhausted():
+                return None
+            weak = examined.fresh and examined.reason in (*TOO_LITTLE, "worse than unrepaired")
+            if weak and guard in (candidate.guard, candidates.ALWAYS):
+                break  # where the guard is as wide as the search had it, no other one makes more of it
+        for guard in dict.fromkeys((candidates.ALWAYS, candidate.guard)):
+            accepted = self._milder(replace(candidate, guard=guard), trials)
+            if accepted is not None or self._exhausted():
+                return accepted
         return None
 
-    def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Reason:
-        """Look at a candidate on a few known seeds, then test it on fresh ones; return what was wrong there, if any."""
+    def _milder(self, candidate: Candidate, trials: Trials) -> Accepted | None:
+        """Bisect between the original, which gains too little, and a candidate that breaks the designed world."""
+        known, place = self.ledger.alike(candidate), (operands(candidate), candidate.guard)
+        if known is None or known.reason != "nominal gets worse" or place in self._bisected:
+            return None
+        self._bisected.add(place)
+        between = Between(candidate, self.mutants.mutate)
+        while (middle := between.middle()) is not None:
+            examined = self._examined(middle, trials)
+            if isinstance(examined, Accepted):
+                return examined
+            if not between.told(examined.reason):
+                return None
+        return None
+
+    def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:
+        """Look at a candidate on known seeds, then on fresh ones, unless one like it was examined before."""
+        known = self.ledger.alike(candidate) or next(
+            (Tried(one, "never tested", ()) for one in self.waiting if alike(one, candidate)), None
+        )
+        if known is not None:
+            return known
         placed = self.placing(candidate, trials)
         if placed is None:
-            self.tried.append(Tried(candidate, "not at its definition", (), fresh=False))
             self._refuse(Refused(candidate, "not at its definition"))
-            return ""
+            return self.ledger.enter(Tried(candidate, "not at its definition", ()))
         candidate = placed
         try:
             problem = self._known_to_fail(candidate, trials)
         except RepairError:
-            return ""
+            problem = "cannot be written"
         if problem:
-            self.tried.append(Tried(candidate, problem, (), fresh=False))
             self._refuse(Refused(candidate, problem))
-            return ""
-        self.tested += 1
+            return self.ledger.enter(Tried(candidate, problem, ()))
+        if self.ledger.tests(candidate) >= SHARE:
+            self.waiting.append(candidate)
+            return Tried(candidate, "never tested", ())
+        return self._on_fresh_seeds(candidate)
+
+    def _of_those_waiting(self) -> Accepted | None:
+        """Test what had to wait for others, while there are tests left."""
+        while self.waiting and not self._exhausted():
+            examined = self._on_fresh_seeds(self.waiting.pop(0))
+            if isinstance(examined, Accepted):
+                return examined
+        for candidate in self.waiting:
+            self.ledger.enter(Tried(candidate, "never tested", ()))
+            self._refuse(Refused(candidate, "never tested"))
+        self.waiting.clear()
+        return None
+
+    def _exhausted(self) -> bool:
+        return self.tested >= MOST or of_fresh_seeds(self.tried) >= SCREENED
+
+    def _on_fresh_seeds(self, candidate: Candidate) -> Accepted | Tried:
+        """Run the one test of a candidate."""
         found = self._tested(candidate)
-        self.spent += len(found.drifted) + len(found.nominal)
+        self.spent += found.episodes
         others = beside(self.mutants, candidate) if found.accepted else NOTHING_BESIDE
         self.spent += others.episodes
         if others.lost:
@@ -114,14 +167,11 @@ class Examiner:
             found = replace(found, accepted=False, reason="another test gets worse")
         totals = tuple(outcome.total for outcome in found.drifted)
         reason = self._named(found.reason, totals)
-        self.tried.append(Tried(candidate, reason, totals, fresh=True))
+        tried = self.ledger.enter(Tried(candidate, reason, totals, fresh=True, tested=found.tested))
         if found.accepted:
             return Accepted(candidate, self._with_old_world(found, candidate), others)
-        if found.reason == "gain too small":
-            close = CLOSE * (self.order.goal.enough - self.order.goal.online)
-            self.bar = max(self.bar, trials.gain(candidate, self.order.goal.pairs[:QUICK]) - close)
         self._refuse(Refused(candidate, reason, fmean(totals), len(totals)))
-        return found.reason
+        return tried
 
     def _with_old_world(self, found: Acceptance, candidate: Candidate) -> Acceptance:
         """Add what a repair earns in the world that is gone, to be shown; it decides nothing."""
@@ -146,8 +196,6 @@ class Examiner:
         for pair in goal.pairs[:QUICK]:
             if not goal.reached(trials(candidate, pair.seed)):
                 return "gain too small"
-        if trials.gain(candidate, goal.pairs[:QUICK]) < self.bar:
-            return "gain too small"
         firing = self._firing(candidate)[:QUICK]
         self.mutants.foresee([(candidate, seed) for seed in firing], None)
         for seed in firing:
@@ -157,28 +205,27 @@ class Examiner:
         return ""
 
     def _tested(self, candidate: Candidate) -> Acceptance:
-        """Test a candidate on fresh seeds, the k-th one at α/2ᵏ."""
-        order = self.order
-        firing = len(self._firing(candidate)) / order.fixture.sample.episodes
-        losing = sum(total < order.goal.near for total in order.comparison.totals["online"])
-        nominal = self._world(candidate, None, firing) if firing else None
+        """Test a candidate on seeds of its own."""
+        order, number = self.order, of_fresh_seeds(self.tried) + 1
+        nominal = self._world(candidate, None) if self._firing(candidate) else None
 
         def test(fresh: Sequence[int], designed: bool) -> Acceptance:
             return accept(
-                self._world(candidate, order.drift, losing / len(order.comparison.totals["online"]) or 1.0),
+                self._world(candidate, order.drift),
                 nominal if designed else None,
+                self._world(ORIGINAL, None),
                 fresh,
                 order.reference,
-                order.options.alpha / 2**self.tested,
+                risk_of(order.options.alpha, self.tested),
             )
 
-        found, self.ranged[candidate] = over_the_range(order, f"acceptance {self.tested}", LOOKS[-1], test)
+        found, self.ranged[candidate] = over_the_range(order, f"acceptance {number}", SEEDS, test)
+        self.tested += found.tested
         return found
 
-    def _world(self, candidate: Candidate, drift: str | None, exposure: float) -> World:
+    def _world(self, candidate: Candidate, drift: str | None) -> World:
         return World(
             lambda seed: self.mutants.run(candidate, seed, drift),
-            exposure,
             lambda chosen: self.mutants.foresee([(candidate, seed) for seed in chosen], drift),
         )
 

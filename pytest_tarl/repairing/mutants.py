@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
-from pytest_tarl.errors import RepairError, TarlError
+from pytest_tarl.errors import RepairError, StaleTextError, TarlError
+from pytest_tarl.model import Guard
 from pytest_tarl.patching.mutate import Mutation, is_integral, mutations, rewrite
 from pytest_tarl.recording import sound
 from pytest_tarl.repairing.order import Order
@@ -14,6 +15,7 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate, Wanted
 from tarl_lint.model import Operand
 
+ORIGINAL = Candidate((), Guard())  # the program as it is
 MOST_KEPT = 128  # sources of candidates that are not written anew
 
 
@@ -72,6 +74,17 @@ class Mutants:
             yield (candidate, seed, drift), EpisodePlan(seed, drift, source)
 
 
+def _check_text(ended: EpisodeRun) -> None:
+    """Raise StaleTextError where an episode ran an older text than the candidate's."""
+    if ended.older:
+        names = ", ".join(path.name for path in ended.older)
+        raise StaleTextError(
+            f"{names}: a candidate was written into it, and the text of before ran all the same, so nothing can be "
+            "said of its constants. Something outside of the node keeps what was imported from it: import it inside "
+            "the test function, or not at all in tests, conftest.py and installed packages."
+        )
+
+
 def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
     """Run an episode with a candidate in the nodes and say what it earned.
 
@@ -80,7 +93,11 @@ def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
     worst one recorded: what it had until then says nothing.
     """
     try:
-        ended = sound(run())
+        ended = run()
+        _check_text(ended)
+        ended = sound(ended)
+    except StaleTextError:
+        raise
     except TarlError:
         return Outcome(worst, passed=False)
     total = float(ended.trace.reward.sum())

@@ -19,6 +19,8 @@ from pytest_tarl.searching.accept import PASS_RATE_LOSS, Reference
 from pytest_tarl.searching.search import Goal, Pair
 from tarl_lint.api import Analysis
 
+SMALL = 0.05  # share of the loss that may stay where designed missions earn nothing, so that no share of that says it
+
 
 @dataclass(frozen=True)
 class Neighbour:
@@ -66,10 +68,9 @@ class Order:
     @cached_property
     def reference(self) -> Reference:
         """Return the off-line world that repairs are held against."""
-        offline = self.fixture.sample
-        return Reference(
-            offline.total.tolist(), float(offline.passed.mean()), self.comparison.verdict.tolerance
-        )
+        offline, verdict = self.fixture.sample, self.comparison.verdict
+        margin = verdict.tolerance or SMALL * verdict.loss
+        return Reference(offline.total.tolist(), float(offline.passed.mean()), margin, self.worst)
 
     @cached_property
     def goal(self) -> Goal:

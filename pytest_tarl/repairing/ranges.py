@@ -10,7 +10,7 @@ from pytest_tarl import seeds
 from pytest_tarl.drifts import sizes
 from pytest_tarl.model import Band, Sizes
 from pytest_tarl.repairing.order import Order
-from pytest_tarl.searching.accept import Acceptance, Outcome
+from pytest_tarl.searching.accept import TOO_LITTLE, Acceptance, Outcome
 
 LEAST_NEAR = 2  # episodes that a candidate holds in before it is said to fit a part of the range
 
@@ -42,7 +42,7 @@ def over_the_range(order: Order, stream: str, most: int, test: Test) -> tuple[Ac
     for number, band in enumerate(bands):
         fresh = seeds_in(order, band, f"{stream} {number}", most)
         found = test(fresh, number == 0)
-        used += fresh[: len(found.drifted)]
+        used += found.seeds
         ended.append((band, found))
         if found.reason == "nominal gets worse":
             break
@@ -103,10 +103,13 @@ def _drawn(order: Order, seed: int) -> Mapping[str, float]:
 def _joined(parts: Sequence[Acceptance]) -> Acceptance:
     """Return what the tests of all parts come to."""
     refused = [part for part in parts if not part.accepted]
-    split = refused and len(refused) < len(parts) and refused[0].reason == "gain too small"
+    split = refused and len(refused) < len(parts) and refused[0].reason in TOO_LITTLE
     return replace(
         parts[0],
         accepted=not refused,
         reason="not over the whole range" if split else refused[0].reason if refused else "",
         drifted=tuple(chain.from_iterable(part.drifted for part in parts)),
+        tested=any(part.tested for part in parts),
+        episodes=sum(part.episodes for part in parts),
+        seeds=tuple(chain.from_iterable(part.seeds for part in parts)),
     )

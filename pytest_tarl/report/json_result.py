@@ -11,7 +11,7 @@ from typing import Any
 
 from pytest_tarl.errors import TarlError
 from pytest_tarl.files import advice_on, write_atomically
-from pytest_tarl.model import Comparison, Culprit, FormulaRow, Repair, SitePlace, Slice
+from pytest_tarl.model import Attempt, Comparison, Culprit, FormulaRow, Repair, SitePlace, Slice
 from pytest_tarl.report.regions import boxes
 from pytest_tarl.report.sizes import rows as size_rows
 from pytest_tarl.report.words import atr, expected
@@ -168,7 +168,25 @@ def _repair(repair: Repair) -> dict[str, Any]:
         {"path": edit.path, "line": edit.line, "code": edit.code, "value": _finite(edit.value)}
         for edit in repair.edits
     ]
-    return {"accepted": repair.accepted, "guard": repair.guard, "patch": repair.patch or None, "edits": edits}
+    tried = [_tried(attempt) for attempt in repair.history]
+    return {
+        "accepted": repair.accepted,
+        "guard": repair.guard,
+        "patch": repair.patch or None,
+        "edits": edits,
+        "tried": tried,
+    }
+
+
+def _tried(attempt: Attempt) -> dict[str, Any]:
+    """Return a candidate that came near, and what became of it."""
+    return {
+        "what": attempt.what,
+        "reason": attempt.reason or None,
+        "mean": _finite(attempt.mean),
+        "episodes": attempt.episodes,
+        "fresh": attempt.fresh,
+    }
 
 
 def _finite(value: float | None) -> float | None:

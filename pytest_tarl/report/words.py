@@ -30,6 +30,10 @@ REASONS: dict[Reason, str] = {
     "another test gets worse": "the best change found makes another recorded test of the node worse",
     "not over the whole range": "the best change found holds for a part of the range only",
     "not at its definition": "the best change found helps at its use only, and --tarl-edit=definition was asked for",
+    "fails too often": "with the best change found, missions still fail too often",
+    "not shown": "the best change found may hold, but 200 episodes do not suffice to show it",
+    "cannot be written": "the best change found cannot be written into the source",
+    "never tested": "the best change found was not tested, since others took all the tests",
 }
 
 
@@ -42,6 +46,10 @@ ENDS: dict[Reason, str] = {
     "another test gets worse": "dropped, another test of the node gets worse",
     "not over the whole range": "dropped, it holds for a part of the range only",
     "not at its definition": "dropped, it helps at its use and not at the definition",
+    "fails too often": "dropped, missions fail too often",
+    "not shown": "dropped, 200 episodes would not suffice to show that it holds",
+    "cannot be written": "dropped, it cannot be written into the source",
+    "never tested": "never tested, since others took the tests",
 }
 
 

@@ -17,6 +17,7 @@ from pytest_tarl.ros.messages.installed import installed_kind
 from pytest_tarl.ros.messages.packages import PARTS, could_be_package, is_package, package_module
 from pytest_tarl.ros.missing import unsupported
 from pytest_tarl.ros.threads import threads_as_tasks
+from pytest_tarl.stale import holders
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.episode import Ros
@@ -137,6 +138,7 @@ class StandinFinder:
     def __init__(self) -> None:
         self.loaded: list[str] = []
         self.hidden: dict[str, ModuleType] = {}
+        self.before = set(sys.modules)
         self._kind: Kind | None = None
 
     def find_spec(
@@ -263,6 +265,9 @@ def standins_installed(ros: Ros) -> Iterator[None]:
             yield
     finally:
         sys.meta_path.remove(finder)
+        gone = [sys.modules[name] for name in finder.loaded if name in sys.modules]
+        for name in holders(gone, sorted(sys.modules.keys() - finder.before - set(finder.loaded))):
+            del sys.modules[name]  # what took a stand-in apart, or wrapped it, does so with the next one
         for name in finder.loaded:
             sys.modules.pop(name, None)
         sys.modules.update(finder.hidden)

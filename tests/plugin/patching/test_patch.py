@@ -259,3 +259,22 @@ def test_applying_gives_the_new_bytes(
     patch = patched(root, {node: new})
     shell(apply_command(patch, root), root)
     assert node.read_bytes() == new.encode()
+
+
+@pytest.mark.parametrize("tops", [(), (".",), ("ws",), ("ws/src",), (".", "ws"), ("other",), (".", "other")])
+@pytest.mark.parametrize("root", ["ws", "ws/src/pkg", "other"])
+@pytest.mark.parametrize("names", [("ws/src/pkg/node.py",), ("ws/src/pkg/node.py", "ws/src/lib/helper.py")])
+def test_the_command_changes_the_files_wherever_it_is_typed(
+    tmp_path: Path, tops: tuple[str, ...], root: str, names: tuple[str, ...]
+) -> None:
+    files = [tmp_path / name for name in names]
+    for folder in ("ws/src/pkg", "ws/src/lib", "other", "ws/src/pkg/deep"):
+        (tmp_path / folder).mkdir(parents=True, exist_ok=True)
+    for top in tops:
+        repository(tmp_path / top)
+    for folder in (".", "ws", "ws/src", "ws/src/pkg", "ws/src/pkg/deep", "ws/src/lib", "other"):
+        for file in files:
+            file.write_text("a = 5\n")
+        patch = patched(tmp_path / root, dict.fromkeys(files, "a = 7\n"))
+        shell(apply_command(patch, tmp_path / folder), tmp_path / folder)
+        assert [file.read_text() for file in files] == ["a = 7\n"] * len(files), folder

@@ -12,6 +12,7 @@ import pytest
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.repairing.accepting import Accepted, Examiner, Refused, furthest
+from pytest_tarl.repairing.mutants import ORIGINAL
 from pytest_tarl.searching.accept import Outcome, Reference
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
@@ -88,7 +89,7 @@ class Field:
             fixture=SimpleNamespace(
                 sample=SimpleNamespace(seeds=tuple(range(100, 140)), total=totals, episodes=40)
             ),
-            reference=Reference(totals.tolist(), 1.0, 0.5),
+            reference=Reference(totals.tolist(), 1.0, 0.5, -10.0),
             options=SimpleNamespace(seed=0, alpha=0.05, edit="use"),
             drift="mud",
             permanent=False,
@@ -96,8 +97,13 @@ class Field:
         )
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+        if candidate == ORIGINAL:
+            return Outcome(DESIGNED, passed=True)
         kind = self.line_up[self.candidates.index(candidate)]
         return Outcome(LOT[kind](seed, drift is not None), passed=True)
+
+    def mutate(self, operand: object, factor: float) -> None:
+        """Nothing lies between."""
 
     def foresee(self, wanted: object, drift: str | None) -> None:
         pass

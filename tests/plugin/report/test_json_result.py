@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pytest_tarl.errors import TarlError
-from pytest_tarl.model import Culprit, OperandEffect, Repair, Verdict
+from pytest_tarl.model import Attempt, Culprit, OperandEffect, Repair, Verdict
 from pytest_tarl.report.json_result import document, rectangles, schema, write
 from pytest_tarl.sensors import Sensor
 
@@ -58,6 +58,7 @@ def test_the_document_has_the_agreed_keys_in_their_order(shuttle, tmp_path):
         "guard": "terrain and 4.167 <= pos <= 7.083",
         "patch": ".tarl/patches/test-delivers-mud-1a2b3c4d.patch",
         "edits": [{"path": "traveller.py", "line": 30, "code": "5", "value": 12.0}],
+        "tried": [],
     }
     assert found["culprits"][0]["operands"] == [{"code": "5", "value": 5, "best": 12.0, "effect": 14.2}]
     assert found["sites"][5]["difference"] == pytest.approx(
@@ -115,7 +116,24 @@ def test_without_a_search_repair_is_null_and_without_acceptance_the_patch_is(var
         "guard": "",
         "patch": None,
         "edits": [],
+        "tried": [],
     }
+
+
+def test_what_was_tried_is_told_with_its_reason(varied, tmp_path):
+    history = (
+        Attempt("5 → 9 everywhere", "nominal gets worse", 7.5, 60, fresh=True),
+        Attempt("5 → 11 everywhere", "", 9.8, 80, fresh=True),
+        Attempt("5 → 2 everywhere", "cannot be written", math.nan, 0, fresh=False),
+    )
+    found = written(varied(repair=Repair(True, "", (), history=history)), tmp_path)
+    jsonschema.validate(found, schema())
+    tried = [(one["reason"], one["mean"], one["episodes"], one["fresh"]) for one in found["repair"]["tried"]]
+    assert tried == [
+        ("nominal gets worse", 7.5, 60, True),
+        (None, 9.8, 80, True),
+        ("cannot be written", None, 0, False),
+    ]
 
 
 def test_missing_counts_are_zero(shuttle):

@@ -3,109 +3,189 @@
 from __future__ import annotations
 
 import itertools
-from statistics import NormalDist
+from collections.abc import Callable
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
+from pytest_tarl.learning.bounds import rate
 from pytest_tarl.searching.accept import (
     LOOKS,
-    SHARES,
+    SCREEN,
+    SEEDS,
+    Acceptance,
     Outcome,
     Reference,
     World,
     accept,
-    episodes_to_see,
+    risk_of,
 )
+from pytest_tarl.searching.acceptance_numbers import NEVER, acceptance_numbers
+from pytest_tarl.searching.betting import Bet, bet
+
+DESIGNED, LOWEST, MARGIN = 10.0, -10.0, 0.5
+RISK = risk_of(0.05, 0)
 
 
-def world(mean: float, spread: float = 0.3, passing: float = 1.0, seed: int = 0) -> World:
+def world(mean: float, spread: float = 0.3, failing: float = 0.0, seed: int = 0) -> World:
     def run(episode: int) -> Outcome:
         draws = np.random.default_rng([seed, episode])
-        return Outcome(float(draws.normal(mean, spread)), bool(draws.random() < passing))
+        failed = bool(draws.random() < failing)
+        return Outcome(LOWEST if failed else float(draws.normal(mean, spread)), not failed)
 
     return World(run)
 
 
-REFERENCE = Reference([world(10.0).run(i).total for i in range(1000, 1200)], 1.0, 0.5)
-SEEDS = range(LOOKS[-1])
+def seeds(at: int) -> range:
+    return range(at * SEEDS, (at + 1) * SEEDS)
 
 
-def test_a_repair_as_good_as_designed_is_accepted_early() -> None:
-    found = accept(world(10.0), world(10.0, seed=1), SEEDS, REFERENCE, 0.025)
+AS_DESIGNED = world(DESIGNED, seed=7)
+REFERENCE = Reference([AS_DESIGNED.run(i).total for i in range(10**6, 10**6 + 200)], 1.0, MARGIN, LOWEST)
+
+
+def judged(
+    drifted: World, nominal: World | None = None, at: int = 0, designed: World = AS_DESIGNED
+) -> Acceptance:
+    return accept(drifted, nominal, designed, seeds(at), REFERENCE, RISK)
+
+
+def test_a_repair_as_good_as_designed_is_accepted() -> None:
+    found = judged(world(DESIGNED), world(DESIGNED, seed=1))
     assert found.accepted
-    assert len(found.drifted) <= LOOKS[2]
-    assert len(found.nominal) <= LOOKS[2]
+    assert found.tested
+    assert len(found.drifted) in LOOKS
+    assert len(found.nominal) in LOOKS
+    longest = max(len(found.drifted), len(found.nominal))
+    assert found.episodes == len(found.drifted) + len(found.nominal) + longest + 3 * SCREEN
 
 
-def test_a_repair_that_gains_too_little_is_refused_without_asking_the_nominal_world() -> None:
-    found = accept(world(8.0), world(10.0), SEEDS, REFERENCE, 0.025)
-    assert (found.accepted, found.reason, found.nominal) == (False, "gain too small", ())
+def test_a_repair_that_gains_too_little_is_refused_without_asking_the_designed_world() -> None:
+    found = judged(world(8.0), world(DESIGNED))
+    assert (found.accepted, found.reason, found.nominal, found.tested) == (False, "gain too small", (), False)
 
 
-def test_a_repair_that_breaks_the_nominal_world_is_refused() -> None:
-    found = accept(world(10.0), world(7.0), SEEDS, REFERENCE, 0.025)
+def test_a_repair_that_breaks_the_designed_world_is_refused() -> None:
+    found = judged(world(DESIGNED), world(7.0))
     assert (found.accepted, found.reason) == (False, "nominal gets worse")
 
 
-def test_no_nominal_episode_is_run_where_the_guard_never_fires() -> None:
-    found = accept(world(10.0), None, SEEDS, REFERENCE, 0.025)
+def test_no_designed_mission_of_the_candidate_is_run_where_the_guard_never_fires() -> None:
+    found = judged(world(DESIGNED))
     assert found.accepted
     assert found.nominal == ()
 
 
 def test_missions_that_fail_count_even_when_the_reward_is_right() -> None:
-    found = accept(world(10.0, passing=0.7), None, SEEDS, REFERENCE, 0.025)
-    assert not found.accepted
+    def run(episode: int) -> Outcome:
+        return Outcome(DESIGNED, bool(np.random.default_rng(episode).random() > 0.3))
+
+    assert judged(World(run)).reason == "fails too often"
 
 
-def test_a_repair_just_below_the_margin_is_rarely_accepted() -> None:
-    borderline = REFERENCE.mean - REFERENCE.margin
-    accepted = [accept(world(borderline, seed=s), None, SEEDS, REFERENCE, 0.05).accepted for s in range(200)]
-    assert sum(accepted) <= 15
-
-
-def test_looks_are_increasing() -> None:
-    assert all(a < b for a, b in itertools.pairwise(LOOKS))
-
-
-@pytest.mark.parametrize("risk", [0.05, 0.025, 0.0125, 0.00625, 0.003125, 0.0015625])
-def test_all_looks_together_err_no_more_often_than_the_risk(risk: float) -> None:
-    paths = 400_000
-    steps = np.diff(LOOKS, prepend=0)
-    sums = np.cumsum(np.random.default_rng(1).normal(size=(paths, len(LOOKS))) * np.sqrt(steps), axis=1)
-    limits = [NormalDist().inv_cdf(1 - risk * share) for share in SHARES]
-    erring = float(np.mean(np.any(sums / np.sqrt(LOOKS) > limits, axis=1)))
-    assert erring <= risk + 3 * np.sqrt(risk / paths)
-
-
-def in_some_missions(share: float, lost: float, seed: int) -> World:
-    """A world as designed but for a share of the missions, which the candidate does not mend."""
+def test_a_mission_of_the_program_as_it_is_runs_once_a_seed() -> None:
+    runs: list[int] = []
 
     def run(episode: int) -> Outcome:
-        draws = np.random.default_rng([seed, episode])
-        return Outcome(float(draws.normal(lost if draws.random() < share else 10.0, 0.3)), True)
+        runs.append(episode)
+        return AS_DESIGNED.run(episode)
 
-    return World(run, share)
-
-
-@pytest.mark.parametrize("share", [0.3, 0.15])
-def test_a_drift_that_shows_in_few_missions_is_given_time_to_show(share: float) -> None:
-    accepted = [
-        accept(in_some_missions(share, -7.0, seed), None, SEEDS, REFERENCE, 0.025).accepted
-        for seed in range(200)
-    ]
-    assert sum(accepted) <= 10
+    judged(world(DESIGNED), world(DESIGNED, seed=1), designed=World(run))
+    assert len(runs) == len(set(runs))
 
 
-@pytest.mark.parametrize(
-    ("exposure", "alpha", "episodes"),
-    [(1.0, 0.025, 8), (0.5, 0.025, 6), (0.3, 0.025, 11), (0.01, 0.025, 40), (0, 0.1, 40)],
+def share_accepted(make: Callable[[int], World], runs: int) -> float:
+    return sum(judged(make(at), at=at).accepted for at in range(runs)) / runs
+
+
+@pytest.mark.parametrize("failing", [0.05, 0.08, 0.12])
+def test_a_repair_that_fails_at_times_is_accepted_no_more_often_than_the_risk(failing: float) -> None:
+    runs = 80
+    accepted = share_accepted(lambda at: world(DESIGNED, failing=failing, seed=at + 10), runs)
+    assert accepted <= RISK + 3 * np.sqrt(RISK / runs)
+
+
+@pytest.mark.parametrize("spread", [0.02, 0.3, 2.0])
+def test_a_repair_just_below_the_margin_is_accepted_no_more_often_than_the_risk(spread: float) -> None:
+    runs = 80
+    below = DESIGNED - MARGIN - 0.01
+    accepted = share_accepted(lambda at: world(below, spread, seed=at + 10), runs)
+    assert accepted <= RISK + 3 * np.sqrt(RISK / runs)
+
+
+def test_totals_that_vary_alike_in_both_worlds_are_compared_seed_by_seed() -> None:
+    def varying(loss: float) -> World:
+        def run(episode: int) -> Outcome:
+            return Outcome(float(np.random.default_rng([5, episode]).normal(DESIGNED, 3.0)) - loss, True)
+
+        return World(run)
+
+    totals = [varying(0.0).run(at).total for at in range(10**6, 10**6 + 200)]
+    reference = Reference(totals, 1.0, MARGIN, min(totals))
+    for at in range(20):
+        assert accept(varying(0.1), None, varying(0.0), seeds(at), reference, RISK).accepted
+        assert not accept(varying(0.6), None, varying(0.0), seeds(at), reference, RISK).accepted
+
+
+def test_what_cannot_be_shown_says_so() -> None:
+    found = judged(world(DESIGNED - 0.9 * MARGIN, 0.01))
+    assert found.reason == "not shown"
+
+
+def test_the_risks_of_all_tests_add_up_to_alpha() -> None:
+    risks = [risk_of(0.05, before) for before in range(60)]
+    assert sum(risks) == pytest.approx(0.05)
+    assert all(later < earlier for earlier, later in itertools.pairwise(risks))
+
+
+def test_none_of_fifty_nine_shows_five_percent() -> None:
+    assert rate(59, 59, 0.95).low > 0.95 > rate(58, 58, 0.95).low
+    assert acceptance_numbers((59,), 0.05, 0.05) == (0,)
+    assert acceptance_numbers((58,), 0.05, 0.05) == (NEVER,)
+
+
+@settings(max_examples=8)
+@given(st.sampled_from([0.02, 0.05, 0.1, 0.25, 0.6]), st.sampled_from([0.05, 0.0333, 0.0111, 0.0037]))
+def test_looks_together_accept_what_fails_too_often_with_the_risk_at_most(rate: float, risk: float) -> None:
+    numbers = acceptance_numbers(LOOKS, rate, risk)
+    assert list(numbers) == sorted(numbers)
+    failed = np.random.default_rng(1).random((15_000, LOOKS[-1])) < rate
+    counts = np.cumsum(failed, axis=1)[:, np.array(LOOKS) - 1]
+    accepted = float(np.mean(np.any(counts <= np.array(numbers), axis=1)))
+    assert accepted <= risk + 4 * np.sqrt(risk / 15_000)
+
+
+@settings(max_examples=60)
+@given(
+    st.lists(st.floats(-20, 5), min_size=2, max_size=8),
+    st.floats(0.1, 2.0),
+    st.lists(st.floats(0.02, 1.0), min_size=1, max_size=4),
+    st.integers(0, 2**16),
 )
-def test_so_many_episodes_show_what_there_is_to_see(exposure: float, alpha: float, episodes: int) -> None:
-    assert episodes_to_see(exposure, alpha) == episodes
+def test_a_bet_against_a_true_claim_is_rarely_won_whatever_the_totals_look_like(
+    known: list[float], margin: float, steps: list[float], seed: int
+) -> None:
+    """Totals of a few values whose mean is exactly the margin below: skewed, bimodal, nearly constant."""
+    least, draws = -20.0, np.random.default_rng(seed)
+    worst = draws.uniform(least, -margin - 0.05)
+    best = draws.uniform(-margin + 0.05, 2.0)
+    rate = (best + margin) / (best - worst)  # of the worst value: the mean is -margin
+    stake = bet(margin, least, known)
+    runs = np.where(draws.random((400, 200)) < rate, worst, best)
+    money = np.mean([np.cumprod(1.0 + one * (runs + margin), axis=1) for one in stake.stakes], axis=0)
+    assert money.min() >= 0.0
+    won = float(np.mean(money.max(axis=1) >= 1 / RISK))
+    assert won <= RISK + 4 * np.sqrt(RISK / 400) + 0.01
+    assert stake.wealth(runs[0].tolist()) == pytest.approx(float(np.log(money[0, -1])), abs=1e-6)
 
 
-def test_a_world_without_any_chance_is_accepted_when_it_is_the_designed_one() -> None:
-    same = World(lambda episode: Outcome(0.0, True))
-    assert accept(same, same, SEEDS, Reference([0.0] * 20, 1.0, 0.0), 0.025).accepted
+def test_the_loss_that_a_bet_shows_covers_the_true_one() -> None:
+    stake = Bet(MARGIN, -20.0, (0.04, 0.02))
+    draws = np.random.default_rng(2)
+    missed = 0
+    for _ in range(300):
+        totals = np.where(draws.random(150) < 0.02, -20.0, 0.1)
+        missed += stake.loss(totals.tolist(), 0.05) < 0.02 * 20.0 - 0.98 * 0.1
+    assert missed <= 300 * 0.05 + 3 * np.sqrt(300 * 0.05)

@@ -1,0 +1,91 @@
+"""Print how often acceptance says yes: against the true reward and the true failure rate of a repair.
+
+    python benchmarks/acceptance.py [--runs 400]
+
+Worlds are drawn, not simulated: a mission that succeeds earns a normal total around `ratio` × 10, one that fails earns
+as little as the worst one recorded, -10. Designed missions earn 10 and never fail; of their spread a share is
+decided by the seed, so that pairing can see it. A repair is right where it loses less than 5 % of the designed reward
+in the mean, failures counted, and fails less than 5 % of its missions.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+
+import numpy as np
+
+from pytest_tarl.searching.accept import SEEDS, Acceptance, Outcome, Reference, World, accept, risk_of
+
+DESIGNED, WORST, MARGIN, ALPHA = 10.0, -10.0, 0.5, 0.05
+RATIOS = (1.0, 0.99, 0.98, 0.97, 0.96, 0.95, 0.94, 0.92)
+FAILING = (0.0, 0.002, 0.005, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12)
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Totals of so many missions, as the seeds decide them, and a repair beside them."""
+
+    seed: int
+    spread: float
+    shared: float  # share of the spread that the seed decides
+
+    def designed(self) -> np.ndarray:
+        """Return the totals of the program as it is in the designed world."""
+        return self._totals(0, DESIGNED)
+
+    def repaired(self, ratio: float, failing: float) -> list[Outcome]:
+        """Return the missions of the repair."""
+        failed = np.random.default_rng([self.seed, 3]).random(SEEDS) < failing
+        totals = np.where(failed, WORST, self._totals(1, DESIGNED * ratio))
+        return [Outcome(float(total), not bad) for total, bad in zip(totals, failed, strict=True)]
+
+    def _totals(self, stream: int, mean: float) -> np.ndarray:
+        alike = np.random.default_rng([self.seed, 2]).normal(size=SEEDS)
+        own = np.random.default_rng([self.seed, stream]).normal(size=SEEDS)
+        totals: np.ndarray = mean + self.spread * (
+            np.sqrt(self.shared) * alike + np.sqrt(1 - self.shared) * own
+        )
+        return totals
+
+
+def tested(drawn: Drawn, ratio: float, failing: float) -> Acceptance:
+    """Test one repair, which changes nothing in the designed world."""
+    designed, repaired = drawn.designed(), drawn.repaired(ratio, failing)
+    recorded = np.random.default_rng([drawn.seed, 4]).normal(DESIGNED, drawn.spread, 200).tolist()
+    return accept(
+        World(lambda at: repaired[at]),
+        None,
+        World(lambda at: Outcome(float(designed[at]), passed=True)),
+        range(SEEDS),
+        Reference(recorded, 1.0, MARGIN, WORST),
+        risk_of(ALPHA, 0),
+    )
+
+
+def row(name: str, ratio: float, failing: float, spread: float, shared: float, runs: int) -> str:
+    """Return a line of the table."""
+    found = [tested(Drawn(seed, spread, shared), ratio, failing) for seed in range(runs)]
+    accepted = sum(one.accepted for one in found) / runs
+    loses = DESIGNED - (1 - failing) * DESIGNED * ratio - failing * WORST
+    right = loses < MARGIN and failing < 0.05
+    episodes = sum(one.episodes for one in found) / runs
+    return f"| {name} | {loses / DESIGNED:.1%} | {'right' if right else 'wrong'} | {accepted:.3f} | {episodes:.0f} |"
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("--runs", type=int, default=400)
+    runs = parser.parse_args().runs
+    for spread, shared in ((0.1, 0.0), (1.0, 0.0), (1.0, 0.9)):
+        print(f"\nspread {spread:g}, of which the seed decides {shared:.0%}\n")
+        print("| repair | it loses | it is | accepted | episodes |\n|---|---|---|---|---|")
+        for ratio in RATIOS:
+            print(row(f"reward × {ratio:g}, never fails", ratio, 0.0, spread, shared, runs), flush=True)
+        for failing in FAILING[1:]:
+            print(row(f"reward × 1, fails {failing:.1%}", 1.0, failing, spread, shared, runs), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,64 @@
+"""Values between the original, which gains too little, and one that breaks the designed world."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from pytest_tarl.model import Reason
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.searching.search import Candidate
+from tarl_lint.model import Operand
+
+STEPS = 4
+FINEST = 1.05  # ratio of two factors between which there is nothing to find
+
+
+class Between:
+    """A bisection on a log scale, of all operands of a candidate at once; signs and booleans are not bisected."""
+
+    def __init__(self, candidate: Candidate, mutate: Callable[[Operand, float], Mutation | None]) -> None:
+        self.candidate = candidate
+        self.mutate = mutate
+        self.weak, self.strong = 0.0, 1.0  # shares of the way, on a log scale
+        self.steps = 0
+        self._factors = [factor(mutation) for mutation in candidate.mutations]
+
+    def middle(self) -> Candidate | None:
+        """Return the candidate half-way between the weak one and the strong one; None where the search is over."""
+        factors = [one for one in self._factors if one is not None]
+        if self.steps >= STEPS or len(factors) < len(self._factors):
+            return None
+        span = self.strong - self.weak
+        if all(max(one, 1 / one) ** span < FINEST for one in factors):
+            return None
+        self.steps += 1
+        share = (self.weak + self.strong) / 2
+        tried = (
+            self.mutate(mutation.operand, one**share)
+            for mutation, one in zip(self.candidate.mutations, factors, strict=True)
+        )
+        moved = tuple(mutation for mutation in tried if mutation is not None)
+        return replace(self.candidate, mutations=moved) if moved else None
+
+    def told(self, reason: Reason) -> bool:
+        """Take what became of the last one; return whether it says on which side to go on."""
+        share = (self.weak + self.strong) / 2
+        if reason in ("gain too small", "worse than unrepaired"):
+            self.weak = share
+        elif reason == "nominal gets worse":
+            self.strong = share
+        else:
+            return False
+        return True
+
+
+def factor(mutation: Mutation) -> float | None:
+    """Return the positive factor that a mutation moves its operand by; None where it is no such factor."""
+    operand, value = mutation.operand, mutation.value
+    if isinstance(operand.value, bool) or isinstance(value, bool):
+        return None
+    if operand.value == 0:
+        return 1.0 + value if value > 0 else 1.0 / (1.0 - value)  # as `mutations` steps away from zero
+    moved = float(value) / operand.value if operand.literal and operand.value is not None else float(value)
+    return moved if moved > 0.0 else None

@@ -1,0 +1,64 @@
+"""Modules and functions that outlive what they were made from, so that an old text runs in place of a new one."""
+
+from __future__ import annotations
+
+import gc
+import sys
+from collections.abc import Collection, Iterable
+from importlib.machinery import SourceFileLoader
+from pathlib import Path
+from types import FunctionType, ModuleType
+
+_OURS = frozenset({"pytest_tarl", "tarl_lint", "_pytest", "pytest"})
+
+
+def holders(gone: Iterable[ModuleType], among: Iterable[str]) -> list[str]:
+    """Return which of the named modules hold one that is to go, or something of it, directly or through others.
+
+    They are run anew as well where that can be done: Python sources that are no tests.
+    """
+    going = {id(module): module for module in gone}
+    left = [name for name in among if _renewable(sys.modules.get(name))]
+    found: list[str] = []
+    grew = True
+    while grew:
+        names = {str(module.__dict__.get("__name__")) for module in going.values()}
+        more = [name for name in left if _holds(sys.modules[name], going, names)]
+        going.update((id(sys.modules[name]), sys.modules[name]) for name in more)
+        left = [name for name in left if name not in more]
+        found += more
+        grew = bool(more)
+    return found
+
+
+def outlived(files: Collection[Path]) -> list[Path]:
+    """Return the files of which functions exist that were made before: somebody keeps them."""
+    wanted = {str(file): file for file in files}
+    gc.collect()
+    codes = (one.__code__.co_filename for one in gc.get_objects() if type(one) is FunctionType)
+    return sorted({wanted[name] for name in codes if name in wanted})
+
+
+def of_tests(file: Path) -> bool:
+    """Tell whether a file is one that pytest imports itself."""
+    return file.name == "conftest.py" or file.name.startswith("test_") or file.name.endswith("_test.py")
+
+
+def _renewable(module: ModuleType | None) -> bool:
+    spec = module.__dict__.get("__spec__") if isinstance(module, ModuleType) else None
+    if spec is None or not isinstance(spec.loader, SourceFileLoader) or not spec.origin:
+        return False
+    return spec.name.partition(".")[0] not in _OURS and not of_tests(Path(spec.origin))
+
+
+def _holds(module: ModuleType, going: Collection[int], names: Collection[str]) -> bool:
+    if id(module) in going:
+        return False
+    for value in list(module.__dict__.values()):
+        if id(value) in going:
+            return True
+        kind = value if isinstance(value, type | FunctionType) else type(value)
+        home = kind.__dict__.get("__module__") if isinstance(kind, type) else kind.__module__
+        if isinstance(home, str) and home in names:
+            return True
+    return False
