@@ -17,7 +17,7 @@ from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.learning.judgements import judgements, never_judged
+from pytest_tarl.learning.judgements import accounts, judgements, never_judged
 from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.sarsa import LEARNERS, Learner
 from pytest_tarl.learning.sequences import event_sequences
@@ -110,7 +110,7 @@ def record(
     unjudged = never_judged(recorded.sample.judgements)
     if unjudged:
         return RecordResult("", _unjudged(unjudged[0], recorded.sample), tuple(notes))
-    notes += _silent_lists(recorded.sample, plan)
+    notes = [*accounts(recorded.sample.judgements), *notes, *_silent_lists(recorded.sample, plan)]
     new = Fixture(
         test=test,
         seed=options.seed,

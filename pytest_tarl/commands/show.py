@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.judgements import accounts
 from pytest_tarl.learning.tables import START, Floats, ListSample
 from pytest_tarl.model import TaintList
 from pytest_tarl.sensors import Sensor
@@ -31,6 +32,8 @@ def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = Fa
     yield f"  reward     {sample.total.mean():.4g} per episode, from {least:.4g} to {most:.4g}"
     for i, name in enumerate(sample.part_names):
         yield f"             {name} {sample.chain.parts[:, i].sum() / sample.episodes:.4g}"
+    for i, line in enumerate(accounts(sample.judgements)):
+        yield f"  {'' if i else 'formulas':<10} {line}"
     yield f"  cells      {len(sample.cells)}"
     for i, sensor in enumerate(fixture.sensors):
         yield f"             {described(sensor, [cell[i] for cell in sample.cells])}"

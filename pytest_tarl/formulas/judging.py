@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pytest_tarl.errors import RecordingError
@@ -147,8 +147,3 @@ class Judge:
 def margin(robustness: float) -> str:
     """Write a robustness for people."""
     return f"{0.0 if abs(robustness) < NEGLIGIBLE else robustness:.4g}"
-
-
-def as_mapping(judged: Sequence[Judged]) -> Mapping[str, Judged]:
-    """Return what formulas came to by their text."""
-    return {one.formula: one for one in judged}

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pytest_tarl.formulas.judging import Judged
+from pytest_tarl.formulas.judging import Judged, margin
 from pytest_tarl.learning.tables import Judgements, Sample
 from pytest_tarl.model import FormulaRow, FormulaWorld
 
@@ -98,6 +98,17 @@ def stacked(episodes: Iterable[Sequence[Judged]]) -> Judgements | None:
     """Return the rows of several episodes; those without any judgement are left out."""
     found = [one for one in map(judgements, episodes) if one is not None]
     return _united(found, [(i, 0) for i in range(len(found))])
+
+
+def accounts(judged: Judgements | None) -> tuple[str, ...]:
+    """Return a line a formula on the episodes of one world."""
+    lines = []
+    for name in judged.formulas if judged is not None else ():
+        one = world(judged, name)
+        if one is not None:
+            broken = f", violated in {one.violated} of {one.episodes}" if one.violated else ""
+            lines.append(f"{name}: robustness {margin(one.robustness)}, at least {margin(one.least)}{broken}")
+    return tuple(lines)
 
 
 def never_judged(judged: Judgements | None) -> tuple[str, ...]:

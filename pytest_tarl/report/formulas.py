@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from pytest_tarl.formulas.judging import NEGLIGIBLE
 from pytest_tarl.model import Comparison, FormulaRow, FormulaWorld
 from pytest_tarl.report import words
 
@@ -14,7 +15,6 @@ WORLDS = {
     "repaired": "repaired",
     "nominal_repaired": "designed world repaired",
 }
-NEGLIGIBLE = 1e-12  # a robustness that is shown as 0
 
 
 def lines(comparison: Comparison) -> Iterator[str]:
@@ -34,7 +34,6 @@ def page_rows(comparison: Comparison) -> list[dict[str, Any]]:
     return [
         {
             "formula": row.formula,
-            "violated": violated(row),
             "worlds": {name: row.worlds.get(name) for name in WORLDS},
             "first": row.worlds["online"].first if "online" in row.worlds else None,
         }
