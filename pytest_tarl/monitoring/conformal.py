@@ -19,6 +19,7 @@ from pytest_tarl.learning.tables import Floats, Ints
 
 BINS = 64
 TAIL = 8  # bins beyond the scores that were fitted on, on either side; each twice as wide as the one before
+TOGETHER = 64  # missions that are ranked together; a multiple of 8 below 256
 CLOSE = 1e-4  # of a score's unit: values nearer than that are one value
 
 
@@ -48,20 +49,13 @@ def ranks(pool: Ints, bins: Ints, draws: Floats) -> tuple[Floats, Floats]:
 
     `pool` holds the counts before the first of these missions, shape (scores, BINS), `bins` those of the new scores, -1
     where a mission has none; each joins the pool after it was ranked. `draws` are uniform on (0, 1], one a mission. At
-    most 127 missions.
+    most TOGETHER missions.
     """
     has, score = bins >= 0, np.arange(bins.shape[1])
     before = np.cumsum(pool, axis=1)
     upto = before[score, bins]
+    same, less = _earlier(np.where(has, bins, BINS))
     equal = pool[score, bins]
-    mine = np.where(has, bins, BINS).T.astype(np.int8)  # (scores, missions)
-    earlier = np.tri(len(bins), k=-1, dtype=bool)
-    same, less = (
-        np.add.reduce(
-            (how(mine[:, None, :], mine[:, :, None]) & earlier).view(np.int8), axis=2, dtype=np.int8
-        ).T
-        for how in (np.equal, np.less)
-    )
     number = before[:, -1] + np.cumsum(has, axis=0) - has
     equal, below = equal + same, upto - equal + less
     above = number - below - equal
@@ -69,6 +63,25 @@ def ranks(pool: Ints, bins: Ints, draws: Floats) -> tuple[Floats, Floats]:
     low = (below + draw * (equal + 1)) / everything
     high = (above + (1.0 - draw + 2.0**-53) * (equal + 1)) / everything
     return np.where(has, low, 0.5), np.where(has, high, 0.5)
+
+
+def _earlier(bins: Ints) -> tuple[Ints, Ints]:
+    """Return how many of the missions before each one have the same bin and how many a smaller one, by score."""
+    count, scores = bins.shape
+    mine = np.full((scores, TOGETHER), BINS, np.int8)
+    mine[:, :count] = bins.T
+    before = np.tri(count, TOGETHER, k=-1, dtype=bool)
+    asked = mine[:, :count, None]
+    return _counted((mine[:, None, :] == asked) & before), _counted((mine[:, None, :] < asked) & before)
+
+
+def _counted(found: NDArray[np.bool_]) -> Ints:
+    """Return how many of the last axis are true, transposed: eight bytes at a time, whose sums stay below 256."""
+    words = found.view(np.uint64)
+    total = words[..., 0].copy()
+    for place in range(1, words.shape[-1]):
+        total += words[..., place]
+    return (total * np.uint64(0x0101010101010101) >> np.uint64(56)).astype(np.int64).T
 
 
 def joined(pool: Ints, bins: Ints) -> Ints:

@@ -26,7 +26,6 @@ from pytest_tarl.sensors import Cell
 
 PORTION = 512  # missions that are scored together
 MOST_NEW = 256  # new cells that are counted
-TOGETHER = 64  # missions that are judged together
 DRAWS = 4096  # random numbers that are drawn together
 
 
@@ -65,8 +64,8 @@ class Monitor:
         bins = binned(self.scale, sample)
         for number, began in enumerate(time.tolist(), self.counts.missions):
             self.moments.add(number, began)
-        for begin in range(0, sample.episodes, TOGETHER):
-            some = slice(begin, begin + TOGETHER)
+        for begin in range(0, sample.episodes, conformal.TOGETHER):
+            some = slice(begin, begin + conformal.TOGETHER)
             self._judge(sample.passed[some], sample.total[some], bins[some])
         self._count(sample, new)
 

@@ -8,10 +8,10 @@ import os
 import zlib
 from binascii import a2b_base64
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -22,8 +22,7 @@ from pytest_tarl.sensors import Cell
 _DECODED = json.JSONDecoder().raw_decode
 
 
-@dataclass(frozen=True)
-class Progress:
+class Progress(NamedTuple):
     """How far a log was read: up to `offset`, where the record at `last` ends, whose length and checksum is `mark`.
 
     The log is known by its first record, so that it is the same one under another name. `refused` tells why missions
@@ -49,8 +48,7 @@ class Table:
     new: Sequence[Cell | None]  # None where the fixture knows the cell; empty where it knows all
 
 
-@dataclass(frozen=True, slots=True)
-class Steps:
+class Steps(NamedTuple):
     """Some steps of a mission as they stand in the log: little-endian columns, int32 and float64."""
 
     table: Table
@@ -58,8 +56,7 @@ class Steps:
     reward: bytes
 
 
-@dataclass(frozen=True, slots=True)
-class Mission:
+class Mission(NamedTuple):
     """A mission that has ended, its cells that the fixture does not know, and how far its log was read with it."""
 
     passed: bool
@@ -109,7 +106,7 @@ class LogReader:
     owners: dict[str, Path]  # where the logs were found that are open now
     problem: str = ""
     _file: BinaryIO | None = None
-    _at: Progress = Progress("", "", 0, -1, "")
+    _at: Progress = field(default_factory=lambda: Progress("", "", 0, -1, ""))
     _place: int = 0  # what was read of the file; a mission that has not ended lies between `_at` and it
     _latest: tuple[int, bytes] | None = None  # the record that ends there, and where it begins
     _begun: tuple[float, list[Steps]] | None = None
@@ -169,7 +166,7 @@ class LogReader:
             )
             return False
         fresh = Progress(log, str(self.path), len(MAGIC), -1, "")
-        at = replace(self.known.get(log, fresh), path=str(self.path))
+        at = self.known.get(log, fresh)._replace(path=str(self.path))
         if at.last >= 0 and not _unchanged(file, at):
             self.problem = (
                 f"{self.path} was cut short or changed since it was read up to byte {at.offset}: nothing more of it is "

@@ -99,29 +99,34 @@ def advance(processes: Processes, taken: NDArray[np.bool_], factors: Floats, fir
 def _multiplied(
     processes: Processes, rows: Ints, weight: Floats, factors: Floats, first: int
 ) -> tuple[Floats, Ints]:
-    """Update stakes, mission by mission; return their sums and the exponents after each, shape (missions, rows)."""
-    both = np.stack((processes.stake[:, rows], processes.best[:, rows]))
-    stake, best = both
-    since, exponent = processes.since[:, rows], processes.exponent[rows]
-    worth, exponents = np.empty(weight.shape), np.empty(weight.shape, np.int64)
-    exponents[:] = exponent
-    scaled = np.ldexp(weight, -exponent)
-    for index, factor in enumerate(factors):
-        stake += scaled[index]
-        fresh = best < scaled[index]
-        np.copyto(since, first + index, where=fresh)
-        np.copyto(best, scaled[index], where=fresh)
-        both *= factor
-        np.add.reduce(stake, axis=0, out=worth[index])
-        if (first + index) % LOOK == 0 and np.maximum.reduce(worth[index]) > 2.0**LARGE:
-            shrunk = np.where(worth[index] > 2.0**LARGE, LARGE, 0)
-            both *= np.ldexp(1.0, -shrunk)
-            exponent += shrunk
-            exponents[index + 1 :] = exponent
-            scaled = np.ldexp(weight, -exponent)
-    processes.stake[:, rows], processes.best[:, rows] = both
-    processes.since[:, rows], processes.exponent[rows] = since, exponent
-    return worth, exponents
+    """Update stakes, mission by mission; return their sums and the exponents after each, shape (missions, rows).
+
+    Rows of `stake` and `best` are the state before each mission and after the last one, all bets of all processes.
+    """
+    count, shape = len(weight), (len(weight), BETS, len(rows))
+    exponents = np.repeat(processes.exponent[rows][None, :], count, axis=0)
+    stake, best = np.empty((2, count + 1, BETS * len(rows)))
+    stake[0], best[0] = processes.stake[:, rows].ravel(), processes.best[:, rows].ravel()
+    added = np.tile(np.ldexp(weight, -exponents), BETS)
+    multiplied = factors.reshape(count, -1)
+    states = zip(stake, stake[1:], best, best[1:], added, multiplied, strict=False)
+    for index, (before, after, best_before, best_after, more, factor) in enumerate(states):
+        np.add(before, more, out=after)
+        np.multiply(after, factor, out=after)
+        np.maximum(best_before, more, out=best_after)
+        np.multiply(best_after, factor, out=best_after)
+        if (first + index) % LOOK == 0 and after.max() > 2.0**LARGE:
+            shrunk = np.where(after.reshape(BETS, -1).max(axis=0) > 2.0**LARGE, LARGE, 0)
+            for one in (after, best_after):
+                one *= np.tile(np.ldexp(1.0, -shrunk), BETS)
+            exponents[index:] += shrunk
+            added[index + 1 :] = np.tile(np.ldexp(weight[index + 1 :], -exponents[index + 1 :]), BETS)
+    fresh = best[:-1] < added
+    latest = first + count - 1 - fresh[::-1].argmax(axis=0).reshape(BETS, -1)
+    since = np.where(fresh.any(axis=0).reshape(BETS, -1), latest, processes.since[:, rows])
+    processes.stake[:, rows], processes.best[:, rows] = (one[-1].reshape(BETS, -1) for one in (stake, best))
+    processes.since[:, rows], processes.exponent[rows] = since, exponents[-1]
+    return np.add.reduce(stake[1:].reshape(shape), axis=1), exponents
 
 
 def log_evidence(processes: Processes) -> Floats:

@@ -111,9 +111,10 @@ def _binned(scale: Scale, values: Floats) -> Ints:
 def _values(scale: Scale, sample: Sample) -> Floats:
     """Return the scores, shape (missions, scores), NaN where a mission has none.
 
-    Those of a cell are what its two residuals are on average of a visit.
+    That of a cell is its residual, on average of a visit.
     """
-    found = residuals(sample, scale.model)
+    parts = residuals(sample, scale.model)
+    residual = parts.move + parts.reward
     chain, count = sample.chain, len(scale.cells)
     width = len(scale.known)
     visits = sum_by(chain.episode * width + chain.cell, chain.count, sample.episodes * width)
@@ -125,12 +126,12 @@ def _values(scale: Scale, sample: Sample) -> Floats:
         whole = [
             sample.passed.astype(np.float64),
             sample.total + judged,
-            (found.move + found.reward).sum(axis=1) + judged,
+            residual.sum(axis=1) + judged,
             visits[:, ~scale.known].sum(axis=1) + moved,
             sample.steps + moved,
         ]
-    cells = (found.move[:, :count] / inside, found.reward[:, :count] / inside + judged[:, None])
-    return np.concatenate([np.stack(whole, axis=1), *cells], axis=1)
+    cells = residual[:, :count] / inside + judged[:, None]
+    return np.concatenate([np.stack(whole, axis=1), cells], axis=1)
 
 
 def _units(sample: Sample, values: Floats) -> Floats:

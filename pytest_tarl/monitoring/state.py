@@ -57,7 +57,7 @@ def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: st
         "counts": asdict(monitor.counts),
         "moments": asdict(monitor.moments),
         "new": [[list(cell), count] for cell, count in monitor.new.items()],
-        "logs": [asdict(one) for one in logs.values()],
+        "logs": [one._asdict() for one in logs.values()],
     }
     header["digest"] = _digest(header, columns)
     buffer = io.BytesIO()

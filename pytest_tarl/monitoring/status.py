@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pytest_tarl.learning.tables import Ints
 from pytest_tarl.monitoring import e_bh, restarts
@@ -61,7 +59,6 @@ class Status:
     lead: Score | None
     cells: tuple[Cell, ...]
     new: tuple[Cell, ...]
-    visited: tuple[Cell, ...]
     notes: tuple[str, ...] = ()
 
     @property
@@ -106,7 +103,6 @@ def status(monitor: Monitor) -> Status:
         lead=_lead(monitor, active),
         cells=_region(monitor) if world.alarm else (),
         new=tuple(sorted(cell for cell, count in monitor.new.items() if count >= FEWEST_NEW)),
-        visited=_visited(monitor),
         notes=tuple(_notes(monitor)),
     )
 
@@ -144,27 +140,14 @@ def _lead(monitor: Monitor, rows: Ints) -> Score | None:
     place = row - len(monitor.bounds)
     if place < len(WHOLE):
         return Score(WHOLE[place], None, side)
-    part, cell = divmod(place - len(WHOLE), len(monitor.scale.cells))
-    return Score(("move", "reward")[part], monitor.scale.cells[cell], side)
+    return Score("residual", monitor.scale.cells[place - len(WHOLE)], side)
 
 
 def _region(monitor: Monitor) -> tuple[Cell, ...]:
     """Return the cells that e-BH names: missions that were in them fared otherwise there than off-line."""
-    parts = _of_cells(monitor, monitor.processes.peak)
-    adjusted = np.exp2(np.minimum(e_bh.adjusted(parts), 1000.0)).mean(axis=0)
-    picked = e_bh.chosen(np.log2(adjusted), monitor.alpha)
+    peaks = monitor.processes.peak[len(monitor.bounds) + len(WHOLE) :]
+    picked = e_bh.chosen(e_bh.adjusted(peaks), monitor.alpha)
     return tuple(monitor.scale.cells[row] for row in np.flatnonzero(picked).tolist())
-
-
-def _visited(monitor: Monitor) -> tuple[Cell, ...]:
-    ages = _of_cells(monitor, monitor.processes.age)
-    return tuple(monitor.scale.cells[row] for row in np.flatnonzero(ages.max(axis=0, initial=0)).tolist())
-
-
-def _of_cells(monitor: Monitor, column: NDArray[Any]) -> NDArray[Any]:
-    """Return a column of the processes by part of the residual and cell, shape (2, cells)."""
-    found: NDArray[Any] = column[len(monitor.bounds) + len(WHOLE) :].reshape(2, -1)
-    return found
 
 
 def _notes(monitor: Monitor) -> list[str]:

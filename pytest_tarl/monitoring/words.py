@@ -16,8 +16,6 @@ SCORES = {
     "residual": "the total reward, less what each situation lets expect",
     "unknown": "the steps in situations that no fitted episode was in",
     "steps": "the number of steps",
-    "move": "what follows on",
-    "reward": "the reward in",
 }
 SIDES = {
     "lower": "is lower than off-line",
@@ -82,10 +80,8 @@ def found(evidence: Evidence | None, alpha: float) -> str:
 
 def led(score: Score, words: Vocabulary) -> str:
     """Return which score differs most, and how."""
-    place = ""
-    if score.cell is not None:
-        place = f" {words.words([score.cell])}"
-    return f"{SCORES[score.name]}{place} {SIDES[score.side]}"
+    what = SCORES[score.name] if score.cell is None else f"what {words.words([score.cell])} brings"
+    return f"{what} {SIDES[score.side]}"
 
 
 def promise(status: Status) -> str:

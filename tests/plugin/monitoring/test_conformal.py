@@ -12,6 +12,7 @@ from numpy.polynomial.legendre import leggauss
 
 from pytest_tarl.monitoring import conformal
 from pytest_tarl.monitoring.conformal import BINS, edges, factors, joined, ranks
+from pytest_tarl.monitoring.restarts import BETS
 
 
 def one_by_one(pool: np.ndarray, bins: np.ndarray, draws: np.ndarray) -> np.ndarray:
@@ -73,9 +74,9 @@ def test_every_bet_has_integral_one_and_is_never_negative() -> None:
     top = 0.5 ** (1 / 8)
     s, w = (nodes + 1) / 2 * top, weights / 2 * top
     near, measure = s**8, w * 8 * s**7
-    total = np.zeros(conformal.BETS)
+    total = np.zeros(BETS)
     for low, high in ((near, 1.0 - near), (1.0 - near, near)):
-        values = np.empty((len(low), conformal.BETS, 1))
+        values = np.empty((len(low), BETS, 1))
         factors(low[:, None], high[:, None], values)
         values = values[:, :, 0]
         assert (values >= 0).all()

@@ -48,7 +48,7 @@ def test_it_publishes_ok_then_that_the_world_changed(root: Path, library: str) -
     assert first.message.startswith("100 missions, 100 passed (100 %); success bound: evidence")
     values = {one.key: one.value for one in last.values}
     assert values["missions"] == "150"
-    assert values["where"] == "x 2-3"
+    assert values["where"].startswith("x 2-3")
     assert 101 <= int(values["world.alarm"]) < 130
     assert float(values["success.log10_evidence"]) > 1.3
     assert heard[-1].header.stamp != heard[0].header.stamp

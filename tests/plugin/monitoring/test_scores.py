@@ -92,13 +92,12 @@ def test_a_mission_without_steps_has_only_its_success_and_one_without_rewards_al
     some = [Walk((), (), False), replace(known, reward=(float("nan"),) * len(known.cells)), known]
     empty, unjudged, whole = binned(fitted, sampled(fitted, columns(fitted, some)))
     count = len(fitted.cells)
-    names = [*WHOLE, *(["move"] * count), *(["reward"] * count)]
+    names = [*WHOLE, *(["cell"] * count)]
     assert {names[place] for place in np.flatnonzero(empty >= 0)} == {"success"}
     assert {names[place] for place in np.flatnonzero(unjudged >= 0)} == {
         "success",
         "unknown",
         "steps",
-        "move",
     }
     assert {names[place] for place in np.flatnonzero(whole >= 0)} == {*names}
 
