@@ -61,7 +61,7 @@ class Heap(Userdata):
             return Value(outer.deps) if outer is not BOTTOM else BOTTOM
         if obj.kind == "message" and isinstance(obj.info, int):
             return Value(frozenset([obj.info]))
-        return BOTTOM
+        return UNKNOWN if obj.kind == "ext" else BOTTOM
 
     def read_field(self, obj: Obj, name: str) -> Value:
         """Return what a field of one object may be."""
