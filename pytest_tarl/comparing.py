@@ -14,6 +14,7 @@ from pytest_tarl.drifts import sizes as drawn_sizes
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.learning import judgements, localize, parts
+from pytest_tarl.learning.bounds import Range
 from pytest_tarl.learning.drift import Difference, compare, paper_region
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.looks import Look, certain, concluded, planned
@@ -31,6 +32,7 @@ from pytest_tarl.recording import Progress, Recorded, mean_flows, run_episodes, 
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import Cell, Sensor
+from pytest_tarl.settling import within
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,7 @@ def run_online(
         parts=parts.means(offline, online),
         lost=parts.lost(offline, online, options.alpha, seeds.generator(options.seed, "parts")),
         changes=difference.changes,
+        stated={"offline": fixture.stated} if fixture.stated is not None else {},
         formulas=judgements.rows(
             [one.text for one in designation.requirements.formulas],
             {"offline": offline.judgements, "online": online.judgements},
@@ -175,6 +178,7 @@ class _Watch:
     seen: list[tuple[Look, Difference]] = field(default_factory=list)
 
     def __call__(self, samples: Sequence[Sample]) -> bool:
+        within(samples[-1], self.designation.total_range)
         look = next((one for one in self.looks if one.episodes == len(samples)), None)
         if look is None:
             return False
@@ -183,6 +187,7 @@ class _Watch:
             merge(samples),
             alpha=self.options.alpha * look.share,
             tolerance=self.designation.tolerance,
+            declared=Range(*self.designation.total_range) if self.designation.total_range else None,
             sensors=self.designation.sensors,
             generator=seeds.generator(self.options.seed, "compare"),
             permutations=permutations_for(self.options.alpha, self.options.comparisons),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -12,10 +13,11 @@ from pytest_tarl.drifts import Drift, drift
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.formulas.declared import ARGUMENTS, NOTHING_REQUIRED, Requirements, requirements
 from pytest_tarl.options import number_within
-from pytest_tarl.sensors import Sensor
+from pytest_tarl.sensors import Sensor, as_number
 
 MARKER_ARGUMENTS = (
-    *("nodes", "sensors", "drifts", "episodes", "min_success", "tolerance", "judge", "monitor"),
+    *("nodes", "sensors", "drifts", "episodes", "min_success", "confidence", "total_range", "tolerance"),
+    *("judge", "monitor"),
     *ARGUMENTS,
 )
 
@@ -29,6 +31,8 @@ class Designation:
     drifts: Mapping[str, Drift] = field(default_factory=dict)
     episodes: int = 200
     min_success: float = 1.0
+    confidence: float | None = None  # with which min_success is to be shown, however many episodes that takes
+    total_range: tuple[float, float] | None = None  # between which every episode's total lies
     tolerance: float | None = None
     judge: Callable[[Mapping[str, Any], Mapping[str, Any]], float] | None = (
         None  # of steps that a log has no reward of
@@ -57,11 +61,39 @@ def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, A
         drifts=_drifts(where, arguments.get("drifts", {})),
         episodes=number_within(where, "episodes", arguments.get("episodes", 200), int, 2, 10**6),
         min_success=number_within(where, "min_success", arguments.get("min_success", 1.0), float, 0, 1),
+        confidence=_confidence(where, arguments),
+        total_range=_total_range(where, arguments.get("total_range")),
         tolerance=_tolerance(where, arguments.get("tolerance")),
         judge=_judge(where, arguments.get("judge")),
         monitor=_monitor(where, arguments.get("monitor")),
         requirements=requirements(where, arguments, sensors),
     )
+
+
+def _confidence(where: str, arguments: Mapping[str, Any]) -> float | None:
+    value = arguments.get("confidence")
+    if value is None:
+        return None
+    confidence = float(number_within(where, "confidence", value, float, 0.5, 1 - 1e-9))
+    if arguments.get("min_success", 1.0) >= 1:
+        raise SettingsError(
+            f"{where}: confidence={value!r} is for a min_success below 1: that all missions ever succeed cannot be "
+            "shown, however many of them do. Say what is to be shown, for instance min_success=0.99."
+        )
+    return confidence
+
+
+def _total_range(where: str, value: Any) -> tuple[float, float] | None:
+    if value is None:
+        return None
+    ends = [as_number(one) for one in value] if isinstance(value, Sequence) else []
+    low, high = ends if len(ends) == 2 else (None, None)
+    if low is None or high is None or not -math.inf < low < high < math.inf:
+        raise SettingsError(
+            f"{where}: total_range must be two finite numbers between which every episode's total reward lies, such as "
+            f"total_range=(-20, 10), got {value!r}."
+        )
+    return low, high
 
 
 def _monitor(where: str, value: Any) -> Any:

@@ -26,10 +26,11 @@ from pytest_tarl.recording import Progress, Tell, read_values, record
 from pytest_tarl.repairing.order import Neighbour, Order
 from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repeating import Instruments
-from pytest_tarl.report import ci, table, terminal, words
+from pytest_tarl.report import ci, guarantees, table, terminal, words
 from pytest_tarl.report.table import Row
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.sensors import Sensor, declared, with_edges
+from pytest_tarl.testside import Digests, digests, remark
 from tarl_lint.api import Analysis, analyse
 
 RolloutWith = Callable[[Instruments, tuple[Sensor, ...]], Rollout]
@@ -169,12 +170,18 @@ class Mission:
             self.progress,
             self.tell,
             drift,
+            self._test_side(),
         )
         if result.problem:
             return Account(tuple(f"  {note}" for note in result.notes), result.problem)
         written = self.fixture_path.relative_to(self.root)
-        lines = [f"{self.test}: {result.line}", f"  wrote {written}", *self._adopted(sites)]
+        bounds = [f"  {told}" for told in guarantees.sentences(result.stated)] if result.stated else []
+        lines = [f"{self.test}: {result.line}", *bounds, f"  wrote {written}", *self._adopted(sites)]
         return Account((*lines, *(f"  {note}" for note in result.notes)))
+
+    def _test_side(self) -> Digests:
+        """Return the digests of the test's own modules."""
+        return digests(self.test, self.root, [self.folder / node for node in self.designation.nodes])
 
     def _adopted(self, sites: Plan) -> Iterator[str]:
         """Say what the design is now, and which other tests of the node still have the old one."""
@@ -222,7 +229,8 @@ class Mission:
             comparison = repaired.comparison
             episodes |= repaired.episodes
             interrupted = repaired.interrupted
-        notes = (*comparison.notes, *self._not_run(comparison.repair), *self._design_lost(fixture))
+        edited = remark(fixture.world, self._test_side())
+        notes = (*comparison.notes, *edited, *self._not_run(comparison.repair), *self._design_lost(fixture))
         told = replace(comparison, target=self.target, flags=self.options.flags, notes=notes)
         return Compared(self, told, online, episodes, interrupted)
 

@@ -109,6 +109,26 @@ class Bound:
     episodes: int
 
 
+@dataclass(frozen=True, slots=True)
+class Guarantee:
+    """What is stated of the next episodes of a world, from `episodes` of which `passed` did; each bound by itself.
+
+    At least 1 - `share` of the episodes earn `quantile` or more; it is None where they are too few, of the `needed`
+    ones, and where their number was decided by what they showed (`needed` is 0). Where none of them differ from each
+    other they have not `varied`, and tell of one world only.
+    """
+
+    episodes: int
+    passed: int
+    success: Bound
+    average: float
+    mean: Bound
+    share: float
+    quantile: float | None
+    needed: int
+    varied: bool
+
+
 class LossInterval(NamedTuple):
     """The losses per episode that what was seen leaves possible; infinite ends where too little was seen."""
 
@@ -305,6 +325,7 @@ class Comparison:
     target: str = ""  # the test as it is typed where pytest was started
     flags: tuple[str, ...] = ()  # options of the run that are not the default ones
     changes: Mapping[Cell, float] = field(default_factory=dict)  # how far on-line differs, by cell
+    stated: Mapping[str, Guarantee] = field(default_factory=dict)  # of the worlds that `totals` names
     formulas: tuple[FormulaRow, ...] = ()
     sizes: Mapping[str, Sizes] = field(default_factory=dict)  # by part of the drift, where it has a range
     permanent: bool = False  # whether the drift is for good, so that the designed world is the old one

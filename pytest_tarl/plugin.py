@@ -14,8 +14,9 @@ if TYPE_CHECKING:
     from pytest_tarl.options import Options
 
 MARKER = (
-    "tarl(nodes, sensors, drifts={}, episodes=200, min_success=1.0, tolerance=None, judge=None, monitor=None, "
-    "requires=[], signals=[], reward=None): a simulation test that TARL records off-line and compares on-line."
+    "tarl(nodes, sensors, drifts={}, episodes=200, min_success=1.0, confidence=None, total_range=None, tolerance=None, "
+    "judge=None, monitor=None, requires=[], signals=[], reward=None): "
+    "a simulation test that TARL records off-line and compares on-line."
 )
 
 

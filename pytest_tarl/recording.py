@@ -23,16 +23,18 @@ from pytest_tarl.learning.sarsa import LEARNERS, Learner
 from pytest_tarl.learning.sequences import event_sequences
 from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Floats, Sample
+from pytest_tarl.model import Guarantee
 from pytest_tarl.options import Options
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import stored
+from pytest_tarl.settling import Settling, guarantee
+from pytest_tarl.testside import Digests
 
 Progress = Callable[[int, int, str], None]
 Tell = Callable[[str], None]
 Members = Sequence[Sequence[int]]
 
-ENOUGH_FAILURES = 5  # that settle a recording whose min_success can no longer be reached
 PILOTS = 20  # episodes that bins are learned from
 
 NOT_REPRODUCIBLE = (
@@ -69,6 +71,7 @@ class RecordResult:
     line: str
     problem: str = ""
     notes: tuple[str, ...] = ()
+    stated: Guarantee | None = None
 
 
 def record(
@@ -81,32 +84,30 @@ def record(
     progress: Progress,
     tell: Tell,
     drift: str | None = None,
+    world: Digests | None = None,
 ) -> RecordResult:
     """Run the off-line episodes and write the fixture, unless too many of them fail.
 
-    With a `drift`, which must be one for good, its world is the design from now on. What is wrong with the fixture of
-    before is told first. Raises FixtureError, before any episode, where nothing can be written.
+    `world` are digests of the test's own modules. With a `drift`, which must be one for good, its world is the design
+    from now on. What is wrong with the fixture of before is told first. Raises FixtureError, before any episode, where
+    nothing can be written.
     """
     old, broken = _previous(path)
     for note in broken:
         tell(note)
     fixtures.prepare(path)
-    seeds = episode_seeds(options.seed, "offline", options.episodes or designation.episodes)
-    bearable = int(len(seeds) * (1 - designation.min_success) + 1e-9)
-
-    def settled(samples: Sequence[Sample]) -> bool:
-        return sum(not one.passed.all() for one in samples) >= max(bearable + 1, ENOUGH_FAILURES)
-
+    settling = Settling(designation, options.episodes or designation.episodes)
+    seeds = episode_seeds(options.seed, "offline", settling.most)
     learner = options.learner or "sarsa"
-    recorded = run_episodes(rollout, seeds, drift, plan.members, progress, learner, settled)
+    recorded = run_episodes(rollout, seeds, drift, plan.members, progress, learner, settling)
     again = rollout(EpisodePlan(seeds[0], drift, record=True))
     notes = [
         *broken,
         *recorded.notes,
         *([] if identical(recorded.first, again.trace) else [NOT_REPRODUCIBLE]),
     ]
-    if len(recorded.failures) > bearable:
-        return RecordResult("", _unfinished(recorded, designation, len(seeds)), tuple(notes))
+    if settling.failing:
+        return RecordResult("", _unfinished(settling.failing, recorded.failures), tuple(notes))
     unjudged = never_judged(recorded.sample.judgements)
     if unjudged:
         return RecordResult("", _unjudged(unjudged[0], recorded.sample), tuple(notes))
@@ -122,9 +123,11 @@ def record(
         learner=recorded.learner,
         signals=tuple(map(stored_signal, designation.requirements.signals)),
         design=adopting(adopted(path), drift, designation.drifts),
+        stated=guarantee(recorded.sample, designation),
+        world=world or {},
     )
     fixtures.save(new, path)
-    return RecordResult(_summary(new.sample, old), "", tuple(notes))
+    return RecordResult(_summary(new.sample, old), "", tuple(notes), new.stated)
 
 
 def read_values(
@@ -215,15 +218,11 @@ def _plain(value: object) -> object:
     return {k: v.tolist() for k, v in value.items()} if isinstance(value, dict) else value
 
 
-def _unfinished(recorded: Recorded, designation: Designation, asked: int) -> str:
-    episodes, failed = recorded.sample.episodes, len(recorded.failures)
-    ran = f"{episodes} episodes" if episodes == asked else f"the first {episodes} episodes"
-    stopped = "" if episodes == asked else f"; the other {asked - episodes} were not run"
+def _unfinished(failing: str, failures: Sequence[str]) -> str:
+    first = f" The first failure: {failures[0].rstrip('.')}." if failures else ""
     return (
-        f"{failed} of {ran} fail off-line (success {recorded.success:.1%}, min_success "
-        f"{designation.min_success:.1%}{stopped}), so this is not yet the software as designed and no utility was "
-        f"written. The first failure: {recorded.failures[0].rstrip('.')}. Mend the node, or lower min_success on the "
-        "marker."
+        f"{failing}, so this is not yet the software as designed and no utility was written.{first} Mend the node, or "
+        "lower min_success on the marker."
     )
 
 

@@ -10,6 +10,7 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.judgements import accounts
 from pytest_tarl.learning.tables import START, Floats, ListSample
 from pytest_tarl.model import TaintList
+from pytest_tarl.report.guarantees import sentences
 from pytest_tarl.sensors import Sensor
 
 CODE = 60  # characters of a line of code
@@ -30,6 +31,8 @@ def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = Fa
     yield f"  size       {_kilobytes(size)}, of which {_kilobytes(sum(sizes))} for {len(sizes)} taint {lists}"
     least, most = sample.total.min(), sample.total.max()
     yield f"  reward     {sample.total.mean():.4g} per episode, from {least:.4g} to {most:.4g}"
+    for place, told in enumerate(sentences(fixture.stated) if fixture.stated else ()):
+        yield f"  {'' if place else 'bounds':<11}{told}"
     for i, name in enumerate(sample.part_names):
         yield f"             {name} {sample.chain.parts[:, i].sum() / sample.episodes:.4g}"
     for i, line in enumerate(accounts(sample.judgements)):

@@ -14,7 +14,7 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import NDArray
 
-from pytest_tarl.learning.bounds import loss_between
+from pytest_tarl.learning.bounds import Range, loss_between
 from pytest_tarl.learning.evidence import gathered
 from pytest_tarl.learning.marginal import groups, left_out, projected
 from pytest_tarl.learning.merging import aligned
@@ -55,11 +55,13 @@ def compare(
     generator: np.random.Generator,
     sensors: Sequence[Sensor] = (),
     permutations: int = PERMUTATIONS,
+    declared: Range | None = None,
 ) -> Difference:
     """Judge the on-line world against the off-line one; `tolerance` is the tolerated loss per episode.
 
     `sensors` tell which of them are tiled; without them utility is a table. `permutations` are more where verdicts are
-    corrected over many comparisons. Both samples are compared as a fixture holds them, whichever was read from one.
+    corrected over many comparisons; `declared` is the range of totals, where there is one. Both samples are compared as
+    a fixture holds them, whichever was read from one.
     """
     offline, online = aligned(as_compared(offline), as_compared(online))
     margin = tolerated(offline, tolerance)
@@ -70,7 +72,7 @@ def compare(
     if without:
         region, changes = _compared_without(without, offline, online, alpha, generator, sensors, region)
     detectable = max(margin, smallest_detectable_loss(offline.total, online.total, alpha))
-    interval = LossInterval(*loss_bounds(offline.total, online.total, alpha), 1 - 2 * alpha)
+    interval = LossInterval(*loss_bounds(offline.total, online.total, alpha, declared), 1 - 2 * alpha)
     verdict = judged(Verdict("no difference", p_drift, p_loss, loss, detectable, margin, interval), alpha)
     found = region if verdict.result != "no difference" else Region()
     return Difference(verdict, found, changes)
@@ -91,9 +93,11 @@ def judged(verdict: Verdict, alpha: float) -> Verdict:
     return replace(verdict, result=result)
 
 
-def loss_bounds(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
+def loss_bounds(
+    offline: Floats, online: Floats, risk: float, declared: Range | None = None
+) -> tuple[float, float]:
     """Return the losses that are neither too small nor too large at `risk`."""
-    bound = loss_between(offline.tolist(), online.tolist(), 1.0 - risk)
+    bound = loss_between(offline.tolist(), online.tolist(), 1.0 - risk, declared)
     return bound.low, bound.high
 
 

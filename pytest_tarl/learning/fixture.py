@@ -6,7 +6,8 @@ without pickle, written to a temporary file and renamed; the same episodes give 
 FORMAT_VERSION history:
 1  Columns of float64.
 2  Sums as logarithms (packing.py), a sixth of the size; Σ|f| per episode and site. Where there are formulas also
-   `formulas` and `signals` in the header and the columns `robustness` and `lost`, which older versions pass over.
+   `formulas` and `signals` in the header and the columns `robustness` and `lost`, which older versions pass over. So
+   they do with `stated`, the bounds, and `world`, digests of the test's own modules.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import hashlib
 import io
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -37,7 +38,7 @@ from pytest_tarl.learning.packing import (
 )
 from pytest_tarl.learning.soundness import check
 from pytest_tarl.learning.tables import Floats, Judgements, Sample
-from pytest_tarl.model import SitePlace, TaintList
+from pytest_tarl.model import Bound, Guarantee, SitePlace, TaintList
 from pytest_tarl.sensors import Sensor
 
 FORMAT_VERSION = 2
@@ -59,6 +60,10 @@ class Fixture:
     learner: str = "sarsa"  # what learned it, a key of sarsa.LEARNERS
     design: tuple[str, ...] = ()  # drifts that are the design: changes for good
     signals: tuple[Signal, ...] = ()  # that formulas may name and a message holds
+    stated: Guarantee | None = None
+    world: Mapping[str, Mapping[str, str]] = field(
+        default_factory=dict
+    )  # file → definition → digest, see testside.py
 
 
 def save(fixture: Fixture, path: Path) -> None:
@@ -80,6 +85,10 @@ def save(fixture: Fixture, path: Path) -> None:
     if fixture.sample.judgements is not None:
         header["formulas"] = list(fixture.sample.judgements.formulas)
         header["signals"] = [asdict(signal) for signal in fixture.signals]
+    if fixture.stated is not None:
+        header["stated"] = asdict(fixture.stated)
+    if fixture.world:
+        header["world"] = {path: dict(found) for path, found in fixture.world.items()}
     header["digest"] = _digest(header, columns)
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
@@ -209,6 +218,8 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
         learner=header["learner"],
         design=tuple(header.get("design", ())),
         signals=tuple(Signal(**one) for one in header.get("signals", ())),
+        stated=_guarantee(header["stated"]) if "stated" in header else None,
+        world=header.get("world", {}),
         sensors=sensors,
         lists=lists,
         topics=header["topics"],
@@ -225,6 +236,24 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
         ),
         sarsa=tuple(unpacked_table(f"sarsa{i}", columns) for i in range(len(lists))),
     )
+
+
+def _guarantee(told: Mapping[str, Any]) -> Guarantee:
+    """Return the bounds that a header states. Raises DamagedError where they are none."""
+    found = Guarantee(**{**told, "success": Bound(**told["success"]), "mean": Bound(**told["mean"])})
+    numbers = [
+        *(
+            getattr(bound, name)
+            for bound in (found.success, found.mean)
+            for name in ("low", "high", "confidence")
+        ),
+        *(found.average, found.share, found.episodes, found.passed, found.needed),
+        *(() if found.quantile is None else (found.quantile,)),
+    ]
+    texts = [found.success.method, found.mean.method]
+    if not all(type(one) in (int, float) for one in numbers) or not all(type(one) is str for one in texts):
+        raise DamagedError("the bounds in its header are no numbers")
+    return found
 
 
 def _judgements(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, Any]]) -> Judgements | None:
@@ -245,6 +274,8 @@ def _check_header(header: Mapping[str, Any]) -> None:
         *header.get("design", []),
         *header.get("formulas", []),
     ]
+    for path, found in dict(header.get("world", {})).items():
+        plain += [path, *found, *found.values()]
     plain += [text for one in header["lists"] for text in (one["source"], one["sink"])]
     plain += [
         site[name]

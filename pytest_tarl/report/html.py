@@ -16,7 +16,7 @@ from typing import Any
 from pytest_tarl.errors import TarlError
 from pytest_tarl.files import advice_on, write_atomically
 from pytest_tarl.model import Comparison, ListComparison
-from pytest_tarl.report import formulas, sizes, words
+from pytest_tarl.report import formulas, guarantees, sizes, words
 from pytest_tarl.report.figures import MOST_ROWS, plane, reward_curves, utility_figure
 from pytest_tarl.report.slices import chart
 
@@ -129,6 +129,7 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
         "world": comparison.drift or "on-line",
         "headline": words.verdict_sentence(comparison),
         "loss": words.loss_words(comparison),
+        "stated": [(name, list(guarantees.sentences(one))) for name, one in guarantees.worlds(comparison)],
         "region": words.region_words(comparison),
         "paper_region": words.paper_region_words(comparison),
         "atr": {world: words.atr(comparison, world) for world, totals in comparison.totals.items() if totals},

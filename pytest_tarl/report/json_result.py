@@ -11,7 +11,17 @@ from typing import Any
 
 from pytest_tarl.errors import TarlError
 from pytest_tarl.files import advice_on, write_atomically
-from pytest_tarl.model import Attempt, Comparison, Culprit, FormulaRow, Repair, SitePlace, Slice
+from pytest_tarl.model import (
+    Attempt,
+    Bound,
+    Comparison,
+    Culprit,
+    FormulaRow,
+    Guarantee,
+    Repair,
+    SitePlace,
+    Slice,
+)
 from pytest_tarl.report.regions import boxes
 from pytest_tarl.report.sizes import rows as size_rows
 from pytest_tarl.report.words import atr, expected
@@ -60,6 +70,10 @@ def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, A
             "p_loss": _finite(verdict.p_loss),
             "loss": _finite(verdict.loss),
             "detectable_loss": _finite(verdict.detectable_loss),
+        },
+        "bounds": {
+            world: _guarantee(comparison.stated.get(world))
+            for world in ("offline", "repaired", "nominal_repaired")
         },
         "region": rectangles(comparison.region.cells, comparison.sensors),
         "novel": rectangles(comparison.region.novel, comparison.sensors),
@@ -186,6 +200,29 @@ def _tried(attempt: Attempt) -> dict[str, Any]:
         "mean": _finite(attempt.mean),
         "episodes": attempt.episodes,
         "fresh": attempt.fresh,
+    }
+
+
+def _guarantee(stated: Guarantee | None) -> dict[str, Any] | None:
+    if stated is None:
+        return None
+    quantile = {"share": stated.share, "low": _finite(stated.quantile), "episodes": stated.needed}
+    return {
+        "episodes": stated.episodes,
+        "varied": stated.varied,
+        "success": _bound(stated.success),
+        "mean": _bound(stated.mean),
+        "quantile": quantile,
+    }
+
+
+def _bound(bound: Bound) -> dict[str, Any]:
+    return {
+        "low": _finite(bound.low),
+        "high": _finite(bound.high),
+        "confidence": bound.confidence,
+        "method": bound.method,
+        "exact": bound.exact,
     }
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from textwrap import wrap
 
 from pytest_tarl.model import Comparison, Culprit, ListComparison, Slice
-from pytest_tarl.report import formulas, sizes, words
+from pytest_tarl.report import formulas, guarantees, sizes, words
 
 SHOWN = 3  # culprits, lists and notes before "(and 3 more)"
 LABEL = 9  # width of the column of labels
@@ -35,6 +35,14 @@ def _entries(
 ) -> Iterator[tuple[str, list[str]]]:
     yield "verdict", [words.verdict_sentence(comparison)]
     yield "reward", [_rewards(comparison)]
+    yield (
+        "bounds",
+        [
+            f"{world}: {told}"
+            for world, one in guarantees.worlds(comparison)
+            for told in guarantees.brief(one)
+        ],
+    )
     yield "loss", list(_loss(comparison))
     yield "sizes", list(sizes.lines(comparison))
     yield "formula", list(formulas.lines(comparison))

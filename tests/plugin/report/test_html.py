@@ -176,7 +176,7 @@ def test_a_missing_package_is_named_with_the_command_that_installs_it(shuttle, m
 def test_a_place_that_cannot_be_written_is_named_in_a_sentence(shuttle, tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("not a directory")
-    with pytest.raises(TarlError, match=r"The report .*report\.html cannot be written: "):
+    with pytest.raises(TarlError, match=r"The report .*report\.html cannot be written \("):
         write(shuttle, blocked / "report.html")
 
 

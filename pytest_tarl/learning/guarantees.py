@@ -1,0 +1,63 @@
+"""What is stated of a world's next episodes, from those that were run: bounds over the worlds that a test draws."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pytest_tarl.learning.bounds import (
+    Range,
+    episodes_for_quantile,
+    mean_of,
+    quantile_low,
+    rate,
+    rate_sequence,
+)
+from pytest_tarl.learning.tables import Sample
+from pytest_tarl.model import Guarantee
+
+CONFIDENCE = 0.95  # where the marker states none
+QUANTILE = 0.05
+
+
+def stated(
+    passed: Sequence[bool],
+    totals: Sequence[float],
+    *,
+    confidence: float | None = None,
+    declared: Range | None = None,
+    anytime: bool = False,
+    varied: bool = True,
+) -> Guarantee:
+    """Return the bounds that these episodes give, each of which holds by itself.
+
+    With `anytime` the number of episodes was decided by what they showed: then there is no bound of a quantile. Raises
+    ValueError where a total lies outside of the declared range.
+    """
+    sure, count = confidence or CONFIDENCE, len(passed)
+    success = (rate_sequence if anytime else rate)(sum(passed), count, sure)
+    return Guarantee(
+        episodes=count,
+        passed=sum(passed),
+        success=success,
+        average=float(np.mean(totals)),
+        mean=mean_of(totals, sure, declared, anytime=anytime),
+        share=QUANTILE,
+        quantile=None if anytime else quantile_low(totals, QUANTILE, sure),
+        needed=0 if anytime else episodes_for_quantile(QUANTILE, sure),
+        varied=varied,
+    )
+
+
+def varies(sample: Sample) -> bool:
+    """Tell whether any two episodes differ, in what happened or in what it earned."""
+    chain = sample.chain
+    rows = np.bincount(chain.episode, minlength=sample.episodes)
+    if np.ptp(sample.total) or np.ptp(sample.steps) or np.ptp(sample.passed.astype(int)) or np.ptp(rows):
+        return True
+    return any(
+        bool(np.ptp(column.reshape(sample.episodes, -1), axis=0).any())
+        for column in (chain.cell, chain.next_cell, chain.count, chain.reward)
+        if column.size
+    )

@@ -1,0 +1,91 @@
+"""What a recording states of the next episodes, and how many it takes where a confidence is asked for."""
+
+from __future__ import annotations
+
+import pytest
+
+from pytest_tarl.learning.fixture import load
+from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file, result
+
+
+def said(tank: pytest.Pytester, *lines: str) -> None:
+    tank.runpytest(*RECORD).stdout.fnmatch_lines(list(lines))
+
+
+def test_a_recording_states_bounds_and_the_fixture_keeps_them(tank: pytest.Pytester) -> None:
+    said(
+        tank,
+        "  16 of 16 missions succeed: with 95 % confidence at least 82.9 % do, over the worlds that this test draws",
+        "  -* reward a mission: with 95 % confidence at least -* (approximate: no total_range is declared)",
+        "  what 95 % of the missions earn at least takes 59 episodes, 43 more than were run",
+    )
+    stated = load(fixture_file(tank)).stated
+    assert stated is not None
+    assert stated.success.low == pytest.approx(0.05 ** (1 / 16))
+    assert not stated.mean.exact
+
+
+def test_a_declared_range_makes_the_bound_of_the_mean_exact(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    total_range=(-25, 0),")
+    said(tank, "*on average (totals within the declared range)")
+    stated = load(fixture_file(tank)).stated
+    assert stated is not None
+    assert stated.mean.exact
+    assert -25 < stated.mean.low < stated.average
+
+
+def test_a_total_outside_of_the_range_is_an_error_that_names_both(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    total_range=(-2, 0),")
+    told = tank.runpytest(*RECORD)
+    told.assert_outcomes(failed=1, deselected=1)
+    told.stdout.fnmatch_lines(["*earned -*, outside of the marker's total_range=(-2.0, 0.0)*"])
+
+
+def test_where_episodes_do_not_vary_one_world_was_tested(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "draws.uniform(0.0, 0.2)", "0.1")
+    changed(tank, "test_tank", " + float(draws.normal(0, 0.005))", "")
+    said(tank, "  one world was tested: all 16 episodes are the same*")
+
+
+def test_with_a_confidence_recording_goes_on_until_it_is_settled(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    confidence=0.9,")
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    stated = load(fixture_file(tank)).stated
+    assert stated is not None
+    assert 16 < stated.episodes < 60
+    assert stated.success.low >= 0.9
+    assert stated.success.method == "confidence sequence"
+
+
+def test_with_a_confidence_too_many_failures_settle_it_too(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    confidence=0.9,")
+    changed(tank, "test_tank", "< 0.1, ", "< 0.1 and draws.random() < 0.5, ")
+    told = tank.runpytest(*RECORD)
+    told.assert_outcomes(failed=1, deselected=1)
+    told.stdout.fnmatch_lines(
+        ["*of * episodes fail off-line: at confidence=0.9, fewer than 0.9 of all succeed*"]
+    )
+
+
+@pytest.mark.parametrize(
+    ("marked", "sentence"),
+    [
+        ("confidence=0.95, min_success=1.0,", "*confidence=0.95 is for a min_success below 1*"),
+        ("confidence=1.0, min_success=0.9,", "*confidence must be a number from 0.5 to 1*"),
+        ("total_range=(1, 0), min_success=0.9,", "*total_range must be two finite numbers*"),
+        ("total_range=3, min_success=0.9,", "*total_range must be two finite numbers*"),
+    ],
+)
+def test_what_can_never_be_shown_is_a_usage_error(tank: pytest.Pytester, marked: str, sentence: str) -> None:
+    changed(tank, "test_tank", "min_success=0.9,", marked)
+    tank.runpytest(*RECORD).stdout.fnmatch_lines([sentence])
+
+
+def test_a_comparison_tells_what_was_stated(tank: pytest.Pytester) -> None:
+    tank.runpytest(*RECORD)
+    tank.runpytest(*ONLINE).stdout.fnmatch_lines(
+        ["  bounds   designed: success at least 82.9 %, mean reward approximately*"]
+    )
+    assert result(tank)["bounds"]["offline"]["success"]["low"] == pytest.approx(0.05 ** (1 / 16))
+    (page,) = (tank.path / ".tarl" / "report").glob("*.html")
+    assert "at least 82.9 %" in page.read_text("utf-8")
