@@ -22,10 +22,11 @@ from tarl_lint import engine
 from tarl_lint.config import Config
 from tarl_lint.source import Module, parse
 from tarl_lint.taint import Tracer
+from tarl_lint.valueflow import contents
 from tarl_lint.valueflow.frames import Frame
+from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.ir import Expr, Pos, Stmt
 from tarl_lint.valueflow.link import Linker
-from tarl_lint.valueflow.machine import Machine
 from tarl_lint.valueflow.values import Value
 
 TESTS = Path("python/ql/test/library-tests/dataflow")
@@ -164,12 +165,12 @@ def _bare(machine: Linker) -> set[Pair]:
     reached = [(record.pos[0], tracer.reach(record).data) for record in machine.sources.values()]
     pairs: set[Pair] = set()
 
-    def look(machine: Machine, frame: Frame, statement: Stmt, expr: Expr, value: Value) -> None:  # noqa: ARG001
+    def look(machine: Interpreter, frame: Frame, statement: Stmt, expr: Expr, value: Value) -> None:  # noqa: ARG001
         sinks = [s for s in machine.sinks.values() if _argument_of(expr.pos, s.pos)]
         if not sinks:
             return
         loose = frozenset(o for o in value.pts if o.kind not in ("sequence", "mapping", "instance", "class"))
-        nodes = value.deps | machine.deep(loose)
+        nodes = value.deps | contents.deep(machine, loose)
         pairs.update((line, s.pos[0]) for s in sinks for line, reach in reached if nodes & reach)
 
     machine.probe = look

@@ -20,6 +20,7 @@ from pathlib import Path
 
 from tarl_lint.config import Config
 from tarl_lint.source import Module, parse
+from tarl_lint.valueflow import activations, calls, heap, worklist
 from tarl_lint.valueflow.activations import ROOT_CALL
 from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.link import Linker
@@ -76,14 +77,15 @@ class Calls(Linker):
         owner = closure.info[3] if isinstance(closure.info, tuple) else None
 
         def run(root: Root) -> None:
-            frame = self.root_frame(root)
+            frame = worklist.root_frame(self, root)
             target = closure
             if isinstance(owner, Obj):
-                (made,) = self.instantiate(owner, ([], {}), frame, ROOT_CALL).pts
-                (target,) = self.bind(pointer(closure), made, owner).pts
-            self.call_object(target, ([], {}), frame, ROOT_CALL)
+                (made,) = activations.instantiate(self, owner, ([], {}), frame, ROOT_CALL).pts
+                (target,) = heap.bind(self, pointer(closure), made, owner).pts
+            calls.call_object(self, target, ([], {}), frame, ROOT_CALL)
 
-        self.add_root(Root(("rest", closure.key), "rest", closure.name, once=True), run)
+        root = Root(("rest", closure.key), "rest", closure.name, once=True)
+        worklist.add_root(self, root, run)
 
 
 def _own(frame: Frame) -> bool:

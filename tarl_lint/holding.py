@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from tarl_lint.valueflow import ir
+from tarl_lint.valueflow import contents, heap, ir
 from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.link import Linker
 from tarl_lint.valueflow.values import BOTTOM, NONE, Obj, Value, join
@@ -82,7 +82,7 @@ class Origins:
                 if topic not in self.topics[root] or _dotted(obj) != path:
                     return False
                 fields += 1
-            elif obj.kind != "lib" or self.machine.deep(frozenset([obj])):
+            elif obj.kind != "lib" or contents.deep(self.machine, frozenset([obj])):
                 return False
         return fields > 0 and self._copied(value.deps, set())
 
@@ -133,7 +133,7 @@ class Holding:
                     longer = f"{path}.{part}" if path else part
                     if (name, longer) in self.fields or part == "*" or longer.count(".") > 5:
                         continue
-                    stored = machine.read(Value(NONE, current.pts), part)
+                    stored = heap.read(machine, Value(NONE, current.pts), part)
                     self.fields[name, longer] = stored
                     pending.append((longer, stored))
 
@@ -185,7 +185,7 @@ def _variables(machine: Linker, frame: Frame) -> Iterator[tuple[str, Value, bool
             if value is None:
                 continue
             seen.add(name)
-            yield name, value, machine.written_here(holder, name)
+            yield name, value, heap.written_here(machine, holder, name)
             yield from _attributes(machine, name, value)
             count += 1
             if count > MAX_VARIABLES:
@@ -201,7 +201,7 @@ def _attributes(machine: Linker, owner: str, value: Value) -> Iterator[tuple[str
     for name in list(obj.fields):
         inner = machine.store.get((obj, name))
         if inner is not None and name.isidentifier():
-            yield f"{owner}.{name}", inner, machine.written_here(obj, name)
+            yield f"{owner}.{name}", inner, heap.written_here(machine, obj, name)
 
 
 def _dotted(obj: Obj) -> str:

@@ -10,8 +10,8 @@ from tarl_lint.model import Flow, Operand, SiteId
 from tarl_lint.operands import uses
 from tarl_lint.valueflow import ir
 from tarl_lint.valueflow.frames import Frame
+from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.link import Linker
-from tarl_lint.valueflow.machine import Machine
 from tarl_lint.valueflow.sites import Texts
 from tarl_lint.valueflow.values import Value, join
 
@@ -91,7 +91,7 @@ class Prober:
             seen = self.seen[site] = Seen(statement, frame.program.path)
         seen.holding.look(self.machine, frame)
 
-    def _look(self, machine: Machine, frame: Frame, statement: ir.Stmt, expr: ir.Expr, value: Value) -> None:  # noqa: ARG002
+    def _look(self, ctx: Interpreter, frame: Frame, statement: ir.Stmt, expr: ir.Expr, value: Value) -> None:  # noqa: ARG002
         """Look at what an expression is."""
         site = self._site(frame, statement)
         if site is None:

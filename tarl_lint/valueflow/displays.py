@@ -2,106 +2,114 @@
 
 from __future__ import annotations
 
-from tarl_lint.valueflow import ir
+from tarl_lint.valueflow import allocation, combining, heap, ir, presence, storing
 from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import LENGTH, item_field
-from tarl_lint.valueflow.operators import Operators
+from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.values import NONE, Value, pointer
 
 MAX_EACH = 4  # elements that a comprehension takes one by one
 
 
-class Displays(Operators):
-    """Evaluates what makes containers."""
-
-    def _sequence(self, expr: ir.SequenceDisplay, frame: Frame) -> Value:
-        obj = self.allocate("sequence", frame, ("display", expr.slot))
-        items = [(i, self.evaluate(i.value if isinstance(i, ir.Starred) else i, frame)) for i in expr.items]
-        where = pointer(obj)
-        exact = True
-        for number, (item, value) in enumerate(items):
-            value = self.entry(item, value, frame, (expr.slot, number))
-            self.note_passed((obj, item_field(number)), item, value, frame)
-            if isinstance(item, ir.Starred):
-                exact = False
-                self.add_element(where, self.elements(value))
-                self.lengthen(obj, value)
-            elif exact:
-                self.store.put((obj, item_field(number)), value)
-            else:
-                self.add_element(where, value)
-        return where
-
-    def _mapping(self, expr: ir.MappingDisplay, frame: Frame) -> Value:
-        obj = self.allocate("mapping", frame, ("display", expr.slot))
-        where = pointer(obj)
-        for key, item in expr.items:
-            value = self.entry(item, self.evaluate(item, frame), frame, (expr.slot, item.pos))
-            if key is None:
-                self.absorb(obj, value)
-            else:
-                self.write_item(where, self.evaluate(key, frame), value)
-        return where
-
-    def entry(self, expr: ir.Expr, value: Value, frame: Frame, slot: object) -> Value:
-        """Return an element of a display; numbers get a node of their own, so that they are found again."""
-        if not isinstance(expr, ir.Const) or not isinstance(expr.value, (int, float)):
-            return value
-        node = self.node(frame, ("entry", slot), "assign")
-        self.mark(node, expr, value, frame)
-        return self.carry(value, node)
-
-    def _comprehension(self, expr: ir.Comprehension, frame: Frame) -> Value:
-        kind = "mapping" if expr.key is not None else "sequence"
-        first = self.evaluate(expr.loops[0][1], frame)
-        known = self.unpacked(first)
-        plain = expr.key is None and len(expr.loops) == 1 and not expr.loops[0][2]
-        if plain and known and len(known) <= MAX_EACH:
-            return self._one_by_one_of(expr, known, frame)
-        obj = self.allocate(kind, frame, ("display", expr.slot))
-        deps, lengths = NONE, NONE
-        for number, (target, source, conditions) in enumerate(expr.loops):
-            several = self.evaluate(source, frame) if number else first
-            lengths |= self.length(several)
-            self.assign(target, self.elements(several), frame)
-            for condition in conditions:
-                deps |= self.use(self.evaluate(condition, frame))
-        element = self.evaluate(expr.element, frame)
-        gate = self.gate(deps, frame, expr.slot)
-        element = Value(element.deps | gate, element.pts, element.consts)
-        self.store.put((obj, LENGTH), Value(lengths | gate))
-        if expr.key is not None:
-            self.write_item(pointer(obj), self.evaluate(expr.key, frame), element)
+def sequence_display(ctx: Interpreter, expr: ir.SequenceDisplay, frame: Frame) -> Value:
+    """Return a list, tuple or set as written."""
+    obj = allocation.allocate(ctx, "sequence", frame, ("display", expr.slot))
+    items = [
+        (i, ctx.ops.evaluate(ctx, i.value if isinstance(i, ir.Starred) else i, frame)) for i in expr.items
+    ]
+    where = pointer(obj)
+    exact = True
+    for number, (item, value) in enumerate(items):
+        value = entry(ctx, item, value, frame, (expr.slot, number))
+        presence.note_passed(ctx, (obj, item_field(number)), item, value, frame)
+        if isinstance(item, ir.Starred):
+            exact = False
+            storing.add_element(ctx, where, heap.elements(ctx, value))
+            combining.lengthen(ctx, obj, value)
+        elif exact:
+            ctx.store.put((obj, item_field(number)), value)
         else:
-            self.add_element(pointer(obj), element)
-        return pointer(obj)
+            storing.add_element(ctx, where, value)
+    return where
 
-    def _one_by_one_of(self, expr: ir.Comprehension, known: list[Value], frame: Frame) -> Value:
-        """Return a sequence of what a comprehension makes of elements that are told apart."""
-        obj = self.allocate("sequence", frame, ("display", expr.slot))
-        turn = frame.turn
-        for number, value in enumerate(known):
-            frame.turn = (*turn, expr.slot, number)
-            self.assign(expr.loops[0][0], value, frame)
-            self.store.put((obj, item_field(number)), self.evaluate(expr.element, frame))
-        frame.turn = turn
-        return pointer(obj)
 
-    def mark(self, node: int, expr: ir.Expr, value: Value, frame: Frame) -> None:
-        """Note that a node is a constant, or passes on another unchanged."""
-        known, constant = value.constant()
-        if (
-            isinstance(expr, (ir.Name, ir.Attribute, ir.Item))
-            or _conversion(expr)
-            or self._parameter_call(expr, value)
-        ):
-            self.graph.copies.add(node)
-        elif known and isinstance(constant, (bool, int, float)):
-            self.graph.literals[node] = (constant, expr.pos, frame.program.path)
+def mapping_display(ctx: Interpreter, expr: ir.MappingDisplay, frame: Frame) -> Value:
+    """Return a dictionary as written."""
+    obj = allocation.allocate(ctx, "mapping", frame, ("display", expr.slot))
+    where = pointer(obj)
+    for key, item in expr.items:
+        value = entry(ctx, item, ctx.ops.evaluate(ctx, item, frame), frame, (expr.slot, item.pos))
+        if key is None:
+            combining.absorb(ctx, obj, value)
+        else:
+            storing.write_item(ctx, where, ctx.ops.evaluate(ctx, key, frame), value)
+    return where
 
-    def _parameter_call(self, expr: ir.Expr, value: Value) -> bool:
-        """Tell whether an expression is a call that gives a ROS parameter."""
-        return isinstance(expr, ir.Call) and bool(value.deps) and value.deps <= self.graph.parameters
+
+def entry(ctx: Interpreter, expr: ir.Expr, value: Value, frame: Frame, slot: object) -> Value:
+    """Return an element of a display; numbers get a node of their own, so that they are found again."""
+    if not isinstance(expr, ir.Const) or not isinstance(expr.value, (int, float)):
+        return value
+    node = ctx.node(frame, ("entry", slot), "assign")
+    mark(ctx, node, expr, value, frame)
+    return ctx.carry(value, node)
+
+
+def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Value:
+    """Return the container that a comprehension makes."""
+    kind = "mapping" if expr.key is not None else "sequence"
+    first = ctx.ops.evaluate(ctx, expr.loops[0][1], frame)
+    known = combining.unpacked(ctx, first)
+    plain = expr.key is None and len(expr.loops) == 1 and not expr.loops[0][2]
+    if plain and known and len(known) <= MAX_EACH:
+        return _one_by_one_of(ctx, expr, known, frame)
+    obj = allocation.allocate(ctx, kind, frame, ("display", expr.slot))
+    deps, lengths = NONE, NONE
+    for number, (target, source, conditions) in enumerate(expr.loops):
+        several = ctx.ops.evaluate(ctx, source, frame) if number else first
+        lengths |= combining.length(ctx, several)
+        ctx.ops.assign(ctx, target, heap.elements(ctx, several), frame)
+        for condition in conditions:
+            deps |= ctx.use(ctx.ops.evaluate(ctx, condition, frame))
+    element = ctx.ops.evaluate(ctx, expr.element, frame)
+    gate = ctx.ops.gate(ctx, deps, frame, expr.slot)
+    element = Value(element.deps | gate, element.pts, element.consts)
+    ctx.store.put((obj, LENGTH), Value(lengths | gate))
+    if expr.key is not None:
+        storing.write_item(ctx, pointer(obj), ctx.ops.evaluate(ctx, expr.key, frame), element)
+    else:
+        storing.add_element(ctx, pointer(obj), element)
+    return pointer(obj)
+
+
+def _one_by_one_of(ctx: Interpreter, expr: ir.Comprehension, known: list[Value], frame: Frame) -> Value:
+    """Return a sequence of what a comprehension makes of elements that are told apart."""
+    obj = allocation.allocate(ctx, "sequence", frame, ("display", expr.slot))
+    turn = frame.turn
+    for number, value in enumerate(known):
+        frame.turn = (*turn, expr.slot, number)
+        ctx.ops.assign(ctx, expr.loops[0][0], value, frame)
+        ctx.store.put((obj, item_field(number)), ctx.ops.evaluate(ctx, expr.element, frame))
+    frame.turn = turn
+    return pointer(obj)
+
+
+def mark(ctx: Interpreter, node: int, expr: ir.Expr, value: Value, frame: Frame) -> None:
+    """Note that a node is a constant, or passes on another unchanged."""
+    known, constant = value.constant()
+    if (
+        isinstance(expr, (ir.Name, ir.Attribute, ir.Item))
+        or _conversion(expr)
+        or _parameter_call(ctx, expr, value)
+    ):
+        ctx.graph.copies.add(node)
+    elif known and isinstance(constant, (bool, int, float)):
+        ctx.graph.literals[node] = (constant, expr.pos, frame.program.path)
+
+
+def _parameter_call(ctx: Interpreter, expr: ir.Expr, value: Value) -> bool:
+    """Tell whether an expression is a call that gives a ROS parameter."""
+    return isinstance(expr, ir.Call) and bool(value.deps) and value.deps <= ctx.graph.parameters
 
 
 def _conversion(expr: ir.Expr) -> bool:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tarl_lint.valueflow.contents import Contents
+from tarl_lint.valueflow import heap
+from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.store import BORN, Delta
 from tarl_lint.valueflow.values import (
     ABSENT,
@@ -18,63 +19,63 @@ from tarl_lint.valueflow.values import (
 JOINS = 40  # values joined in the time of a statement
 
 
-class Joining(Contents):
-    """Joins continuations of a state."""
+def merge(ctx: Interpreter, deltas: Sequence[Delta]) -> None:
+    """Let the state be what it is after any of several continuations of it."""
+    for key, value in joined(ctx, deltas).items():
+        ctx.store.put(key, value)
 
-    def merge(self, deltas: Sequence[Delta]) -> None:
-        """Let the state be what it is after any of several continuations of it."""
-        for key, value in self.joined(deltas).items():
-            self.store.put(key, value)
 
-    def joined(self, deltas: Sequence[Delta]) -> Delta:
-        """Return the join of continuations of the present state."""
-        if len(deltas) == 1:
-            return deltas[0]
-        keys: dict[tuple[Obj, str], None] = {}
+def joined(ctx: Interpreter, deltas: Sequence[Delta]) -> Delta:
+    """Return the join of continuations of the present state."""
+    if len(deltas) == 1:
+        return deltas[0]
+    keys: dict[tuple[Obj, str], None] = {}
+    for delta in deltas:
+        keys.update(dict.fromkeys(delta))
+    ctx.spent += len(keys) // JOINS
+    result: Delta = {}
+    for key in keys:
+        value: Value | None = None
+        blank: Value | None = None
         for delta in deltas:
-            keys.update(dict.fromkeys(delta))
-        self.spent += len(keys) // JOINS
-        result: Delta = {}
-        for key in keys:
-            value: Value | None = None
-            blank: Value | None = None
-            for delta in deltas:
-                here = delta.get(key)
-                if here is None or here is ABSENT:
-                    here = self._former(key) if here is None else self.default(*key)
-                    if here is not None and self._unset(key, here):
-                        blank = here
-                        continue
-                if here is not None:
-                    value = here if value is None else join(value, here)
-            if blank is not None and (value is None or not _zero(value)):
-                value = blank if value is None else join(value, blank)
-            if value is not None:
-                result[key] = value
-        return result
-
-    def _unset(self, key: tuple[Obj, str], value: Value) -> bool:
-        """Tell whether a value is a field of a new message, to which nothing was stored yet."""
-        owner = key[0]
-        return (
-            owner.kind == "lib"
-            and owner.whole.info is BY_CLASS
-            and not value.deps
-            and all(o.parent is owner and not o.fields for o in value.pts)
-            and self.content(owner) is BOTTOM
-        )
-
-    def _former(self, key: tuple[Obj, str]) -> Value | None:
-        """Return what a continuation that does not store leaves."""
-        value = self.store.get(key)
+            here = delta.get(key)
+            if here is None or here is ABSENT:
+                here = _former(ctx, key) if here is None else ctx.ops.default(ctx, *key)
+                if here is not None and _unset(ctx, key, here):
+                    blank = here
+                    continue
+            if here is not None:
+                value = here if value is None else join(value, here)
+        if blank is not None and (value is None or not _zero(value)):
+            value = blank if value is None else join(value, blank)
         if value is not None:
-            return value
-        owner, name = key
-        if owner.kind in ("frame", "module", "class", "closure"):
-            return None
-        if owner.kind != "message" and self.store.get((owner.whole, BORN)) is None:
-            return None  # the object does not exist there
-        return self.content(owner) if name == "*" else self.default(owner, name)
+            result[key] = value
+    return result
+
+
+def _unset(ctx: Interpreter, key: tuple[Obj, str], value: Value) -> bool:
+    """Tell whether a value is a field of a new message, to which nothing was stored yet."""
+    owner = key[0]
+    return (
+        owner.kind == "lib"
+        and owner.whole.info is BY_CLASS
+        and not value.deps
+        and all(o.parent is owner and not o.fields for o in value.pts)
+        and heap.content(ctx, owner) is BOTTOM
+    )
+
+
+def _former(ctx: Interpreter, key: tuple[Obj, str]) -> Value | None:
+    """Return what a continuation that does not store leaves."""
+    value = ctx.store.get(key)
+    if value is not None:
+        return value
+    owner, name = key
+    if owner.kind in ("frame", "module", "class", "closure"):
+        return None
+    if owner.kind != "message" and ctx.store.get((owner.whole, BORN)) is None:
+        return None  # the object does not exist there
+    return heap.content(ctx, owner) if name == "*" else ctx.ops.default(ctx, owner, name)
 
 
 def _zero(value: Value) -> bool:

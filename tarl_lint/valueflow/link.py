@@ -7,17 +7,17 @@ from collections.abc import Callable, Sequence
 from tarl_lint.config import Config
 from tarl_lint.relevance import mentioning
 from tarl_lint.source import Module
-from tarl_lint.valueflow import ir
-from tarl_lint.valueflow.bounds import EXCHANGED, HASTE, LARGE, LEISURE, MAX_ROUNDS, MAX_STATEMENTS, PATIENCE
+from tarl_lint.valueflow import execute, ir, uncalled, wiring
+from tarl_lint.valueflow.bounds import HASTE, LARGE, LEISURE, MAX_ROUNDS, MAX_STATEMENTS, PATIENCE
 from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.graph import MAX_EDGES
+from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.lower import lower_module
 from tarl_lint.valueflow.store import Root, Store
-from tarl_lint.valueflow.uncalled import Uncalled
-from tarl_lint.valueflow.values import ABSENT, BOTTOM, UNKNOWN, Obj, Value, pointer
+from tarl_lint.valueflow.values import ABSENT, BOTTOM, Obj, Value
 
 
-class Linker(Uncalled):
+class Linker(Interpreter):
     """Runs modules, then callbacks, timers, threads and main functions, until the shared memory is stable."""
 
     def __init__(
@@ -32,12 +32,10 @@ class Linker(Uncalled):
 
         Unless `thorough`, values that come from no source are not followed: flows need no more.
         """
-        super().__init__(modules, config)
+        super().__init__(modules, config, wiring)
         self.thorough = thorough
-        self.pending: dict[Root, None] = {}
         self.took: dict[Root, int] = {}  # statements of the last run of what has run
         self.failures = failures
-        self.by_path: dict[str, ir.Program] = {}
         part = {m.path for m in mentioning(modules, config)} if len(modules) > 1 else self.modules.keys()
         for module in modules:
             program = self._lowered(module)
@@ -68,9 +66,9 @@ class Linker(Uncalled):
         self._settle()
         for _ in range(3):
             before = len(self.roots)
-            self.start_programs()
+            uncalled.start_programs(self)
             self._settle()
-            self.start_hooks()
+            uncalled.start_hooks(self)
             self._settle()
             if len(self.roots) == before:
                 break
@@ -86,16 +84,6 @@ class Linker(Uncalled):
             self._run(root, run)
 
     # --- roots --------------------------------------------------------------------------------------------
-
-    def add_root(self, root: Root, run: Callable[[Root], None], *, news: bool = False) -> None:
-        """Have something run on its own; seen again, only if its arguments are news."""
-        root = self.roots.get(root.key, (root,))[0]
-        if root.key not in self.roots:
-            root.number = len(self.roots)
-            news = True
-        if news:
-            self.pending[root] = None
-        self.roots[root.key] = (root, run)
 
     def _settle(self) -> None:
         for _ in range(MAX_ROUNDS):
@@ -154,42 +142,9 @@ class Linker(Uncalled):
     def _at_end(self, key: tuple[Obj, str]) -> Value | None:
         value = self.store.now.get(key)
         if value is ABSENT:
-            value = BOTTOM if key[1] == "*" else self.default(*key)
+            value = BOTTOM if key[1] == "*" else self.ops.default(self, *key)
             return None if value is BOTTOM else value
         return value
-
-    def wait(self, frame: Frame) -> None:  # noqa: ARG002 - who waits may matter to a lock
-        """Let other roots see what was stored, and store what they may."""
-        store, root = self.store, self.store.root
-        own = store.own()
-        self.spent += len(own) // EXCHANGED
-        store.waited = True
-        for key in own:
-            value = store.now[key]
-            if value is not ABSENT and store.exchanged.get(key) is not value:
-                store.exchanged[key] = value
-                mine = store.mine(key, value)
-                if mine is not None:
-                    self.shared.leave(self.shared.pauses, root, key, mine)
-            news = self.shared.others(key, root) if key in root.heeds else None
-            if news is not None:
-                former = self.default(*key) if value is ABSENT else value  # a field of a new object
-                both = store.admit(key, former, news)
-                if both is not value:
-                    store.put(key, both)
-
-    def root_frame(self, root: Root) -> Frame:
-        """Return the frame that stands for ROS itself, calling."""
-        key = ("root", root.key)
-        frame = self.frames.get(key)
-        if frame is None:
-            program = next(iter(self.programs.values()))
-            frame = Frame(
-                key, len(self.frames) + 1, program.function, program, self.module_objects[program.name]
-            )
-            self.frames[key] = frame
-        frame.root_waits = root.once
-        return frame
 
     def _module_root(self, program: ir.Program) -> None:
         root = Root(("module", program.path), "module", program.name, once=True, program=program.path)
@@ -205,41 +160,6 @@ class Linker(Uncalled):
             self.stack.append(frame)
             if not program.takes_part:
                 self.leisure = LEISURE + len(program.body)
-            self.run(frame)
+            execute.run(self, frame)
 
-        self.add_root(root, run)
-
-    # --- imports ------------------------------------------------------------------------------------------
-
-    def imported(self, module: str, member: str | None, importer: object) -> Value:
-        """Return what an import binds: a module of ours, a name in one, or something of a library."""
-        assert isinstance(importer, Module)  # noqa: S101 - what execute passes
-        found = self._module(module, importer)
-        if member is None:
-            return found if found is not None else self.external(module)
-        if found is not None:
-            for obj in found.pts:
-                value = self.store.get((obj, member))
-                if value is None:
-                    value = self._opened(obj, member)
-                if value is not BOTTOM:
-                    return value
-        inner = self._module(f"{module}.{member}" if module else member, importer)
-        if inner is not None:
-            return inner
-        return BOTTOM if found is not None else self.external(f"{module}.{member}")
-
-    def _module(self, name: str, importer: Module) -> Value | None:
-        found = self.index.find(name, importer)
-        if found is None:
-            return None
-        program = self.by_path.get(found.path)
-        return pointer(self.module_objects[program.name]) if program is not None else None
-
-    def default(self, obj: Obj, name: str) -> Value:
-        """Return a field to which nothing was stored; of a package, its modules."""
-        value = super().default(obj, name)
-        if value is BOTTOM and obj.kind == "module":
-            inner = self.module_objects.get(f"{obj.name}.{name}")
-            return pointer(inner) if inner is not None else UNKNOWN
-        return value
+        self.ops.add_root(self, root, run)

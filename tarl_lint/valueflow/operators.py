@@ -7,10 +7,10 @@ import math
 import operator
 from collections.abc import Callable, Hashable, Mapping
 
-from tarl_lint.valueflow import ir
+from tarl_lint.valueflow import combining, heap, ir, presence, special
 from tarl_lint.valueflow.combining import COMBINING
 from tarl_lint.valueflow.frames import Frame
-from tarl_lint.valueflow.presence import Presence
+from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.values import BOTTOM, BY_CLASS, MAX_CONSTS, MAX_TEXTS, NONE, Nodes, Obj, Value, join
 
 FOLDED: Mapping[str, Callable[..., object]] = {
@@ -39,144 +39,147 @@ THERE = frozenset([*MESSAGES, *OURS])  # never None themselves, whatever is in t
 MAX_TEXT = 300
 
 
-class Operators(Presence):
-    """Evaluates operators."""
+def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
+    """Return the result of an operator."""
+    if expr.operator in ("or", "and"):
+        return boolean(ctx, expr, frame)
+    values = [ctx.ops.evaluate(ctx, p, frame) for p in expr.parts]
+    said = special.operated(ctx, expr, values, frame)
+    if said is not None:
+        return said
+    if expr.operator in ("+=", "|=") and values[0].pts:
+        return combining.grown(ctx, expr.operator, values)
+    if expr.operator in COMBINING and any(v.pts for v in values):
+        made = combining.combined(ctx, expr, values, frame)
+        if made is not None:
+            return made
+    if expr.operator in PRESENT and (decides := presence.only_presence(ctx, expr, frame)) is not None:
+        there = ctx.node(frame, ("there", expr.pos), "condition")
+        ctx.graph.choice(values[0].deps, there)
+        ctx.graph.flow(decides, there)
+        return Value(ctx.kept(there), consts=fold(ctx, expr.operator, values))
+    deps, name = NONE, _asked(expr)
+    for number, value in enumerate(values):
+        deps |= tested(ctx, name, value, frame, (expr.pos, number))
+    return Value(deps, consts=fold(ctx, expr.operator, values))
 
-    def _operation(self, expr: ir.Operation, frame: Frame) -> Value:
-        if expr.operator in ("or", "and"):
-            return self.boolean(expr, frame)
-        values = [self.evaluate(p, frame) for p in expr.parts]
-        said = self.operated(expr, values, frame)
-        if said is not None:
-            return said
-        if expr.operator in ("+=", "|=") and values[0].pts:
-            return self.grown(expr.operator, values)
-        if expr.operator in COMBINING and any(v.pts for v in values):
-            made = self.combined(expr, values, frame)
-            if made is not None:
-                return made
-        if expr.operator in PRESENT and (decides := self.only_presence(expr, frame)) is not None:
-            there = self.node(frame, ("there", expr.pos), "condition")
-            self.graph.choice(values[0].deps, there)
-            self.graph.flow(decides, there)
-            return Value(self.kept(there), consts=self.fold(expr.operator, values))
-        deps, name = NONE, _asked(expr)
-        for number, value in enumerate(values):
-            deps |= self.tested(name, value, frame, (expr.pos, number))
-        return Value(deps, consts=self.fold(expr.operator, values))
 
-    def tested(self, name: str, value: Value, frame: Frame, slot: tuple[ir.Pos, int]) -> Nodes:
-        """Return the nodes whose data an operator uses. Whether a message is there at all is not data of it."""
-        if name == "shape":
-            return self.length(value)
-        if name == "type":
-            return self.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in OURS)))
-        if name == "none in":
-            parts = self.unpacked(value) or [self.elements(value)]
-            return frozenset().union(*(self.tested("is none", p, frame, slot) for p in parts))
-        if name in MEMBER and slot[1] == 1:
-            return self.membership(value, frame, slot)
-        if name in ("is", "is none"):
-            hollow = _there if name == "is none" else _whole
-            return self.use(Value(value.deps, frozenset(o for o in value.pts if not hollow(o))))
-        return self.truth(value, frame, slot) if name == "not" else self.use(value)
+def tested(ctx: Interpreter, name: str, value: Value, frame: Frame, slot: tuple[ir.Pos, int]) -> Nodes:
+    """Return the nodes whose data an operator uses. Whether a message is there at all is not data of it."""
+    if name == "shape":
+        return combining.length(ctx, value)
+    if name == "type":
+        return ctx.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in OURS)))
+    if name == "none in":
+        parts = combining.unpacked(ctx, value) or [heap.elements(ctx, value)]
+        return frozenset().union(*(tested(ctx, "is none", p, frame, slot) for p in parts))
+    if name in MEMBER and slot[1] == 1:
+        return membership(ctx, value, frame, slot)
+    if name in ("is", "is none"):
+        hollow = _there if name == "is none" else _whole
+        return ctx.use(Value(value.deps, frozenset(o for o in value.pts if not hollow(o))))
+    return truth(ctx, value, frame, slot) if name == "not" else ctx.use(value)
 
-    def membership(self, value: Value, frame: Frame, slot: Hashable) -> Nodes:
-        """Return the nodes that decide what is in a container: of a mapping its keys, whatever they stand for."""
-        mappings = frozenset(o for o in value.pts if o.kind == "mapping")
-        deps = self.use(Value(value.deps, value.pts - mappings))
-        for obj in sorted(mappings, key=lambda o: o.number):
-            deps |= self.keys(obj, value.deps).deps
-        return deps | self.chosen(mappings, frame, ("member", slot)) if mappings else deps
 
-    def chosen(self, objects: frozenset[Obj], frame: Frame, slot: Hashable) -> Nodes:
-        """Return a node that what decided to put something into containers decides, and no data of theirs."""
-        node = self.node(frame, slot, "condition")
-        self.graph.choice(self.placed(objects), node)
-        return self.kept(node)
+def membership(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes:
+    """Return the nodes that decide what is in a container: of a mapping its keys, whatever they stand for."""
+    mappings = frozenset(o for o in value.pts if o.kind == "mapping")
+    deps = ctx.use(Value(value.deps, value.pts - mappings))
+    for obj in sorted(mappings, key=lambda o: o.number):
+        deps |= heap.keys(ctx, obj, value.deps).deps
+    return deps | chosen(ctx, mappings, frame, ("member", slot)) if mappings else deps
 
-    def truth(self, value: Value, frame: Frame, slot: Hashable) -> Nodes:
-        """Return the nodes that decide whether a value counts as true.
 
-        A whole message always does, and so does an object that says nothing else; of a container it is the length.
-        """
-        if not value.pts:
-            return value.deps
-        said = self.special(value, "__bool__", (), frame, frame.function.pos)
-        if said is not None:
-            return self.use(said)
-        ours = frozenset(filter(self.sized, value.pts))
-        kept = frozenset(o for o in value.pts - ours if not self._always_true(o))
-        deps = self.use(Value(value.deps, kept)) | self.length(Value(pts=ours))
-        if ours:
-            deps |= self.chosen(ours, frame, ("truth", slot))
-        return deps
+def chosen(ctx: Interpreter, objects: frozenset[Obj], frame: Frame, slot: Hashable) -> Nodes:
+    """Return a node that what decided to put something into containers decides, and no data of theirs."""
+    node = ctx.node(frame, slot, "condition")
+    ctx.graph.choice(combining.placed(ctx, objects), node)
+    return ctx.kept(node)
 
-    def _always_true(self, obj: Obj) -> bool:
-        if obj.kind == "instance":
-            return not any(self.read_field(obj, name).pts for name in ("__bool__", "__len__"))
-        return obj.info is BY_CLASS or (obj.kind in MESSAGES and obj.parent is None)
 
-    def boolean(self, expr: ir.Operation, frame: Frame) -> Value:
-        """Return what `a or b` may be: one of them, decided by the former, on which the rest depends."""
-        result, deps, guards = BOTTOM, NONE, len(self.guards)
-        for number, part in enumerate(expr.parts):
-            value = self.evaluate(part, frame)
-            last = number + 1 == len(expr.parts)
-            known, constant = value.constant()
-            decided = known and bool(constant) is (expr.operator == "or")
-            decides = self.truth(value, frame, (expr.pos, number))
-            deps |= decides
-            if last or decided or not known:
-                result = join(result, value)
-            if decided:
-                break
-            if not last and not known and isinstance(expr.parts[number + 1], CALLING):
-                self.guards.append((self.guard(decides, frame, (expr.pos, number)), "rest"))
-        del self.guards[guards:]
-        return Value(result.deps | deps, result.pts, result.consts)
+def truth(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes:
+    """Return the nodes that decide whether a value counts as true.
 
-    def guard(self, decides: Nodes, frame: Frame, slot: Hashable) -> int:
-        """Return the node of a decision inside an expression."""
-        node = self.node(frame, ("guard", slot), "condition")
-        self.graph.flow(decides, node)
-        return node
+    A whole message always does, and so does an object that says nothing else; of a container it is the length.
+    """
+    if not value.pts:
+        return value.deps
+    said = special.special(ctx, value, "__bool__", (), frame, frame.function.pos)
+    if said is not None:
+        return ctx.use(said)
+    ours = frozenset(filter(combining.sized, value.pts))
+    kept = frozenset(o for o in value.pts - ours if not _always_true(ctx, o))
+    deps = ctx.use(Value(value.deps, kept)) | combining.length(ctx, Value(pts=ours))
+    if ours:
+        deps |= chosen(ctx, ours, frame, ("truth", slot))
+    return deps
 
-    def remainder(self, values: list[Value]) -> frozenset[object] | None:
-        """Return `text % values` where all is known."""
-        raise NotImplementedError
 
-    def fold(self, name: str, values: list[Value]) -> frozenset[object] | None:
-        """Return the constants that an operator makes of constants."""
-        if name == "text":
-            return self._fold_text(values)
-        if name == "%" and len(values) == 2 and values[1].pts:
-            return self.remainder(values)
-        function = FOLDED.get(name)
-        if function is None or any(v.pts for v in values):
-            return None if any(v.pts or v.consts is None for v in values) or function is None else frozenset()
-        if not all(v.consts for v in values):
+def _always_true(ctx: Interpreter, obj: Obj) -> bool:
+    if obj.kind == "instance":
+        return not any(heap.read_field(ctx, obj, name).pts for name in ("__bool__", "__len__"))
+    return obj.info is BY_CLASS or (obj.kind in MESSAGES and obj.parent is None)
+
+
+def boolean(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
+    """Return what `a or b` may be: one of them, decided by the former, on which the rest depends."""
+    result, deps, guards = BOTTOM, NONE, len(ctx.guards)
+    for number, part in enumerate(expr.parts):
+        value = ctx.ops.evaluate(ctx, part, frame)
+        last = number + 1 == len(expr.parts)
+        known, constant = value.constant()
+        decided = known and bool(constant) is (expr.operator == "or")
+        decides = truth(ctx, value, frame, (expr.pos, number))
+        deps |= decides
+        if last or decided or not known:
+            result = join(result, value)
+        if decided:
+            break
+        if not last and not known and isinstance(expr.parts[number + 1], CALLING):
+            ctx.guards.append((guard(ctx, decides, frame, (expr.pos, number)), "rest"))
+    del ctx.guards[guards:]
+    return Value(result.deps | deps, result.pts, result.consts)
+
+
+def guard(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> int:
+    """Return the node of a decision inside an expression."""
+    node = ctx.node(frame, ("guard", slot), "condition")
+    ctx.graph.flow(decides, node)
+    return node
+
+
+def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] | None:
+    """Return the constants that an operator makes of constants."""
+    if name == "text":
+        return _fold_text(values)
+    if name == "%" and len(values) == 2 and values[1].pts:
+        return ctx.ops.remainder(ctx, values)
+    function = FOLDED.get(name)
+    if function is None or any(v.pts for v in values):
+        return None if any(v.pts or v.consts is None for v in values) or function is None else frozenset()
+    if not all(v.consts for v in values):
+        return None
+    known = [sorted(v.consts, key=str) for v in values if v.consts]
+    if math.prod(map(len, known)) > MAX_TEXTS:
+        return None
+    try:
+        results = frozenset(function(*constants) for constants in itertools.product(*known))
+    except Exception:  # whatever the program itself would fail with
+        return None
+    if len(results) > MAX_CONSTS and not all(isinstance(r, str) for r in results):
+        return None
+    return None if any(isinstance(r, (str, bytes)) and len(r) > MAX_TEXT for r in results) else results
+
+
+def _fold_text(values: list[Value]) -> frozenset[object] | None:
+    texts = [""]
+    for value in values:
+        if not value.consts or value.pts:
             return None
-        known = [sorted(v.consts, key=str) for v in values if v.consts]
-        if math.prod(map(len, known)) > MAX_TEXTS:
+        texts = [t + str(c) for t in texts for c in sorted(value.consts, key=str)]
+        if len(texts) > MAX_TEXTS or len(texts[0]) > MAX_TEXT:
             return None
-        try:
-            results = frozenset(function(*constants) for constants in itertools.product(*known))
-        except Exception:  # whatever the program itself would fail with
-            return None
-        if len(results) > MAX_CONSTS and not all(isinstance(r, str) for r in results):
-            return None
-        return None if any(isinstance(r, (str, bytes)) and len(r) > MAX_TEXT for r in results) else results
-
-    def _fold_text(self, values: list[Value]) -> frozenset[object] | None:
-        texts = [""]
-        for value in values:
-            if not value.consts or value.pts:
-                return None
-            texts = [t + str(c) for t in texts for c in sorted(value.consts, key=str)]
-            if len(texts) > MAX_TEXTS or len(texts[0]) > MAX_TEXT:
-                return None
-        return frozenset(texts)
+    return frozenset(texts)
 
 
 def _asked(expr: ir.Operation) -> str:

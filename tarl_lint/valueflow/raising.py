@@ -2,57 +2,57 @@
 
 from __future__ import annotations
 
+from tarl_lint.valueflow import publishing
 from tarl_lint.valueflow.frames import Attempt, Escape, Frame
-from tarl_lint.valueflow.taking import Taking
+from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.values import BOTTOM, Nodes, join
 
 
-class Raising(Taking):
-    """Lets exceptions leave functions. One that nothing takes is left alone: the node ends there."""
+def leave(ctx: Interpreter, escape: Escape, frame: Frame) -> None:  # noqa: ARG001 - one signature for all
+    """Hand an exception to the handlers around it in the function, else out of the function."""
+    attempt = next((t for t in reversed(frame.tries) if t.handled), None)
+    if attempt is not None:
+        attempt.raised = join(attempt.raised, escape.value)
+    else:
+        frame.escapes.append(escape)
 
-    def leave(self, escape: Escape, frame: Frame) -> None:
-        """Hand an exception to the handlers around it in the function, else out of the function."""
-        attempt = next((t for t in reversed(frame.tries) if t.handled), None)
-        if attempt is not None:
-            attempt.raised = join(attempt.raised, escape.value)
-        else:
-            frame.escapes.append(escape)
 
-    def may_fail(self, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:
-        """Let what comes after a statement depend on whether a library can do with what it is given.
+def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:
+    """Let what comes after a statement depend on whether a library can do with what it is given.
 
-        Only where somebody takes what it raises, in the function or in one that called it; `named`: by its name.
-        """
-        statement = frame.statement
-        if not deps or statement is None or frame.cls is not None:
-            return
-        here = any(_takes(t, raises, named) for t in frame.tries)
-        if not here and not any(_takes(t, raises, named) for f in self.stack for t in f.tries):
-            return
-        known = frame.function.raising.setdefault(statement.id, {})
-        if raises not in known:
-            known[raises] = None
-            frame.function.control = None
-        decision = self.condition(frame, statement)
-        self.graph.depend(decision, deps)
-        if not here and not any(e.decision == decision for e in frame.escapes):
-            frame.escapes.append(Escape(frame, statement, raises, BOTTOM, decision))
+    Only where somebody takes what it raises, in the function or in one that called it; `named`: by its name.
+    """
+    statement = frame.statement
+    if not deps or statement is None or frame.cls is not None:
+        return
+    here = any(_takes(t, raises, named) for t in frame.tries)
+    if not here and not any(_takes(t, raises, named) for f in ctx.stack for t in f.tries):
+        return
+    known = frame.function.raising.setdefault(statement.id, {})
+    if raises not in known:
+        known[raises] = None
+        frame.function.control = None
+    decision = ctx.condition(frame, statement)
+    ctx.graph.depend(decision, deps)
+    if not here and not any(e.decision == decision for e in frame.escapes):
+        frame.escapes.append(Escape(frame, statement, raises, BOTTOM, decision))
 
-    def escaped(self, frame: Frame, caller: Frame) -> None:
-        """Let what comes after a call depend on whether the called function raises, when somebody takes that."""
-        statement = caller.statement
-        if statement is None or not any(t.handled for f in self.stack for t in f.tries):
-            return
-        for escape in frame.escapes:
-            known = caller.function.raising.setdefault(statement.id, {})
-            if escape.name not in known and caller.cls is None:
-                known[escape.name] = None
-                caller.function.control = None
-            decision = self.condition(caller, statement)
-            self.under(escape.frame, escape.statement, decision)
-            if escape.decision is not None:
-                self.graph.depend(decision, (escape.decision,))
-            self.leave(Escape(caller, statement, escape.name, escape.value, decision), caller)
+
+def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
+    """Let what comes after a call depend on whether the called function raises, when somebody takes that."""
+    statement = caller.statement
+    if statement is None or not any(t.handled for f in ctx.stack for t in f.tries):
+        return
+    for escape in frame.escapes:
+        known = caller.function.raising.setdefault(statement.id, {})
+        if escape.name not in known and caller.cls is None:
+            known[escape.name] = None
+            caller.function.control = None
+        decision = ctx.condition(caller, statement)
+        publishing.under(ctx, escape.frame, escape.statement, decision)
+        if escape.decision is not None:
+            ctx.graph.depend(decision, (escape.decision,))
+        leave(ctx, Escape(caller, statement, escape.name, escape.value, decision), caller)
 
 
 def _takes(attempt: Attempt, raises: str, named: bool) -> bool:

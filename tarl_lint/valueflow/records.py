@@ -5,11 +5,21 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator
 from typing import Final
 
-from tarl_lint.valueflow import ir
+from tarl_lint.valueflow import (
+    activations,
+    allocation,
+    calls,
+    combining,
+    contents,
+    evaluate,
+    heap,
+    ir,
+    storing,
+)
 from tarl_lint.valueflow.activations import CALLABLE
-from tarl_lint.valueflow.containers import Containers
 from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.heap import ANY, KEYS, item_field
+from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.invocation import Arguments, Invocation
 from tarl_lint.valueflow.values import (
     BOTTOM,
@@ -33,226 +43,251 @@ MADE_BY: Final = {
 PLAIN: Final = frozenset(["abc.ABC", "typing.Generic", "typing.Protocol"])  # bases that make no constructor
 
 
-class Records(Containers):
-    """Makes data classes, named tuples, copies and mappings with defaults."""
+# --- fields -------------------------------------------------------------------------------------------
 
-    # --- fields -------------------------------------------------------------------------------------------
 
-    def _fill(self, obj: Obj, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-        """Store the arguments as a dataclass or named tuple does."""
-        plain, named = self.pass_arguments(arguments, frame, call)
-        given = dict(named)
-        rest = given.pop("*", None)
-        mapping = given.pop("**", None)
-        numbered, arriving = _named_tuple(cls), iter(plain)
-        for number, (owner, name) in enumerate(_fields(cls)):
-            options = self._options(owner, name)
-            inside = not _says(options, "init", False)
-            value = given.pop(name, None)
-            if value is None and inside and not _says(options, "kw_only", True):
-                value = next(arriving, None)
-            if value is None and mapping is not None and inside:
-                value = self.read_item(mapping, const(name))
-            if value is None or value is BOTTOM:
-                passed = rest if inside else None
-                value = passed if passed is not None else self._preset(owner, name, frame, call, number)
-            if value is None:
-                continue
-            self.store.put((obj, name), value)
-            if numbered:
-                self.store.put((obj, item_field(number)), value)
-        for name, value in given.items():
-            self.store.put((obj, name), value)
-        if plain and isinstance(cls.info, ClassInfo) and cls.info.external and not numbered:
-            self.add_element(pointer(obj), Value(self.all_used((plain, {}))))
-        self._after(obj, cls, frame, call)
+def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
+    """Store the arguments as a dataclass or named tuple does."""
+    plain, named = activations.pass_arguments(ctx, arguments, frame, call)
+    given = dict(named)
+    rest = given.pop("*", None)
+    mapping = given.pop("**", None)
+    numbered, arriving = _named_tuple(cls), iter(plain)
+    for number, (owner, name) in enumerate(_fields(cls)):
+        options = _options(ctx, owner, name)
+        inside = not _says(options, "init", False)
+        value = given.pop(name, None)
+        if value is None and inside and not _says(options, "kw_only", True):
+            value = next(arriving, None)
+        if value is None and mapping is not None and inside:
+            value = evaluate.read_item(ctx, mapping, const(name))
+        if value is None or value is BOTTOM:
+            passed = rest if inside else None
+            value = passed if passed is not None else _preset(ctx, owner, name, frame, call, number)
+        if value is None:
+            continue
+        ctx.store.put((obj, name), value)
+        if numbered:
+            ctx.store.put((obj, item_field(number)), value)
+    for name, value in given.items():
+        ctx.store.put((obj, name), value)
+    if plain and isinstance(cls.info, ClassInfo) and cls.info.external and not numbered:
+        storing.add_element(ctx, pointer(obj), Value(activations.all_used(ctx, (plain, {}))))
+    _after(ctx, obj, cls, frame, call)
 
-    def _after(self, obj: Obj, cls: Obj, frame: Frame, call: ir.Call) -> None:
-        for owner in lineage(cls):
-            after = self.store.get((owner, "__post_init__"))
-            if after is not None:
-                self.call_value(self.bind(after, obj, owner), ([], {}), frame, call)
-                return
 
-    def _preset(self, owner: Obj, name: str, frame: Frame, call: ir.Call, number: int) -> Value | None:
-        """Return a field's default: of `field(default_factory=f)` what f makes."""
-        options = self._options(owner, name)
-        if options is None:
-            return self.store.get((owner, name))
-        if "default_factory" in options:
-            made = ir.Call(call.function, (), (), call.pos, -1000 * abs(call.slot) - number)
-            return self.call_value(options["default_factory"], ([], {}), frame, made)
-        return options.get("default", UNKNOWN)
+def _after(ctx: Interpreter, obj: Obj, cls: Obj, frame: Frame, call: ir.Call) -> None:
+    for owner in lineage(cls):
+        after = ctx.store.get((owner, "__post_init__"))
+        if after is not None:
+            calls.call_value(ctx, heap.bind(ctx, after, obj, owner), ([], {}), frame, call)
+            return
 
-    def _options(self, owner: Obj, name: str) -> dict[str, Value] | None:
-        """Return what `field(...)` says of a field of a dataclass, None where that was not called."""
-        preset = self.store.get((owner, name))
-        spec = next((o for o in preset.pts if o.kind == "field"), None) if preset is not None else None
-        return spec.info if spec is not None and isinstance(spec.info, dict) else None
 
-    def _field(self, it: Invocation) -> Value:
-        obj = self.intern("field", (it.frame.id, it.statement, it.call.slot))
-        obj.info = it.arguments[1]
-        return pointer(obj)
+def _preset(
+    ctx: Interpreter, owner: Obj, name: str, frame: Frame, call: ir.Call, number: int
+) -> Value | None:
+    """Return a field's default: of `field(default_factory=f)` what f makes."""
+    options = _options(ctx, owner, name)
+    if options is None:
+        return ctx.store.get((owner, name))
+    if "default_factory" in options:
+        made = ir.Call(call.function, (), (), call.pos, -1000 * abs(call.slot) - number)
+        return calls.call_value(ctx, options["default_factory"], ([], {}), frame, made)
+    return options.get("default", UNKNOWN)
 
-    def _named_tuple(self, it: Invocation) -> Value:
-        """Return the class that `namedtuple(name, fields)` makes."""
-        plain = it.arguments[0]
-        if len(plain) < 2:
-            return UNKNOWN
-        names: list[str] = []
-        for text in plain[1].texts():
-            names += text.replace(",", " ").split()
-        for element in self.unpacked(plain[1]) or []:
-            names += element.texts()
-        cls = self.intern("class", (it.frame.id, it.statement, it.call.slot), "".join(plain[0].texts()[:1]))
-        cls.info = ClassInfo(cls.name, cls.name, named=True, module=it.frame.program.name)
-        cls.info.fields = tuple(names)
-        return pointer(cls)
 
-    # --- copies -------------------------------------------------------------------------------------------
+def _options(ctx: Interpreter, owner: Obj, name: str) -> dict[str, Value] | None:
+    """Return what `field(...)` says of a field of a dataclass, None where that was not called."""
+    preset = ctx.store.get((owner, name))
+    spec = next((o for o in preset.pts if o.kind == "field"), None) if preset is not None else None
+    return spec.info if spec is not None and isinstance(spec.info, dict) else None
 
-    def _replaced(self, it: Invocation) -> Value:
-        """Return a copy with some fields other than before."""
-        plain, named = it.arguments
-        base = plain[0] if plain and it.base is BOTTOM else it.base
-        made = self.copy_of(base, it.frame, it.call.slot)
-        for obj in made.pts:
-            cls = obj.info if obj.kind == "instance" else None
-            names = [n for _, n in _fields(cls)] if isinstance(cls, Obj) else []
-            for name, value in named.items():
-                self.store.put((obj, name), value)
-                if name in names and _named_tuple(cls):
-                    self.store.put((obj, item_field(names.index(name))), value)
-        return made
 
-    def _as_mapping(self, it: Invocation) -> Value:
-        """Return the mapping of field names to fields that `asdict(x)` or a named tuple's `_asdict()` makes."""
-        return self._listing(it, "mapping")
+def field_default(ctx: Interpreter, it: Invocation) -> Value:
+    """Return what `field(...)` says of a field."""
+    obj = allocation.intern(ctx, "field", (it.frame.id, it.statement, it.call.slot))
+    obj.info = it.arguments[1]
+    return pointer(obj)
 
-    def _as_sequence(self, it: Invocation) -> Value:
-        """Return the tuple of fields that `astuple(x)` makes."""
-        return self._listing(it, "sequence")
 
-    def _listing(self, it: Invocation, kind: str) -> Value:
-        given = it.base if it.base is not BOTTOM else it.arguments[0][0] if it.arguments[0] else UNKNOWN
-        ours = {o: o.info for o in given.pts if o.kind == "instance" and isinstance(o.info, Obj)}
-        if not ours or len(ours) < len(given.pts):
-            return Value(self.use(given))
-        made = self.allocate(kind, it.frame, ("display", it.call.slot))
-        for obj, cls in ours.items():
-            for number, (_, name) in enumerate(_fields(cls)):
-                field = item_field(name if kind == "mapping" else number)
-                self.weaken(made, field, self.arrive(self.read_field(obj, name), given.deps))
-        return pointer(made)
+def named_tuple_class(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the class that `namedtuple(name, fields)` makes."""
+    plain = it.arguments[0]
+    if len(plain) < 2:
+        return UNKNOWN
+    names: list[str] = []
+    for text in plain[1].texts():
+        names += text.replace(",", " ").split()
+    for element in combining.unpacked(ctx, plain[1]) or []:
+        names += element.texts()
+    cls = allocation.intern(
+        ctx, "class", (it.frame.id, it.statement, it.call.slot), "".join(plain[0].texts()[:1])
+    )
+    cls.info = ClassInfo(cls.name, cls.name, named=True, module=it.frame.program.name)
+    cls.info.fields = tuple(names)
+    return pointer(cls)
 
-    def _read_copy(self, it: Invocation) -> Value:
-        return self.copy_of(it.base, it.frame, it.call.slot)
 
-    def copy_of(self, value: Value, frame: Frame, slot: Hashable) -> Value:
-        """Return a new object with the same fields."""
-        if not value.pts or any(o.kind in CALLABLE for o in value.pts):
-            return value
-        obj = self._blank(value, frame, ("copy", slot))
-        content = BOTTOM
-        for source in value.pts:
-            self._copy_fields(source, obj)
-            content = join(content, self.content(source))
-        if content is not BOTTOM:
-            self.store.put((obj, ANY), content)
-        return Value(value.deps, frozenset([obj]))
+# --- copies -------------------------------------------------------------------------------------------
 
-    def _blank(self, value: Value, frame: Frame, slot: Hashable) -> Obj:
-        """Return a new object of the kind that all the copied ones are of."""
-        classes = {o.info for o in value.pts if o.kind == "instance"}
-        if len(classes) == 1 and all(o.kind == "instance" for o in value.pts):
-            obj = self.allocate("instance", frame, slot)
-            obj.info = classes.pop()
-            return obj
-        kinds = {o.kind for o in value.pts} & {"sequence", "mapping"}
-        obj = self.allocate(kinds.pop() if kinds else "lib", frame, slot)
-        if all(o.info is BY_CLASS for o in value.pts):
-            obj.info = BY_CLASS
-        definitions = {self.defined(o) for o in value.pts}
-        obj.defined = definitions.pop() if len(definitions) == 1 else ""
+
+def replaced_record(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a copy with some fields other than before."""
+    plain, named = it.arguments
+    base = plain[0] if plain and it.base is BOTTOM else it.base
+    made = copy_of(ctx, base, it.frame, it.call.slot)
+    for obj in made.pts:
+        cls = obj.info if obj.kind == "instance" else None
+        names = [n for _, n in _fields(cls)] if isinstance(cls, Obj) else []
+        for name, value in named.items():
+            ctx.store.put((obj, name), value)
+            if name in names and _named_tuple(cls):
+                ctx.store.put((obj, item_field(names.index(name))), value)
+    return made
+
+
+def as_mapping(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the mapping of field names to fields that `asdict(x)` or a named tuple's `_asdict()` makes."""
+    return _listing(ctx, it, "mapping")
+
+
+def as_sequence(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the tuple of fields that `astuple(x)` makes."""
+    return _listing(ctx, it, "sequence")
+
+
+def _listing(ctx: Interpreter, it: Invocation, kind: str) -> Value:
+    given = it.base if it.base is not BOTTOM else it.arguments[0][0] if it.arguments[0] else UNKNOWN
+    ours = {o: o.info for o in given.pts if o.kind == "instance" and isinstance(o.info, Obj)}
+    if not ours or len(ours) < len(given.pts):
+        return Value(ctx.use(given))
+    made = allocation.allocate(ctx, kind, it.frame, ("display", it.call.slot))
+    for obj, cls in ours.items():
+        for number, (_, name) in enumerate(_fields(cls)):
+            field = item_field(name if kind == "mapping" else number)
+            storing.weaken(ctx, made, field, heap.arrive(ctx, heap.read_field(ctx, obj, name), given.deps))
+    return pointer(made)
+
+
+def _read_copy(ctx: Interpreter, it: Invocation) -> Value:
+    return copy_of(ctx, it.base, it.frame, it.call.slot)
+
+
+def copy_of(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Value:
+    """Return a new object with the same fields."""
+    if not value.pts or any(o.kind in CALLABLE for o in value.pts):
+        return value
+    obj = _blank(ctx, value, frame, ("copy", slot))
+    content = BOTTOM
+    for source in value.pts:
+        allocation.copy_fields(ctx, source, obj)
+        content = join(content, heap.content(ctx, source))
+    if content is not BOTTOM:
+        ctx.store.put((obj, ANY), content)
+    return Value(value.deps, frozenset([obj]))
+
+
+def _blank(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Obj:
+    """Return a new object of the kind that all the copied ones are of."""
+    classes = {o.info for o in value.pts if o.kind == "instance"}
+    if len(classes) == 1 and all(o.kind == "instance" for o in value.pts):
+        obj = allocation.allocate(ctx, "instance", frame, slot)
+        obj.info = classes.pop()
         return obj
+    kinds = {o.kind for o in value.pts} & {"sequence", "mapping"}
+    obj = allocation.allocate(ctx, kinds.pop() if kinds else "lib", frame, slot)
+    if all(o.info is BY_CLASS for o in value.pts):
+        obj.info = BY_CLASS
+    definitions = {contents.defined(ctx, o) for o in value.pts}
+    obj.defined = definitions.pop() if len(definitions) == 1 else ""
+    return obj
 
-    def deep_copy(self, value: Value, frame: Frame, slot: Hashable, depth: int = 0) -> Value:
-        """Return a copy whose inner objects are copies too."""
-        made = self.copy_of(value, frame, slot)
-        for obj in made.pts - value.pts if depth < MAX_COPIED else ():
-            for name in list(obj.fields):
-                inner = self.store.get((obj, name))
-                if inner is not None and any(o.kind in INNER for o in inner.pts):
-                    self.store.put((obj, name), self.deep_copy(inner, frame, (slot, name), depth + 1))
-        return made
 
-    # --- mappings -----------------------------------------------------------------------------------------
+def deep_copy(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable, depth: int = 0) -> Value:
+    """Return a copy whose inner objects are copies too."""
+    made = copy_of(ctx, value, frame, slot)
+    for obj in made.pts - value.pts if depth < MAX_COPIED else ():
+        for name in list(obj.fields):
+            inner = ctx.store.get((obj, name))
+            if inner is not None and any(o.kind in INNER for o in inner.pts):
+                ctx.store.put((obj, name), deep_copy(ctx, inner, frame, (slot, name), depth + 1))
+    return made
 
-    def _new_mapping(self, it: Invocation) -> Value:
-        plain, named = it.arguments
-        factory = plain[0] if it.name == "defaultdict" and plain else None
-        given = plain[1:] if it.name == "defaultdict" else plain
-        obj = self.allocate("mapping", it.frame, ("display", it.call.slot))
-        for value in given:
-            if it.name == "Counter":
-                self.weaken(obj, KEYS, Value(self.use(value)))
-                self.add_element(pointer(obj), Value(self.use(value)))
-            elif value.pts:
-                self.entries(obj, value)
-        for key, value in named.items():
-            self.store.put((obj, item_field(key)), value)
-        if factory is not None:
-            obj.info = factory
-        return pointer(obj)
 
-    def entries(self, obj: Obj, value: Value) -> None:
-        """Take over the entries of a mapping, or of a sequence of pairs."""
-        for source in value.pts:
-            if source.kind != "sequence":
-                self.absorb(obj, Value(value.deps, frozenset([source])))
-                continue
-            known = [self.unpacked(p) or [] for p in self.unpacked(pointer(source)) or ()]
-            if known and all(len(pair) == 2 for pair in known):
-                for key, item in known:
-                    self.write_item(pointer(obj), key, Value(item.deps | value.deps, item.pts, item.consts))
-                continue
-            pair = self.elements(Value(value.deps, frozenset([source])))
-            keys = self.use(self.read_item(pair, const(0)))
-            if keys:
-                self.weaken(obj, KEYS, Value(keys))
-            self.add_element(pointer(obj), self.read_item(pair, const(1)))
-            self.lengthen(obj, Value(value.deps, frozenset([source])))
+# --- mappings -----------------------------------------------------------------------------------------
 
-    def from_keys(self, it: Invocation) -> Value:
-        """Return what `dict.fromkeys(keys, value)` makes."""
-        plain = it.arguments[0]
-        obj = self.allocate("mapping", it.frame, ("display", it.call.slot))
-        known = self.unpacked(plain[0]) if plain else None
-        value = plain[1] if len(plain) > 1 else const(None)
-        for key in known or ():
-            self.write_item(pointer(obj), key, value)
-        if known is None:
-            keys = self.use(self.elements(plain[0])) if plain else frozenset()
-            self.weaken(obj, KEYS, Value(keys)) if keys else None
-            self.add_element(pointer(obj), value)
-        return pointer(obj)
 
-    def missing(self, mapping: Obj, name: str) -> Value:
-        """Return what a mapping with a default makes for a key that it does not have."""
-        factory = mapping.info
-        if not isinstance(factory, Value):
-            return BOTTOM
-        result = BOTTOM
-        for maker in factory.pts:
-            kind = MADE_BY.get(maker.name.rpartition(".")[2]) if maker.kind == "ext" else None
-            if kind is not None:
-                result = join(result, pointer(self.intern(kind, (mapping.key, "missing", name))))
-            elif maker.kind in CALLABLE and self.stack:
-                result = join(result, self.call_object(maker, ([], {}), self.stack[-1], _MISSING))
-        if result.pts:
-            self.store.put((mapping, name), result)
-        return result
+def new_mapping(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a new mapping with what its arguments hold."""
+    plain, named = it.arguments
+    factory = plain[0] if it.name == "defaultdict" and plain else None
+    given = plain[1:] if it.name == "defaultdict" else plain
+    obj = allocation.allocate(ctx, "mapping", it.frame, ("display", it.call.slot))
+    for value in given:
+        if it.name == "Counter":
+            storing.weaken(ctx, obj, KEYS, Value(ctx.use(value)))
+            storing.add_element(ctx, pointer(obj), Value(ctx.use(value)))
+        elif value.pts:
+            entries(ctx, obj, value)
+    for key, value in named.items():
+        ctx.store.put((obj, item_field(key)), value)
+    if factory is not None:
+        obj.info = factory
+    return pointer(obj)
+
+
+def entries(ctx: Interpreter, obj: Obj, value: Value) -> None:
+    """Take over the entries of a mapping, or of a sequence of pairs."""
+    for source in value.pts:
+        if source.kind != "sequence":
+            combining.absorb(ctx, obj, Value(value.deps, frozenset([source])))
+            continue
+        known = [combining.unpacked(ctx, p) or [] for p in combining.unpacked(ctx, pointer(source)) or ()]
+        if known and all(len(pair) == 2 for pair in known):
+            for key, item in known:
+                storing.write_item(
+                    ctx, pointer(obj), key, Value(item.deps | value.deps, item.pts, item.consts)
+                )
+            continue
+        pair = heap.elements(ctx, Value(value.deps, frozenset([source])))
+        keys = ctx.use(evaluate.read_item(ctx, pair, const(0)))
+        if keys:
+            storing.weaken(ctx, obj, KEYS, Value(keys))
+        storing.add_element(ctx, pointer(obj), evaluate.read_item(ctx, pair, const(1)))
+        combining.lengthen(ctx, obj, Value(value.deps, frozenset([source])))
+
+
+def from_keys(ctx: Interpreter, it: Invocation) -> Value:
+    """Return what `dict.fromkeys(keys, value)` makes."""
+    plain = it.arguments[0]
+    obj = allocation.allocate(ctx, "mapping", it.frame, ("display", it.call.slot))
+    known = combining.unpacked(ctx, plain[0]) if plain else None
+    value = plain[1] if len(plain) > 1 else const(None)
+    for key in known or ():
+        storing.write_item(ctx, pointer(obj), key, value)
+    if known is None:
+        keys = ctx.use(heap.elements(ctx, plain[0])) if plain else frozenset()
+        storing.weaken(ctx, obj, KEYS, Value(keys)) if keys else None
+        storing.add_element(ctx, pointer(obj), value)
+    return pointer(obj)
+
+
+def missing(ctx: Interpreter, mapping: Obj, name: str) -> Value:
+    """Return what a mapping with a default makes for a key that it does not have."""
+    factory = mapping.info
+    if not isinstance(factory, Value):
+        return BOTTOM
+    result = BOTTOM
+    for maker in factory.pts:
+        kind = MADE_BY.get(maker.name.rpartition(".")[2]) if maker.kind == "ext" else None
+        if kind is not None:
+            result = join(result, pointer(allocation.intern(ctx, kind, (mapping.key, "missing", name))))
+        elif maker.kind in CALLABLE and ctx.stack:
+            result = join(result, calls.call_object(ctx, maker, ([], {}), ctx.stack[-1], _MISSING))
+    if result.pts:
+        ctx.store.put((mapping, name), result)
+    return result
 
 
 _MISSING: Final = ir.Call(ir.Const(None, (0, 0, 0, 0)), (), (), (0, 0, 0, 0), -1)
@@ -287,7 +322,7 @@ def _named_tuple(cls: object) -> bool:
 
 
 RECORDS: Final = {
-    "copy": Records._read_copy,
-    "_replace": Records._replaced,
-    "_asdict": Records._as_mapping,
+    "copy": _read_copy,
+    "_replace": replaced_record,
+    "_asdict": as_mapping,
 }

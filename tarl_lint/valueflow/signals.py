@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-from tarl_lint.valueflow import ir
+from tarl_lint.valueflow import calls, ir
 from tarl_lint.valueflow.activations import CALLABLE
 from tarl_lint.valueflow.frames import Frame
+from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.invocation import Arguments
-from tarl_lint.valueflow.states import States
 from tarl_lint.valueflow.values import BOTTOM, Value, join
 
 CONNECTED = "<connected>"  # the field of a signal that holds what is connected to it
 
 
-class Signals(States):
-    """Calls the methods of signals."""
-
-    def signal(self, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-        """Remember what is connected to an object of a library, call it where the object emits."""
-        signals = [o for o in base.pts if o.kind == "lib"]
-        if name == "connect":
-            slots = frozenset(o for v in arguments[0][:1] for o in v.pts if o.kind in CALLABLE)
-            for obj in signals if slots else ():
-                before = self.store.get((obj, CONNECTED)) or BOTTOM
-                self.store.put((obj, CONNECTED), join(before, Value(pts=slots)))
-        elif name == "emit":
-            held = [v for o in signals if (v := self.store.get((o, CONNECTED))) is not None]
-            slots = frozenset(o for v in held for o in v.pts)
-            if slots:
-                self.call_value(Value(pts=slots), arguments, frame, call)
+def signal(
+    ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
+) -> None:
+    """Remember what is connected to an object of a library, call it where the object emits."""
+    signals = [o for o in base.pts if o.kind == "lib"]
+    if name == "connect":
+        slots = frozenset(o for v in arguments[0][:1] for o in v.pts if o.kind in CALLABLE)
+        for obj in signals if slots else ():
+            before = ctx.store.get((obj, CONNECTED)) or BOTTOM
+            ctx.store.put((obj, CONNECTED), join(before, Value(pts=slots)))
+    elif name == "emit":
+        held = [v for o in signals if (v := ctx.store.get((o, CONNECTED))) is not None]
+        slots = frozenset(o for v in held for o in v.pts)
+        if slots:
+            calls.call_value(ctx, Value(pts=slots), arguments, frame, call)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from tarl_lint.valueflow import ir
+from tarl_lint.valueflow import heap, ir
 from tarl_lint.valueflow.frames import Frame
-from tarl_lint.valueflow.joining import Joining
+from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.values import BOTTOM, Obj, Value, join, lineage
 
 METHOD_OF: Final[Mapping[str, str]] = {
@@ -21,54 +21,53 @@ FUNCTIONS: Final = frozenset(
 )  # those that ask their first argument for a special method of the same name
 
 
-class Special(Joining):
-    """Calls special methods."""
-
-    def special(
-        self, value: Value, name: str, given: Sequence[Value], frame: Frame, pos: ir.Pos
-    ) -> Value | None:
-        """Return what a special method gives, None unless everything that a value may be has it."""
-        methods: list[Value] = []
-        for obj in value.pts:
-            method = self._special_method(obj, name) if obj.kind == "instance" else None
-            if method is None:
-                return None
-            methods.append(method)
-        result = BOTTOM
-        for method in methods:
-            result = join(result, method)
-        if not methods:
+def special(
+    ctx: Interpreter, value: Value, name: str, given: Sequence[Value], frame: Frame, pos: ir.Pos
+) -> Value | None:
+    """Return what a special method gives, None unless everything that a value may be has it."""
+    methods: list[Value] = []
+    for obj in value.pts:
+        method = _special_method(ctx, obj, name) if obj.kind == "instance" else None
+        if method is None:
             return None
-        call = ir.Call(ir.Const(None, pos), (), (), pos, _slot(name, pos))
-        made = self.call_value(result, (list(given), {}), frame, call)
-        return Value(made.deps | value.deps, made.pts, made.consts)
-
-    def _special_method(self, obj: Obj, name: str) -> Value | None:
-        for owner in lineage(obj.info) if isinstance(obj.info, Obj) else ():
-            method = self.store.get((owner, name))
-            if method is not None:
-                return self.bind(method, obj, owner) if method.pts else None
+        methods.append(method)
+    result = BOTTOM
+    for method in methods:
+        result = join(result, method)
+    if not methods:
         return None
+    call = ir.Call(ir.Const(None, pos), (), (), pos, _slot(name, pos))
+    made = ctx.ops.call_value(ctx, result, (list(given), {}), frame, call)
+    return Value(made.deps | value.deps, made.pts, made.consts)
 
-    def operated(self, expr: ir.Operation, values: Sequence[Value], frame: Frame) -> Value | None:
-        """Return what an operator gives when one side is an object of ours that says so."""
-        if len(values) > 2 or not any(o.kind == "instance" for v in values for o in v.pts):
-            return None
-        operator = expr.operator
-        name = METHOD_OF.get(operator.removesuffix("=") if operator not in METHOD_OF else operator)
-        if name is None:
-            return None
-        first, rest = values[0], list(values[1:])
-        if name == "contains":
-            return self.special(rest[0], "__contains__", [first], frame, expr.pos)
-        made = None
-        if operator not in METHOD_OF:
-            made = self.special(first, f"__i{name}__", rest, frame, expr.pos)
-        if made is None:
-            made = self.special(first, f"__{name}__", rest, frame, expr.pos)
-        if made is None and rest:
-            made = self.special(rest[0], f"__r{name}__", [first], frame, expr.pos)
-        return made
+
+def _special_method(ctx: Interpreter, obj: Obj, name: str) -> Value | None:
+    for owner in lineage(obj.info) if isinstance(obj.info, Obj) else ():
+        method = ctx.store.get((owner, name))
+        if method is not None:
+            return heap.bind(ctx, method, obj, owner) if method.pts else None
+    return None
+
+
+def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], frame: Frame) -> Value | None:
+    """Return what an operator gives when one side is an object of ours that says so."""
+    if len(values) > 2 or not any(o.kind == "instance" for v in values for o in v.pts):
+        return None
+    operator = expr.operator
+    name = METHOD_OF.get(operator.removesuffix("=") if operator not in METHOD_OF else operator)
+    if name is None:
+        return None
+    first, rest = values[0], list(values[1:])
+    if name == "contains":
+        return special(ctx, rest[0], "__contains__", [first], frame, expr.pos)
+    made = None
+    if operator not in METHOD_OF:
+        made = special(ctx, first, f"__i{name}__", rest, frame, expr.pos)
+    if made is None:
+        made = special(ctx, first, f"__{name}__", rest, frame, expr.pos)
+    if made is None and rest:
+        made = special(ctx, rest[0], f"__r{name}__", [first], frame, expr.pos)
+    return made
 
 
 def _slot(name: str, pos: ir.Pos) -> int:

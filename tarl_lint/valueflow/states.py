@@ -2,40 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from tarl_lint.valueflow.attributes import Attributes
+from tarl_lint.valueflow import allocation, userdata
 from tarl_lint.valueflow.contents import in_order
+from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.invocation import Invocation
-from tarl_lint.valueflow.values import UNKNOWN, Obj, Value, pointer
+from tarl_lint.valueflow.values import UNKNOWN, Value, pointer
 
 LATER = frozenset(["closure", "bound", "partial"])  # what a library can call of what it is given
 
 
-class States(Attributes):
-    """Calls what makes and adds states."""
+def add_state(ctx: Interpreter, it: Invocation) -> Value:
+    """Add a state to a machine: `remapping` says what its names for shared fields stand for."""
+    plain, named = it.arguments
+    states = plain[1] if len(plain) > 1 else named.get("state", UNKNOWN)
+    remapping = plain[3] if len(plain) > 3 else named.get("remapping", UNKNOWN)
+    for table in in_order(remapping.pts):
+        held = ((n, ctx.store.get((table, n))) for n in list(table.fields) if n.startswith("['"))
+        pairs = [(n[2:-2], v.texts()[0]) for n, v in held if v is not None and v.texts()]
+        for state in states.pts:
+            userdata.rename(ctx, state, pairs)
+    return UNKNOWN
 
-    def add_state(self, it: Invocation) -> Value:
-        """Add a state to a machine: `remapping` says what its names for shared fields stand for."""
-        plain, named = it.arguments
-        states = plain[1] if len(plain) > 1 else named.get("state", UNKNOWN)
-        remapping = plain[3] if len(plain) > 3 else named.get("remapping", UNKNOWN)
-        for table in in_order(remapping.pts):
-            held = ((n, self.store.get((table, n))) for n in list(table.fields) if n.startswith("['"))
-            pairs = [(n[2:-2], v.texts()[0]) for n, v in held if v is not None and v.texts()]
-            for state in states.pts:
-                self.rename(state, pairs)
-        return UNKNOWN
 
-    def state_by_callbacks(self, it: Invocation) -> Value:
-        """Make a state of functions, which are handed what the states share."""
-        state = self.allocate("lib", it.frame, ("made", it.call.slot))
-        for value in (*it.arguments[0], *it.arguments[1].values()):
-            for target in in_order(value.pts):
-                if target.kind in LATER:
-                    self.call_later(target, [self.userdata(state)])
-        return pointer(state)
-
-    def call_later(self, target: Obj, values: Sequence[Value]) -> None:
-        """Have a function run on its own; of other arguments than these nothing is known."""
-        raise NotImplementedError
+def state_by_callbacks(ctx: Interpreter, it: Invocation) -> Value:
+    """Make a state of functions, which are handed what the states share."""
+    state = allocation.allocate(ctx, "lib", it.frame, ("made", it.call.slot))
+    for value in (*it.arguments[0], *it.arguments[1].values()):
+        for target in in_order(value.pts):
+            if target.kind in LATER:
+                ctx.ops.call_later(ctx, target, [userdata.userdata(ctx, state)])
+    return pointer(state)

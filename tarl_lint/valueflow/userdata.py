@@ -4,33 +4,33 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from tarl_lint.valueflow.allocation import Allocation
+from tarl_lint.valueflow import allocation
+from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.values import Obj, Value, pointer
 
 VIEW = "view"  # the kind of what a state is handed: the shared fields under names of its own
 MACHINE_FIELD = "userdata"  # the attribute of a state machine that holds the shared fields
 
 
-class Userdata(Allocation):
-    """Keeps what states hand on to each other."""
+def userdata(ctx: Interpreter, state: Obj | None = None) -> Value:
+    """Return the userdata as a state sees it, without one as the machine does."""
+    if state is None:
+        return pointer(allocation.intern(ctx, "record", MACHINE_FIELD, MACHINE_FIELD))
+    view = allocation.intern(ctx, VIEW, (MACHINE_FIELD, state))
+    if view.info is None:
+        view.info = {}
+    return pointer(view)
 
-    def userdata(self, state: Obj | None = None) -> Value:
-        """Return the userdata as a state sees it, without one as the machine does."""
-        if state is None:
-            return pointer(self.intern("record", MACHINE_FIELD, MACHINE_FIELD))
-        view = self.intern(VIEW, (MACHINE_FIELD, state))
-        if view.info is None:
-            view.info = {}
-        return pointer(view)
 
-    def rename(self, state: Obj, names: Iterable[tuple[str, str]]) -> None:
-        """Remember what a state's own names stand for."""
-        for view in self.userdata(state).pts:
-            if isinstance(view.info, dict):
-                view.info.update(names)
+def rename(ctx: Interpreter, state: Obj, names: Iterable[tuple[str, str]]) -> None:
+    """Remember what a state's own names stand for."""
+    for view in userdata(ctx, state).pts:
+        if isinstance(view.info, dict):
+            view.info.update(names)
 
-    def seen_through(self, view: Obj, name: str) -> tuple[Obj, str]:
-        """Return the shared object and the name there of a field that a state sees."""
-        names = view.info if isinstance(view.info, dict) else {}
-        shared = next(iter(self.userdata().pts))
-        return shared, str(names.get(name, name))
+
+def seen_through(ctx: Interpreter, view: Obj, name: str) -> tuple[Obj, str]:
+    """Return the shared object and the name there of a field that a state sees."""
+    names = view.info if isinstance(view.info, dict) else {}
+    shared = next(iter(userdata(ctx).pts))
+    return shared, str(names.get(name, name))

@@ -1,4 +1,8 @@
-"""The abstract machine: what its parts share. The parts call each other through the methods declared here."""
+"""The state of the abstract interpretation, which every part of it works on.
+
+The parts are modules of functions that take the interpreter as `ctx`. They call functions of lower parts directly, and
+those of higher ones through `ctx.ops` (`operations.py` declares them, `wiring.py` says which they are).
+"""
 
 from __future__ import annotations
 
@@ -13,27 +17,30 @@ from tarl_lint.valueflow.control import Branch, Control, control_dependence
 from tarl_lint.valueflow.ends import SinkRecord, SourceRecord
 from tarl_lint.valueflow.frames import Frame
 from tarl_lint.valueflow.graph import MAX_EDGES, Graph, Place
-from tarl_lint.valueflow.invocation import Arguments, Invocation
 from tarl_lint.valueflow.lower import lower_body
+from tarl_lint.valueflow.operations import Operations
 from tarl_lint.valueflow.store import Root, Shared, Store
 from tarl_lint.valueflow.values import NONE, Branches, Key, Nodes, Obj, Value
 
 NONE_ONLY = frozenset([None])
 
 
-Probe = Callable[["Machine", Frame, ir.Stmt, ir.Expr, Value], None]
+Probe = Callable[["Interpreter", Frame, ir.Stmt, ir.Expr, Value], None]
 
 
-class Machine:
+class Interpreter:
     """State of the interpretation of a whole set of modules."""
 
-    def __init__(self, modules: Sequence[Module], config: Config) -> None:
+    def __init__(self, modules: Sequence[Module], config: Config, ops: Operations[Interpreter]) -> None:
+        self.ops = ops
         self.config = config
         self.thorough = True  # follow every value, not only what comes from a source
         self.modules = {m.path: m for m in modules}
         self.index = Index(modules)
         self.programs: dict[str, ir.Program] = {}
         self.module_objects: dict[str, Obj] = {}
+        self.by_path: dict[str, ir.Program] = {}
+        self.pending: dict[Root, None] = {}  # roots that are to run
         self.graph = Graph()
         self.shared = Shared()
         self.store = Store(self.shared, Root("none", "none"))
@@ -155,7 +162,7 @@ class Machine:
 
     def carry(self, value: Value, node: int) -> Value:
         """Return the value as passed on by a statement's node."""
-        content = self.deep(value.pts) if value.pts else NONE
+        content = self.ops.deep(self, value.pts) if value.pts else NONE
         if value.deps:
             self.graph.flow(self.settled(value), node)
         elif not content and not self.kept(node):
@@ -184,7 +191,7 @@ class Machine:
         """Return the nodes whose data is used when the whole value is."""
         if not value.pts:
             return self.settled(value)
-        content = self.deep(value.pts)
+        content = self.ops.deep(self, value.pts)
         if not content:
             return value.deps
         return value.deps | self.graph.through(content, value.deps)
@@ -215,97 +222,3 @@ class Machine:
                 message.release()
         for table in (self.objects, self.module_objects, self.frames, self.roots, self.sources):
             table.clear()
-
-    # --- what the parts provide --------------------------------------------------------------------------
-
-    def deep(self, objects: frozenset[Obj]) -> Nodes:
-        """Return all nodes whose data is inside objects."""
-        raise NotImplementedError
-
-    def evaluate(self, expr: ir.Expr, frame: Frame) -> Value:
-        """Return what an expression may be."""
-        raise NotImplementedError
-
-    def assign(self, target: ir.Expr, value: Value, frame: Frame) -> None:
-        """Store into a target."""
-        raise NotImplementedError
-
-    def call_value(self, function: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-        """Call whatever a value may be."""
-        raise NotImplementedError
-
-    def call_object(
-        self, target: Obj, arguments: Arguments, frame: Frame, call: ir.Call, carriers: Nodes = NONE
-    ) -> Value:
-        """Call one object."""
-        raise NotImplementedError
-
-    def call_method(
-        self, base: Value, target: Obj | None, name: str, arguments: Arguments, frame: Frame, call: ir.Call
-    ) -> Value:
-        """Call a method of an object that is not a class of ours."""
-        raise NotImplementedError
-
-    def call_library(self, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-        """Call a function or class of a library."""
-        raise NotImplementedError
-
-    def named_by_settings(self, target: Obj) -> str:
-        """Return the qualified name of a function of ours that the settings speak of, else ""."""
-        raise NotImplementedError
-
-    def run(self, frame: Frame) -> Value:
-        """Execute a frame's body and return its result."""
-        raise NotImplementedError
-
-    def run_class(self, statement: ir.Class, frame: Frame) -> None:
-        """Execute a class statement."""
-        raise NotImplementedError
-
-    def wait(self, frame: Frame) -> None:
-        """Let other roots run."""
-        raise NotImplementedError
-
-    def may_fail(self, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:
-        """Let what comes after a statement depend on whether a library can do with what it is given."""
-        raise NotImplementedError
-
-    def add_root(self, root: Root, run: Callable[[Root], None], *, news: bool = False) -> None:
-        """Have something run on its own."""
-        raise NotImplementedError
-
-    def assign_fallback(self, expr: ir.Expr, value: Value, frame: Frame) -> None:
-        """Add data to the variable that holds an object of which nothing is known."""
-        raise NotImplementedError
-
-    def holder(self, expr: ir.Name, frame: Frame) -> Obj:
-        """Return the object that holds a variable: an activation, a class being made, a module."""
-        raise NotImplementedError
-
-    def note_result(self, call: ir.Call, returned: list[Value], frame: Frame) -> None:
-        """Remember a call of a function that gives None beside other things."""
-        raise NotImplementedError
-
-    def note_passed(self, key: Key, source: ir.Expr, value: Value, frame: Frame) -> None:
-        """Remember where a value is held that is None only as long as nothing has come."""
-        raise NotImplementedError
-
-    def gate(self, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:
-        """Return the node of a decision which elements a new container gets."""
-        raise NotImplementedError
-
-    def truth(self, value: Value, frame: Frame, slot: Hashable) -> Nodes:
-        """Return the nodes that decide whether a value counts as true."""
-        raise NotImplementedError
-
-    def ros_call(self, it: Invocation) -> Value:
-        """Do what the catalog says about a call."""
-        raise NotImplementedError
-
-    def block(self, body: Sequence[ir.Stmt], frame: Frame) -> bool:
-        """Execute statements in order; tell whether execution can go on after them."""
-        raise NotImplementedError
-
-    def bind_target(self, target: ir.Expr, value: Value, frame: Frame, slot: str, source: ir.Expr) -> None:
-        """Let a value pass through the statement into a target, element by element."""
-        raise NotImplementedError
