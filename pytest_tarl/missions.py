@@ -224,6 +224,7 @@ class Mission:
                 self.fixture_path,
                 self._neighbours,
                 self.designation.drifts.get(self.drift or ""),
+                self.designation.total_range,
             )
             repaired = repair(order)
             comparison = repaired.comparison

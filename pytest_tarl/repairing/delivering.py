@@ -12,7 +12,7 @@ from statistics import fmean
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.files import write_atomically
-from pytest_tarl.model import Attempt, Comparison, Edit, Repair
+from pytest_tarl.model import Attempt, Comparison, Edit, Guarantee, Repair
 from pytest_tarl.patching import patch
 from pytest_tarl.patching.mutate import Mutation, guard_text
 from pytest_tarl.patching.reading import read
@@ -22,21 +22,29 @@ from pytest_tarl.repairing.accepting import Accepted, Refused
 from pytest_tarl.repairing.ledger import Tried
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
-from pytest_tarl.report import words
+from pytest_tarl.report import guarantees, words
 from pytest_tarl.searching.search import Candidate, effective_value
 from tarl_lint import __version__
 
 
 def delivered(
-    mutants: Mutants, accepted: Accepted, search: int, acceptance: int, history: tuple[Attempt, ...]
+    mutants: Mutants,
+    accepted: Accepted,
+    search: int,
+    acceptance: int,
+    history: tuple[Attempt, ...],
+    bounds: Mapping[str, Guarantee],
 ) -> Repair:
-    """Write the patch of an accepted repair; the counts are the episodes that it took to find it."""
+    """Write the patch of an accepted repair; the counts are the episodes that it took to find it.
+
+    `bounds` are what is stated of the repaired program, by world.
+    """
     order, candidate = mutants.order, accepted.candidate
     guard = _guard(order, candidate)
     changed = mutants.source(candidate)
     _verify(order, candidate, changed)
     originals = {path: path.read_bytes() for path in changed}
-    header = _evidence(order, accepted, guard, search, acceptance)
+    header = _evidence(order, accepted, guard, search, acceptance, bounds)
     diff = patch.unified_diff(originals, changed, order.root, header)
     place = _written(order, diff)
     return Repair(True, guard, _edits(candidate), patch.readable(diff), place, history=history)
@@ -114,7 +122,14 @@ def _edit(mutation: Mutation) -> Edit:
     return Edit(operand.span.path, operand.span.line, operand.code, value, operand.value is None)
 
 
-def _evidence(order: Order, accepted: Accepted, guard: str, search: int, acceptance: int) -> list[str]:
+def _evidence(
+    order: Order,
+    accepted: Accepted,
+    guard: str,
+    search: int,
+    acceptance: int,
+    bounds: Mapping[str, Guarantee],
+) -> list[str]:
     """Return what the patch's header tells: what changes, and why it was accepted."""
     totals = order.comparison.totals
     repaired = [outcome.total for outcome in accepted.acceptance.drifted]
@@ -130,6 +145,7 @@ def _evidence(order: Order, accepted: Accepted, guard: str, search: int, accepta
         f"drifted and repaired: {words.average(repaired)}, of seeds that nothing was chosen by",
         _designed_and_repaired(order, nominal),
         *(f"other test: {words.one_line(told)}" for told in accepted.beside.held),
+        *_stated(bounds),
         f"episodes spent: search {search}, acceptance {acceptance}",
         *_recorded(order),
         *([f"record: {words.recording(_in_root(order))}"] if order.permanent else []),
@@ -144,6 +160,14 @@ def _designed_and_repaired(order: Order, nominal: Sequence[float]) -> str:
     if nominal:
         return f"designed and repaired: {words.average(nominal)}, of seeds that nothing was chosen by"
     return "designed and repaired: as designed, since the condition never holds there"
+
+
+def _stated(bounds: Mapping[str, Guarantee]) -> list[str]:
+    """Return what is stated of the repaired program in either world, over the worlds that the test draws."""
+    names = {"repaired": "drifted and repaired", "nominal_repaired": "designed and repaired"}
+    return [
+        f"bounds, {names[world]}: {told}" for world, one in bounds.items() for told in guarantees.brief(one)
+    ]
 
 
 def _recorded(order: Order) -> list[str]:

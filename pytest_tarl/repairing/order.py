@@ -50,6 +50,8 @@ class Order:
     neighbours: Callable[[], Sequence[Neighbour]] = tuple  # asked for when a candidate has held otherwise
     world: Drift | None = None  # what the drift is
 
+    declared: tuple[float, float] | None = None  # the range of an episode's total
+
     @property
     def comparison(self) -> Comparison:
         """Return what the on-line run found."""

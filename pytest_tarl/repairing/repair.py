@@ -9,10 +9,11 @@ from time import monotonic
 
 from pytest_tarl.learning import localize
 from pytest_tarl.learning.judgements import with_worlds
-from pytest_tarl.model import Comparison, FormulaRow, Guard, OperandEffect, SearchTrace, SitePlace
+from pytest_tarl.model import Comparison, FormulaRow, Guarantee, Guard, OperandEffect, SearchTrace, SitePlace
 from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.accepting import Accepted, Examiner, Refused
 from pytest_tarl.repairing.delivering import attempts, delivered, withheld
+from pytest_tarl.repairing.guaranteeing import guaranteed
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.ranges import Ranged, bands_in_words, fits_a_part, repaired_sizes
@@ -128,11 +129,15 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
     chosen = accepted.candidate if accepted else examiner.refused.candidate
     totals = dict(order.comparison.totals)
     sizes = order.comparison.sizes
+    bounds: Mapping[str, Guarantee] = {}
+    spent = 0
     if accepted:
         sizes = repaired_sizes(order, examiner.ranged.get(accepted.candidate, Ranged()))
         totals["repaired"] = tuple(outcome.total for outcome in accepted.acceptance.drifted)
         nominal = tuple(outcome.total for outcome in accepted.acceptance.nominal)
         totals["nominal_repaired"] = nominal or totals["offline"]
+        with suppress(KeyboardInterrupt):  # what was accepted counts without them
+            bounds, spent = guaranteed(mutants, accepted)
     comparison = replace(
         order.comparison,
         formulas=_formulas(order, accepted),
@@ -146,13 +151,14 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         searches=found.curves,
         totals=totals,
         sizes=sizes,
-        repair=delivered(mutants, accepted, found.episodes, examiner.spent, history)
+        stated={**order.comparison.stated, **bounds},
+        repair=delivered(mutants, accepted, found.episodes, examiner.spent, history, bounds)
         if accepted
         else withheld(order, refused, history),
         notes=(*order.comparison.notes, *_notes(order, examiner, found, watch)),
         ranking=sureness(order, found.effects or {}, accepted, found.ranking),
     )
-    episodes = {"search": found.episodes, "acceptance": examiner.spent}
+    episodes = {"search": found.episodes, "acceptance": examiner.spent + spent}
     return Repaired(comparison, accepted, episodes, found.interrupted)
 
 
