@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from importlib import import_module
+from typing import Final, cast
 
 from tarl_lint.config import Config
 from tarl_lint.deep_stack import with_deep_stack
 from tarl_lint.evidence import Evidence
 from tarl_lint.memory import without_collection
-from tarl_lint.model import Cut, Finding, Flow
+from tarl_lint.model import RULES, Cut, Finding, Flow
 from tarl_lint.node_names import node_name
-from tarl_lint.onesided import one_sided
+from tarl_lint.onesided import Rule, one_sided
 from tarl_lint.relevance import groups, relevant
-from tarl_lint.rules import tarl101, tarl102, tarl103, tarl201, tarl202, tarl203, tarl204
+from tarl_lint.rules import tarl101, tarl102, tarl103
 from tarl_lint.source import Module
 from tarl_lint.taint import Tracer
 from tarl_lint.valueflow.link import Linker
 
-HAZARDS: Final = (tarl201, tarl202, tarl203, tarl204)
+HAZARDS: Final = tuple(
+    cast("Rule", import_module(f"tarl_lint.rules.{code.lower()}"))
+    for code in RULES
+    if code.startswith("TARL2")
+)
 
 
 def lint(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
@@ -33,7 +38,7 @@ def examine(
 
     Unless isolated, failures are raised. The rest is found all the same, as if what failed did nothing.
     """
-    if one_sided(modules, config):
+    if one_sided(modules, config, HAZARDS):
         return (), {}, ()
     failures: dict[str, Exception] | None = {} if isolate else None
     with without_collection():

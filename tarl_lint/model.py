@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, Literal
 
+from tarl_lint.rule_codes import rule_codes
+
 Dependence = Literal["data", "control", "context"]
 Kind = Literal["explicit", "implicit"]
 CODES: Final[Mapping[Kind, str]] = {"explicit": "TARL101", "implicit": "TARL102"}
 OFF_BY_DEFAULT: Final = frozenset({"TARL103"})  # wanted only where they are named in full
-RULES: Final = ("TARL001", *CODES.values(), "TARL103", "TARL201", "TARL202", "TARL203", "TARL204")
+RULES: Final = rule_codes()
 Role = Literal["register", "receive", "assign", "call", "return", "condition", "publish"]
 
 

@@ -18,8 +18,9 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tarl_lint.evidence import Evidence
-from tarl_lint.locking import Harm, Locking, Use, unguarded
+from tarl_lint.locking import MADE, Harm, Locking, Use, unguarded
 from tarl_lint.model import Finding
+from tarl_lint.onesided import Side
 
 CODE: Final = "TARL201"
 SUMMARY: Final = "state is shared between threads without the lock that guards it elsewhere"
@@ -134,6 +135,11 @@ VALID: Final = (
     rclpy.spin(Keeper())
     """,
 )
+
+
+def ruled_out(side: Side) -> bool:
+    """Tell whether nothing makes a lock."""
+    return not any(map(MADE.search, side.texts))
 
 
 def findings(evidence: Evidence) -> Iterator[Finding]:

@@ -20,6 +20,7 @@ from tarl_lint.catalog import on_topic
 from tarl_lint.evidence import Evidence
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding, Flow, Sink, Source, Span
+from tarl_lint.onesided import Side
 from tarl_lint.rules.wording import end
 from tarl_lint.unbounded import Magnitudes
 from tarl_lint.valueflow.ends import SinkRecord, SourceRecord
@@ -158,6 +159,11 @@ ASKED_FOR: Final = re.compile(
     r"|drive|control|ctrl|throttle|steer",
     re.I,
 )  # what somebody decided
+
+
+def ruled_out(side: Side) -> bool:  # noqa: ARG001 - one signature for all
+    """Tell that there is nothing: a command that follows a sensor is a flow."""
+    return True
 
 
 def findings(evidence: Evidence) -> Iterator[Finding]:

@@ -9,12 +9,13 @@ those that are written to do nothing: `lambda msg: None`, or a parameter whose n
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tarl_lint.evidence import Evidence
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
+from tarl_lint.onesided import Side
 from tarl_lint.rules.wording import end
 from tarl_lint.trees import walk
 from tarl_lint.valueflow.ends import SourceRecord
@@ -90,6 +91,22 @@ ACTIONS: Final = (
     ast.Raise, ast.Assert, ast.Await, ast.Yield, ast.YieldFrom, ast.Delete, ast.With, ast.AsyncWith,
     ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef,
 )  # fmt: skip
+
+
+def ruled_out(side: Side) -> bool:
+    """Tell whether nothing is subscribed to, or every function does something that tells it from an idle callback."""
+    return not side.hears or all(acting(f) for m in side.modules for f in _functions(m.tree.body))
+
+
+def _functions(body: Sequence[ast.stmt]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
+    """Yield the functions with parameters among statements, at any depth."""
+    for statement in body:
+        if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef)) and statement.args.args:
+            yield statement
+        for name in ("body", "orelse", "finalbody"):
+            yield from _functions(getattr(statement, name, ()))
+        for part in (*getattr(statement, "handlers", ()), *getattr(statement, "cases", ())):
+            yield from _functions(part.body)
 
 
 def findings(evidence: Evidence) -> Iterator[Finding]:

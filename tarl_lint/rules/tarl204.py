@@ -7,15 +7,22 @@ and it is not handed to anyone who could. Usually a line was lost, or the publis
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from typing import Final
 
+from tarl_lint import catalog
 from tarl_lint.evidence import Evidence, Read
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding
+from tarl_lint.onesided import Side
+from tarl_lint.source import Module
 from tarl_lint.trees import walk
 from tarl_lint.valueflow.ends import Publisher
 from tarl_lint.valueflow.ir import Pos
+
+FACTS: Final = {**catalog.FUNCTIONS, **catalog.METHODS}
+MAKERS: Final = frozenset(n.rpartition(".")[2] for n, f in FACTS.items() if f.kind == "publisher")
 
 CODE: Final = "TARL204"
 SUMMARY: Final = "a publisher never publishes"
@@ -66,6 +73,33 @@ HARMLESS: Final = frozenset(
      "resolved_name", "assert_liveliness", "wait_for_all_acked"]
 )  # fmt: skip
 SCOPES: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
+
+
+def ruled_out(side: Side) -> bool:
+    """Tell whether every publisher is used, as far as the syntax tells."""
+    return all(map(_all_publish, side.modules, side.texts))
+
+
+def _all_publish(module: Module, text: str) -> bool:
+    """Tell whether every publisher is kept under a name of its own, on which something is published."""
+    if not any(maker in text for maker in MAKERS):
+        return True
+    mentioned, names = 0, list[str]()
+    for node in walk(module.tree):
+        if isinstance(node, (ast.Name, ast.Attribute)) and _last(node) in MAKERS:
+            mentioned += 1
+        elif isinstance(node, ast.ImportFrom) and any(a.name in MAKERS and a.asname for a in node.names):
+            return False
+        elif isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
+            made = _last(node.value.func) in MAKERS
+            names += [_last(target) for target in node.targets if made]
+    apart = mentioned == len(names) == len(set(names))
+    return apart and all(n and re.search(rf"\b{n}\s*\.\s*publish\b", text) for n in names)
+
+
+def _last(expr: ast.expr) -> str:
+    """Return the last part of a dotted name."""
+    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""
 
 
 def findings(evidence: Evidence) -> Iterator[Finding]:

@@ -1,8 +1,12 @@
+import shutil
+import subprocess
+import sys
 from pathlib import Path
 from textwrap import dedent
 
 import pytest
 
+import tarl_lint
 from tarl_lint.config import Config
 from tarl_lint.deep_stack import with_deep_stack
 from tarl_lint.engine import HAZARDS, findings, hazards
@@ -44,7 +48,7 @@ def module(text, name="node"):
 
 
 def skipped(*texts, **settings):
-    return one_sided([module(text, f"node{n}") for n, text in enumerate(texts)], Config(**settings))
+    return one_sided([module(text, f"node{n}") for n, text in enumerate(texts)], Config(**settings), HAZARDS)
 
 
 def found(modules):
@@ -100,3 +104,54 @@ def test_hazards_that_nobody_wants_need_nothing_to_be_run():
 
 def test_functions_of_the_settings_may_hear_or_say_anything():
     assert not skipped(TALKER, sources=("bus.listen",))
+
+
+NEW_RULE = '''
+"""TARL299: a callback logs nothing."""
+from collections.abc import Iterator
+from tarl_lint.evidence import Evidence
+from tarl_lint.model import Finding
+from tarl_lint.onesided import Side
+
+CODE = "TARL299"
+SUMMARY = "a source is subscribed to"
+INVALID = VALID = ("",)
+
+
+def findings(evidence: Evidence) -> Iterator[Finding]:
+    for record in evidence.machine.sources.values():
+        source = evidence.tracer.source(record)
+        yield evidence.finding(CODE, source.span, "heard", "heard")
+'''
+
+
+@pytest.mark.parametrize("rules_out", [True, False, None])
+@pytest.mark.parametrize("text", [LISTENER, TALKER])
+def test_a_new_rule_is_one_file_that_says_itself_what_it_rules_out(tmp_path, rules_out, text):
+    """Also on nodes that only hear or only talk; a rule that does not say it is asked about every node."""
+    package = tmp_path / "tarl_lint"
+    shutil.copytree(Path(tarl_lint.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
+    said = "" if rules_out is None else f"\n\ndef ruled_out(side: Side) -> bool:\n    return {rules_out}\n"
+    (package / "rules" / "tarl299.py").write_text(NEW_RULE.lstrip() + said)
+    (tmp_path / "node.py").write_text(dedent(text))
+    script = (
+        "import sys; sys.path.insert(0, sys.argv.pop()); from tarl_lint.cli import main; sys.exit(main())"
+    )
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            script,
+            "--no-cache",
+            "--select=TARL299",
+            "--format=concise",
+            "node.py",
+            tmp_path,
+        ],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert not done.stderr
+    assert ("TARL299 heard" in done.stdout) == (text == LISTENER and not rules_out)
