@@ -19,6 +19,7 @@ from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.observing.frames import HEAD, MAGIC, Record, next_record
 from pytest_tarl.sensors import Cell
 
+LATEST = 1e11  # seconds since 1970: no clock of a robot is further
 _DECODED = json.JSONDecoder().raw_decode
 
 
@@ -214,7 +215,8 @@ class LogReader:
         if kind == "start":
             refused = self.problem = self.expected.problem(record, self.path)
         if kind == "mission":
-            self._begun = float(record["time"]), []
+            time = float(record["time"])
+            self._begun = (time if 0.0 <= time < LATEST else 0.0), []
         last = before if kind == "mission" else self._latest
         offset, place, mark = at.offset, at.last, at.mark
         if last is not None and last[0] != place:

@@ -81,10 +81,9 @@ def scale(fixture: Fixture) -> tuple[Scale, Ints]:
     model = fitted(chain, count, tiled(sample.cells, fixture.sensors))
     model = Model(*(np.append(getattr(model, one.name), np.nan) for one in fields(Model)))
     bare = Scale(sample.cells, ~np.isnan(model.utility), model, np.empty((0, BINS - 1)))
-    values = _values(
-        bare, replace(sample, cells=(*sample.cells, ()))
-    )  # as wide as on-line ones, so summed alike
-    units = _units(sample, values)
+    wide = replace(sample, cells=(*sample.cells, ()))  # as on-line missions, so that sums are taken alike
+    values = _values(bare, wide)
+    units = _units(chain, int(fit.sum()), count)
     found = [
         edges(column[fit & ~np.isnan(column)], unit) for column, unit in zip(values.T, units, strict=True)
     ]
@@ -134,12 +133,11 @@ def _values(scale: Scale, sample: Sample) -> Floats:
     return np.concatenate([np.stack(whole, axis=1), cells], axis=1)
 
 
-def _units(sample: Sample, values: Floats) -> Floats:
+def _units(chain: Chain, episodes: int, cells: int) -> Floats:
     """Return the size of what each score was summed up from, shape (scores,): its rounding is relative to that."""
-    size = float(np.abs(sample.chain.reward).sum()) / max(1, sample.episodes)
-    step = float(np.abs(sample.chain.reward).sum()) / max(1.0, float(sample.chain.count.sum()))
-    whole = {"success": 1.0, "total": size, "residual": size, "unknown": 1.0, "steps": 1.0}
-    cells = values.shape[1] - len(WHOLE)
+    size = float(np.abs(chain.reward).sum())
+    mission, step = size / max(1, episodes), size / max(1, int(chain.count.sum()))
+    whole = {"success": 1.0, "total": mission, "residual": mission, "unknown": 1.0, "steps": 1.0}
     return np.array([*(whole[name] for name in WHOLE), *([step] * cells)])
 
 

@@ -100,6 +100,8 @@ def load(
 @contextmanager
 def locked(path: Path) -> Iterator[None]:
     """Keep a state to oneself. Raises MonitorError where another watch has it or its folder cannot be written."""
+    if path.is_dir():
+        raise MonitorError(f"The state {path} is a folder: name a file with --state.")
     lock = path.with_name(f".{path.name}.lock")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pytest_tarl.learning.tables import Ints
-from pytest_tarl.monitoring import e_bh, restarts
+from pytest_tarl.monitoring import e_bh, e_process, restarts
 from pytest_tarl.monitoring.monitor import Monitor
 from pytest_tarl.monitoring.scores import WHOLE
 from pytest_tarl.monitoring.stated import Bound
@@ -96,7 +96,7 @@ def status(monitor: Monitor) -> Status:
         passed=monitor.counts.passed,
         alpha=monitor.alpha,
         bounds=tuple(
-            (bound, _evidence(monitor, np.array([row])) if processes.age[row] else None)
+            (bound, _evidence(monitor, np.array([row])) if _testable(bound) else None)
             for row, bound in enumerate(monitor.bounds)
         ),
         world=world,
@@ -105,6 +105,10 @@ def status(monitor: Monitor) -> Status:
         new=tuple(sorted(cell for cell, count in monitor.new.items() if count >= FEWEST_NEW)),
         notes=tuple(_notes(monitor)),
     )
+
+
+def _testable(bound: Bound) -> bool:
+    return e_process.testable(float(bound.share(bound.least)))
 
 
 def _evidence(monitor: Monitor, rows: Ints) -> Evidence:
@@ -152,10 +156,6 @@ def _region(monitor: Monitor) -> tuple[Cell, ...]:
 
 def _notes(monitor: Monitor) -> list[str]:
     counts, notes = monitor.counts, []
-    for bound, row in zip(monitor.bounds, range(len(monitor.bounds)), strict=True):
-        if not monitor.processes.age[row] and counts.missions:
-            what = "pass" if bound.what == "success" else "earn more than the least"
-            notes.append(f"The fixture states no bound that missions could break: at least 0 % {what}.")
     if counts.without_steps:
         notes.append(f"{_missions(counts.without_steps)} without a step: only success was judged.")
     if counts.without_rewards:

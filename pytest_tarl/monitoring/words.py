@@ -38,7 +38,7 @@ def lines(watch: Watch, status: Status) -> Iterator[str]:
     if status.new:
         yield f"  new     {words.words(status.new)}: no off-line episode was there"
     yield f"  error   {promise(status)}"
-    for note in (*watch.problems, *status.notes):
+    for note in status.notes:
         yield f"  note    {note}"
 
 

@@ -83,6 +83,7 @@ def test_logs_of_other_worlds_are_named_and_the_others_counted(
         (["--alpha", "1.5"], "--alpha is a probability between 0 and 1"),
         (["--interval", "0"], "--interval is a number of seconds above 0"),
         (["--once", "--until-alarm"], "--once reads what is there and ends"),
+        (["--once", "--state", "."], "The state . is a folder: name a file with --state."),
         (["--once", "--json", "m.log"], "--json m.log would write over what is read"),
         (["--once", "--fixture", "none.npz"], "There is no utility fixture none.npz"),
         (["--once", "--state", "f.npz"], "The state f.npz is damaged or is none of `tarl watch`"),
@@ -189,6 +190,26 @@ def test_without_output_to_write_to_it_ends_quietly(root: Path) -> None:
         command, shell=True, cwd=root, capture_output=True, text=True, check=False, env={**os.environ}
     )
     assert "Traceback" not in done.stderr
+
+
+def test_before_the_first_mission_the_account_says_what_will_be_tested(
+    root: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log(root / "m.log", [])
+    assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 0
+    out = capsys.readouterr().out
+    assert "0 missions, 0 passed\n" in out
+    assert "evidence 0.5, alarm at 20" in out
+    assert "10 % with the 5 %" in out
+
+
+@pytest.mark.parametrize("time", [float("nan"), float("inf"), -1e300, 1e300, 0.0])
+def test_a_clock_that_is_wrong_ends_nothing(
+    root: Path, capsys: pytest.CaptureFixture[str], time: float
+) -> None:
+    log(root / "m.log", walks(20, 3, drift=1.0), first=time)
+    assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 1
+    assert "ALARM with mission" in capsys.readouterr().out
 
 
 def test_a_log_that_is_named_twice_is_refused(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
