@@ -12,10 +12,7 @@ import numpy as np
 
 from pytest_tarl.errors import LogError
 from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
-from pytest_tarl.formulas.judging import Judge as Judging
-from pytest_tarl.formulas.judging import Judged
-from pytest_tarl.formulas.parsing import Formula
-from pytest_tarl.formulas.signals import NANOSECONDS
+from pytest_tarl.formulas.lookback import Followed, LookedBack, judgeable, left_out, looked_back
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.instrumentation.trace import Floats, Trace
 from pytest_tarl.learning.fixture import Fixture
@@ -37,9 +34,7 @@ class Mission:
     passed: bool = True
     failure: str = ""
     ended: bool = False
-    changes: list[tuple[float, str, float]] = field(default_factory=list)  # of signals: seconds, name, value
-    times: list[float] = field(default_factory=list)  # when steps were closed
-    lasted: float | None = None  # seconds; None in a log without signals
+    followed: Followed = field(default_factory=Followed)
 
 
 def missions(path: Path, fixture: Fixture) -> list[Mission]:
@@ -55,12 +50,10 @@ def missions(path: Path, fixture: Fixture) -> list[Mission]:
             found.append(Mission(sites))
         elif kind == "steps" and found:
             found[-1].chunks.append(record)
-            found[-1].changes += map(tuple, record.get("changes", ()))
-            found[-1].times += record.get("times", ())
+            found[-1].followed.add(record)
         elif kind == "end" and found:
             found[-1].passed, found[-1].failure, found[-1].ended = record["passed"], record["failure"], True
-            found[-1].changes += map(tuple, record.get("changes", ()))
-            found[-1].lasted = record.get("lasted")
+            found[-1].followed.add(record)
     return found
 
 
@@ -73,7 +66,7 @@ class LoggedMissions:
         traces: Sequence[Trace],
         topics: Mapping[str, str],
         notes: tuple[str, ...],
-        judged: Sequence[_Judgement],
+        judged: Sequence[LookedBack],
     ) -> None:
         self._whole = whole
         self._traces = traces
@@ -116,67 +109,14 @@ def read_log(
             "Tell missions apart with --mission-topic or --idle, and look whether the reward arrives."
         )
     number = {place.id: n for n, place in enumerate(plan.places)}
-    known = _judgeable(whole, requirements)
-    judged = [_judged_by(one, known, requirements) for one in whole]
-    if requirements.rewarding:
-        _check_rewarding(path, known, requirements)
+    followed = [one.followed for one in whole]
+    known = judgeable(followed, requirements)
+    judged = [looked_back(one, known, requirements) for one in followed]
+    notes = (*_notes(everything, whole, path), *left_out(path.name, known, requirements))
     traces = [
         trace(one, number, fixture, judge, found.rewards) for one, found in zip(whole, judged, strict=True)
     ]
-    notes = (*_notes(everything, whole, path), *_left_out(path, known, requirements))
     return LoggedMissions(whole, traces, fixture.topics, notes, judged)
-
-
-@dataclass(frozen=True)
-class _Judgement:
-    """What formulas came to in a mission; `rewards` where the marker says that they give them."""
-
-    judged: tuple[Judged, ...] = ()
-    violation: str = ""
-    rewards: Sequence[float] | None = None
-
-
-def _judgeable(whole: Sequence[Mission], requirements: Requirements) -> tuple[Formula, ...]:
-    """Return the formulas whose signals every mission of the log holds."""
-    held = [{name for _, name, _ in one.changes} for one in whole if one.lasted]
-    common = set.intersection(*held) if len(held) == len(whole) else set()
-    return tuple(one for one in requirements.formulas if common.issuperset(one.signals))
-
-
-def _judged_by(mission: Mission, known: Sequence[Formula], requirements: Requirements) -> _Judgement:
-    """Judge a mission as an episode is, by the changes that the robot wrote down."""
-    if not known or not mission.lasted:
-        return _Judgement()
-    judging = Judging(requirements.names, known)
-    for time, name, value in mission.changes:
-        if name in requirements.names:
-            judging.give(name, value, round(time * NANOSECONDS))
-    end = max(round(mission.lasted * NANOSECONDS), 1)
-    judging.steps = [round(time * NANOSECONDS) for time in mission.times]
-    judged = judging.conclude(end)
-    rewards = judging.rewards(end, requirements.cap) if requirements.rewarding else None
-    return _Judgement(judged, judging.violation(judged), rewards)
-
-
-def _check_rewarding(path: Path, known: Sequence[Formula], requirements: Requirements) -> None:
-    missing = next((one for one in requirements.formulas if one not in known), None)
-    if missing is not None:
-        raise LogError(
-            f'{path} lacks signals of the formula {missing.text!r}, and reward="robustness" needs them all '
-            f"({', '.join(missing.signals)}): give them a topic in the marker, record and observe again."
-        )
-
-
-def _left_out(path: Path, known: Sequence[Formula], requirements: Requirements) -> tuple[str, ...]:
-    names = [repr(one.text) for one in requirements.formulas if one not in known]
-    if not names:
-        return ()
-    return (
-        (
-            f"{path.name} does not hold all signals of {', '.join(names)}: not judged there. Signals with a topic are "
-            "written down when the fixture was recorded with them."
-        ),
-    )
 
 
 def trace(

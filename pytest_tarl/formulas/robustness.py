@@ -93,7 +93,7 @@ def _hopeless(course: Course, now: int) -> bool:
 
 def _hopeful(node: Any, sign: int, known: Values, now: int, values: dict[int, Samples]) -> Any:
     """Return a copy of a tree whose atoms come to what is best for it after `now`."""
-    copy = _Copy.of(node)
+    copy = _copied(node)
     if not isinstance(node, CONNECTIVES):
         values[id(copy)] = [*known[id(node)], [now + 1, sign * FARTHEST]]
         return copy
@@ -106,14 +106,11 @@ def _hopeful(node: Any, sign: int, known: Values, now: int, values: dict[int, Sa
     return copy
 
 
-class _Copy:
-    """Copies of nodes; an atom that stands at two places gets a value at each."""
-
-    @staticmethod
-    def of(node: Any) -> Any:
-        copied = object.__new__(type(node))
-        copied.__dict__.update(node.__dict__)
-        return copied
+def _copied(node: Any) -> Any:
+    """Copy a node alone: an atom that stands at two places gets a value at each."""
+    copied = object.__new__(type(node))
+    copied.__dict__.update(node.__dict__)
+    return copied
 
 
 def _running(course: Course, node: Any, ends: Sequence[int]) -> list[float]:

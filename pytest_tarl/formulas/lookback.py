@@ -1,0 +1,82 @@
+"""The formulas of missions that are over: judged by the changes of signals that a robot wrote down."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from pytest_tarl.errors import LogError
+from pytest_tarl.formulas.declared import Requirements
+from pytest_tarl.formulas.judging import Judge, Judged
+from pytest_tarl.formulas.parsing import Formula
+from pytest_tarl.formulas.signals import NANOSECONDS
+
+
+@dataclass
+class Followed:
+    """The signals of one mission as its records are read; times in seconds since it began."""
+
+    changes: list[tuple[float, str, float]] = field(default_factory=list)  # when, which, what it became
+    times: list[float] = field(default_factory=list)  # when steps were closed
+    lasted: float | None = None  # None in a log that was written without signals
+
+    def add(self, record: Mapping[str, Any]) -> None:
+        """Take what a record holds of signals."""
+        self.changes += map(tuple, record.get("changes", ()))
+        self.times += record.get("times", ())
+        self.lasted = record.get("lasted", self.lasted)
+
+
+@dataclass(frozen=True)
+class LookedBack:
+    """What formulas came to in a mission; `rewards` where the marker says that they give them."""
+
+    judged: tuple[Judged, ...] = ()
+    violation: str = ""
+    rewards: Sequence[float] | None = None
+
+
+def judgeable(missions: Sequence[Followed], requirements: Requirements) -> tuple[Formula, ...]:
+    """Return the formulas whose signals every mission holds.
+
+    Raises LogError where the reward is by robustness and a formula is missing.
+    """
+    held = [{name for _, name, _ in one.changes} for one in missions if one.lasted]
+    common = set.intersection(*held) if held and len(held) == len(missions) else set()
+    known = tuple(one for one in requirements.formulas if common.issuperset(one.signals))
+    missing = next((one for one in requirements.formulas if one not in known), None)
+    if missing is not None and requirements.rewarding:
+        raise LogError(
+            f'The log lacks signals of the formula {missing.text!r}, and reward="robustness" needs them all '
+            f"({', '.join(missing.signals)}): give them a topic in the marker, record and observe again."
+        )
+    return known
+
+
+def looked_back(mission: Followed, known: Sequence[Formula], requirements: Requirements) -> LookedBack:
+    """Judge a mission as an episode is."""
+    if not known or not mission.lasted:
+        return LookedBack()
+    judge = Judge(requirements.names, known)
+    for time, name, value in mission.changes:
+        if name in requirements.names:
+            judge.give(name, value, round(time * NANOSECONDS))
+    end = max(round(mission.lasted * NANOSECONDS), 1)
+    judge.steps = [round(time * NANOSECONDS) for time in mission.times]
+    judged = judge.conclude(end)
+    rewards = judge.rewards(end, requirements.cap) if requirements.rewarding else None
+    return LookedBack(judged, judge.violation(judged), rewards)
+
+
+def left_out(log: str, known: Sequence[Formula], requirements: Requirements) -> tuple[str, ...]:
+    """Tell which formulas a log cannot tell of."""
+    names = [repr(one.text) for one in requirements.formulas if one not in known]
+    if not names:
+        return ()
+    return (
+        (
+            f"{log} does not hold all signals of {', '.join(names)}: not judged there. Signals with a topic are "
+            "written down when the fixture was recorded with them."
+        ),
+    )
