@@ -81,6 +81,7 @@ FLAGS = (
         metavar="WHERE",
         default="auto",
     ),
+    Flag("--tarl-constants", "with --tarl-repair: change constants only, never the structure of the code"),
     Flag(
         "--tarl-utility",
         "batch (default); sarsa, as in the paper; expected-sarsa or td-lambda",

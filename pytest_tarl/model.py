@@ -195,6 +195,7 @@ class Edit:
     code: str
     value: float
     factor: bool = False
+    what: str = ""  # what a change of structure does, in words
 
 
 @dataclass(frozen=True, slots=True)

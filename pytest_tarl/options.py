@@ -35,6 +35,7 @@ class Options:
     budget: int = 300  # episodes that a search may spend
     seconds: float | None = None  # that a search may take instead
     edit: str = "auto"  # where a repair of a named constant without a condition is written
+    structure: bool = True  # whether changes of structure are tried where no constant suffices
     strict: bool = False
     utility: str = "batch"
     workers: int = 1  # episodes at a time, each in a process of its own when more than one
@@ -79,6 +80,8 @@ class Options:
         plain = tuple(
             text for flag, (value, usual) in chosen.items() if value != usual for text in (flag, str(value))
         )
+        if not self.structure:
+            plain = (*plain, "--tarl-constants")
         return (*plain, *(text for bag in self.bags for text in ("--tarl-bag", _typed(bag))))
 
 
@@ -117,6 +120,7 @@ def options(given: Mapping[str, Any]) -> Options:
         budget=budget[0],
         seconds=budget[1],
         edit=given["edit"],
+        structure=not given["constants"],
         strict=given["strict"],
         utility=given["utility"],
         workers=_workers(given["workers"]),

@@ -18,8 +18,11 @@ from pytest_tarl.patching.expressions import counting, negated, number, rounded,
 from pytest_tarl.patching.fields import in_integer_field
 from pytest_tarl.patching.guards import Reading, always, condition, held
 from pytest_tarl.patching.statements import Change, branched, choices, doubled, lazy, neighbours, replaced
+from pytest_tarl.patching.structures import Form, form_edits
 from pytest_tarl.patching.subscriptions import Subscriptions
-from tarl_lint.model import Operand, SiteId
+from pytest_tarl.patching.templates import Template
+from pytest_tarl.sensors import Sensor
+from tarl_lint.model import Operand, SiteId, Span
 
 if TYPE_CHECKING:
     from tarl_lint.api import Analysis
@@ -37,6 +40,9 @@ class Mutation:
     operand: Operand
     value: float | int | bool
     place: Place | None = None
+    form: Form | None = (
+        None  # of a structural repair: then the operand is an expression, and the value a factor
+    )
 
 
 def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutation | None:
@@ -92,12 +98,17 @@ def rewrite(
     """
     conditions = Conditions(analysis, guard, topics)
     edits: dict[str, list[Edit]] = {}
-    here = [mutation for mutation in mutations if mutation.place is None]
+    here = [mutation for mutation in mutations if mutation.place is None and mutation.form is None]
     for source, statements in _by_file(analysis, here):
         edits[source.path] = list(_file_edits(source, statements, conditions))
     for path, places in _redefined(mutations).items():
         text = analysis.sources.get(path) or texts[path]
         edits.setdefault(path, []).extend(definition_edits(places, text))
+    for source, node, form, values, site in _formed(analysis, mutations):
+        statement = source.statement(node)
+        condition = conditions.at(source, site, statement)
+        sensor = conditions.value(form.sensor, source, site, statement) if form.sensor is not None else ""
+        edits.setdefault(source.path, []).extend(form_edits(source, node, form, values, condition, sensor))
     for path, added in conditions.subscriptions.edits().items():
         edits[path] = [*added, *edits.get(path, [])]
     return {
@@ -106,6 +117,33 @@ def rewrite(
         else apply_plain_edits(path, texts[path], edits[path])
         for path in sorted(edits)
     }
+
+
+def form_values(mutation: Mutation) -> dict[str, float]:
+    """Return the parameters of a structural mutation, the searched one as it is moved."""
+    if mutation.form is None:
+        return {}
+    values = dict(mutation.form.defaults)
+    if mutation.form.parameter:
+        values[mutation.form.parameter] = rounded(values[mutation.form.parameter] * float(mutation.value))
+    return values
+
+
+def _formed(
+    analysis: Analysis, mutations: Sequence[Mutation]
+) -> Iterator[tuple[Document, ast.expr, Form, dict[str, float], SiteId]]:
+    """Yield each form once, with the parameters that all mutations of it give it."""
+    found: dict[tuple[Span, Template], tuple[Mutation, dict[str, float]]] = {}
+    for mutation in mutations:
+        if mutation.form is not None:
+            key = (mutation.operand.span, mutation.form.template)
+            _, values = found.setdefault(key, (mutation, dict(mutation.form.defaults)))
+            moved = form_values(mutation)
+            values |= {name: moved[name] for name in moved if name == mutation.form.parameter}
+    for (span, _), (mutation, values) in found.items():
+        if mutation.form is not None:
+            source = _document(analysis, span.path)
+            yield source, source.find(span), mutation.form, values, mutation.operand.site
 
 
 def _redefined(mutations: Sequence[Mutation]) -> dict[str, dict[Place, float | int | bool]]:
@@ -122,6 +160,8 @@ def guard_text(
 ) -> str:
     """Return the guard as Python, as `rewrite` writes it at the first mutation; empty when it always holds."""
     conditions = Conditions(analysis, guard, topics)
+    for source, node, _, _, site in _formed(analysis, mutations[:1]):
+        return conditions.at(source, site, source.statement(node))
     for source, statements in _by_file(analysis, mutations[:1]):
         for statement, uses in statements:
             return conditions.at(source, uses[0].site, _place(source, statement, uses)(uses[0]))
@@ -150,6 +190,15 @@ class Conditions:
         wanted = [each for each in self._guard.conjuncts if not always(each)]
         readings = {each.sensor.name: self._reading(each, source, site, place) for each in wanted}
         return condition(self._guard, readings, self._topics)
+
+    def value(self, sensor: Sensor, source: Document, site: SiteId, place: ast.AST) -> str:
+        """Return a sensor's value as Python at a place, 0 before it is known. Raises RepairError."""
+        reading = self._reading(Conjunct(sensor, math.inf, math.inf), source, site, place)
+        if reading.absent and reading.absent != reading.code:
+            raise RepairError(
+                f"Sensor {sensor.name!r} cannot be asked for at {site.text!r} before its first message."
+            )
+        return f"({reading.code} or 0.0)" if reading.absent else reading.code
 
     def _reading(self, conjunct: Conjunct, source: Document, site: SiteId, place: ast.AST) -> Reading:
         sensor = conjunct.sensor

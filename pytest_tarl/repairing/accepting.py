@@ -62,6 +62,7 @@ class Examiner:
         ] = []  # they held on known seeds, and their operands have had their share
         self._bisected: set[tuple[frozenset[Operand], Guard]] = set()
         self.tested = 0
+        self.turns = 1  # searches, or kinds of change, that have had their tests
         self.spent = 0
         self.refused = Refused(None, "no operand helps")
         self.lost: tuple[str, ...] = ()  # what other tests lost under candidates
@@ -154,7 +155,8 @@ class Examiner:
         return None
 
     def _exhausted(self) -> bool:
-        return self.tested >= MOST or of_fresh_seeds(self.tried) >= SCREENED
+        most, screened = MOST * self.turns, SCREENED * self.turns
+        return self.tested >= most or of_fresh_seeds(self.tried) >= screened
 
     def _on_fresh_seeds(self, candidate: Candidate) -> Accepted | Tried:
         """Run the one test of a candidate."""

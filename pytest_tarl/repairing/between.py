@@ -35,11 +35,16 @@ class Between:
         self.steps += 1
         share = (self.weak + self.strong) / 2
         tried = (
-            self.mutate(mutation.operand, one**share)
+            self._moved(mutation, one**share)
             for mutation, one in zip(self.candidate.mutations, factors, strict=True)
         )
         moved = tuple(mutation for mutation in tried if mutation is not None)
         return replace(self.candidate, mutations=moved) if moved else None
+
+    def _moved(self, mutation: Mutation, by: float) -> Mutation | None:
+        if mutation.form is not None:
+            return replace(mutation, value=by)
+        return self.mutate(mutation.operand, by)
 
     def told(self, reason: Reason) -> bool:
         """Take what became of the last one; return whether it says on which side to go on."""

@@ -22,6 +22,7 @@ from pytest_tarl.repairing.accepting import Accepted, Refused
 from pytest_tarl.repairing.ledger import Tried
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.structural import form_words
 from pytest_tarl.report import guarantees, words
 from pytest_tarl.searching.search import Candidate, effective_value
 from tarl_lint import __version__
@@ -47,7 +48,7 @@ def delivered(
     header = _evidence(order, accepted, guard, search, acceptance, bounds)
     diff = patch.unified_diff(originals, changed, order.root, header)
     place = _written(order, diff)
-    return Repair(True, guard, _edits(candidate), patch.readable(diff), place, history=history)
+    return Repair(True, guard, _edits(order, candidate), patch.readable(diff), place, history=history)
 
 
 def _written(order: Order, diff: str) -> str:
@@ -71,6 +72,7 @@ def _verify(order: Order, candidate: Candidate, changed: Mapping[Path, str]) -> 
         if text is not None:
             here = [m.operand.span for m in candidate.mutations if m.place is None]
             spans = [span for span in here if span.path == shown]
+            spans += [m.form.partner for m in candidate.mutations if m.form and m.form.partner]
             lines = {line for span in spans for line in range(span.line, span.end_line + 1)}
             lines |= {m.place.line for m in candidate.mutations if m.place and m.place.path == shown}
             nothing_lost(shown, original, text, lines)
@@ -84,7 +86,7 @@ def withheld(order: Order, refused: Refused, history: tuple[Attempt, ...]) -> Re
     return Repair(
         False,
         _guard(order, candidate),
-        _edits(candidate),
+        _edits(order, candidate),
         reason=refused.reason,
         mean=refused.mean if refused.episodes else None,
         episodes=refused.episodes,
@@ -96,7 +98,7 @@ def attempts(order: Order, tried: Iterable[Tried]) -> tuple[Attempt, ...]:
     """Tell what became of the candidates that came near, in words."""
     return tuple(
         Attempt(
-            words.repair_words(Repair(False, _guard(order, one.candidate), _edits(one.candidate))),
+            words.repair_words(Repair(False, _guard(order, one.candidate), _edits(order, one.candidate))),
             one.reason,
             fmean(one.totals) if one.totals else nan,
             len(one.totals),
@@ -110,12 +112,17 @@ def _guard(order: Order, candidate: Candidate) -> str:
     return guard_text(candidate.guard, order.analysis, candidate.mutations, order.fixture.topics)
 
 
-def _edits(candidate: Candidate) -> tuple[Edit, ...]:
-    return tuple(_edit(mutation) for mutation in candidate.mutations)
+def _edits(order: Order, candidate: Candidate) -> tuple[Edit, ...]:
+    return tuple(_edit(order, mutation) for mutation in candidate.mutations)
 
 
-def _edit(mutation: Mutation) -> Edit:
+def _edit(order: Order, mutation: Mutation) -> Edit:
     operand = mutation.operand
+    if mutation.form is not None:
+        value = words.expected(effective_value(mutation))
+        return Edit(
+            operand.span.path, operand.span.line, operand.code, value, what=form_words(order, mutation)
+        )
     value = words.expected(effective_value(mutation))
     if mutation.place is not None:
         return Edit(mutation.place.path, mutation.place.line, mutation.place.name, value)
@@ -134,7 +141,7 @@ def _evidence(
     totals = order.comparison.totals
     repaired = [outcome.total for outcome in accepted.acceptance.drifted]
     nominal = [outcome.total for outcome in accepted.acceptance.nominal]
-    change = words.repair_words(Repair(True, guard, _edits(accepted.candidate)))
+    change = words.repair_words(Repair(True, guard, _edits(order, accepted.candidate)))
     return [
         f"{patch.TITLE}{__version__}: {words.one_line(change)}",
         f"test: {order.fixture.test}",

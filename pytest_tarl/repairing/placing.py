@@ -31,7 +31,7 @@ class Placing:
     def __call__(self, candidate: Candidate, trials: Trials) -> Candidate | None:
         """Return the candidate as it is to be written; None where it has no place that was asked for."""
         edit = self.order.options.edit
-        movable = [one for one in candidate.mutations if not one.operand.literal]
+        movable = [one for one in candidate.mutations if not one.operand.literal and one.form is None]
         if edit == "use" or candidate.guard.conjuncts or not movable:
             return candidate
         try:
@@ -52,7 +52,8 @@ class Placing:
         """Move what has a place in force; None where nothing has, or where the moved candidate does not hold."""
         mutations = []
         for mutation in candidate.mutations:
-            place = None if mutation.operand.literal else self._place(mutation, candidate, trials)
+            stays = mutation.operand.literal or mutation.form is not None
+            place = None if stays else self._place(mutation, candidate, trials)
             mutations.append(replace(mutation, place=place))
         values: dict[Place, object] = {}
         for mutation in mutations:
@@ -76,7 +77,7 @@ class Placing:
         return None
 
     def _left(self, mutations: Sequence[Mutation]) -> bool:
-        return any(one.place is None and not one.operand.literal for one in mutations)
+        return any(one.place is None and not one.operand.literal and one.form is None for one in mutations)
 
     def _place(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> Place | None:
         operand = mutation.operand

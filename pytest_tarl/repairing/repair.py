@@ -17,6 +17,7 @@ from pytest_tarl.repairing.guaranteeing import guaranteed
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.ranges import Ranged, bands_in_words, fits_a_part, repaired_sizes
+from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.repairing.sureness import sureness
 from pytest_tarl.repairing.unnamed import unnamed_modules
 from pytest_tarl.repairing.watching import Watch
@@ -50,6 +51,7 @@ class _Findings:
     interrupted: bool = False
     late: bool = False  # the time of a search was up
     ranking: Ranking | None = None  # where all sites were ranked
+    structure: int = 0  # episodes of the search that changes of structure took
 
 
 def repair(order: Order) -> Repaired:
@@ -77,6 +79,9 @@ def repair(order: Order) -> Repaired:
         found.episodes += trials.spent
         if found.interrupted:
             break
+    open_end = found.accepted is None and not found.interrupted and not found.late
+    if open_end and order.options.structure:
+        _restructure(mutants, examiner, found, watch, searched)
     if order.options.localize == "full" and not found.interrupted:
         _rank(mutants, found, searched[0], watch)
     return _concluded(mutants, examiner, found, watch)
@@ -99,6 +104,25 @@ def _trials(mutants: Mutants, method: str, watch: Watch, found: _Findings) -> Tr
 
     trials = Trials(run, order.options.budget, foresee=lambda wanted: mutants.foresee(wanted, order.drift))
     return trials
+
+
+def _restructure(
+    mutants: Mutants, examiner: Examiner, found: _Findings, watch: Watch, searched: Sequence[Guard]
+) -> None:
+    """Try changes of structure, since no constant suffices, with as many episodes again."""
+    trials = _trials(mutants, "structure", watch, found)
+    chief = tuple(dict.fromkeys((candidates.ALWAYS, searched[0])))
+    structures = Structures(mutants.order, chief, trials)
+    examiner.turns += 1
+    try:
+        found.accepted = examiner.first(structures.candidates(), trials)
+    except KeyboardInterrupt:
+        found.interrupted = True
+    if found.accepted is not None:
+        found.effects, found.method = structures.effects(), "structure"
+    found.curves += (SearchTrace("structure", tuple(trials.totals), tuple(trials.labels)),)
+    found.episodes += trials.spent
+    found.structure = trials.spent
 
 
 def _rank(mutants: Mutants, found: _Findings, guard: Guard, watch: Watch) -> None:
@@ -191,6 +215,11 @@ def _notes(order: Order, examiner: Examiner, found: _Findings, watch: Watch) -> 
     yield from (
         f"a candidate was dropped since another test loses: {told}" for told in dict.fromkeys(examiner.lost)
     )
+    if found.structure:
+        yield (
+            f"no single constant sufficed, so changes of structure were tried in {found.structure} of the search's "
+            f"{found.episodes} episodes"
+        )
     if found.late:
         yield (
             f"the search was cut after {order.options.seconds:g} s, in which it ran {found.episodes} episodes; the "

@@ -219,7 +219,7 @@ def paper_region_words(comparison: Comparison) -> str:
 
 def edit_words(edit: Edit) -> str:
     """Say what an edit does: a number is replaced, a named constant multiplied."""
-    return f"{edit.code} {'×' if edit.factor else '→'} {edit.value:g}"
+    return edit.what or f"{edit.code} {'×' if edit.factor else '→'} {edit.value:g}"
 
 
 def operand_words(operand: OperandEffect) -> str:
@@ -288,8 +288,9 @@ def ways_out(comparison: Comparison) -> str:
 
 def repeat(comparison: Comparison) -> str:
     """Return the command that repeats all that was done, searches included."""
-    methods = [search.method for search in comparison.searches if search.method != "ranking"]
-    full = ["--tarl-localize", "full"] if len(methods) < len(comparison.searches) else []
+    searches = [search.method for search in comparison.searches if search.method != "structure"]
+    methods = [method for method in searches if method != "ranking"]
+    full = ["--tarl-localize", "full"] if len(methods) < len(searches) else []
     chosen = (
         [flag for method in methods for flag in ("--tarl-search", method)] if methods != ["sweep"] else []
     )

@@ -11,7 +11,7 @@ from statistics import fmean
 from typing import Protocol
 
 from pytest_tarl.model import Guard, OperandEffect
-from pytest_tarl.patching.mutate import Mutation, redefinition
+from pytest_tarl.patching.mutate import Mutation, form_values, redefinition
 from pytest_tarl.searching.accept import Outcome, unforeseen
 from tarl_lint.model import Operand
 
@@ -192,6 +192,8 @@ def effective_value(mutation: Mutation) -> float:
     """Return the value that the use has under the mutation; of a constant known only at run time, the factor."""
     if mutation.place is not None:
         return float(redefinition(mutation))
+    if mutation.form is not None:
+        return form_values(mutation).get(mutation.form.parameter, 1.0)
     constant, value = mutation.operand.value, float(mutation.value)
     if mutation.operand.literal or constant is None or isinstance(constant, bool):
         return value

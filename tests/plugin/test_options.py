@@ -17,6 +17,8 @@ FLAGS: dict[str, Any] = {
     "online": True,
     "repair": False,
     "drift": None,
+    "edit": "auto",
+    "constants": False,
     "seed": 0,
     "episodes": None,
     "alpha": 0.05,

@@ -1,0 +1,227 @@
+"""A template where it is applied: around which expression, with which state, as edits of the source."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.document import Document, Edit, Function, Loop
+from pytest_tarl.patching.expressions import choice, fitted, number
+from pytest_tarl.patching.templates import Template, filled, plainly
+from pytest_tarl.patching.vocabulary import class_attributes, free, names
+from pytest_tarl.sensors import Sensor
+from tarl_lint.model import Span
+
+_OPS: dict[type[ast.cmpop], str] = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">="}
+_CLOSED = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """A template at an expression: the parameter that is searched, what all of them begin with, and what it needs."""
+
+    template: Template
+    parameter: str = ""
+    defaults: tuple[tuple[str, float], ...] = ()
+    partner: Span | None = None  # the other expression of a pair
+    sensor: Sensor | None = None
+
+
+@dataclass(frozen=True)
+class Keeper:
+    """Where a node keeps what must survive until the next call: how names are written, and the edits that add them."""
+
+    prefix: str
+    place: int
+    indent: str
+    behind: str = ""  # what follows the new lines
+    declare: int | None = None  # where a function declares globals
+    declare_indent: str = ""
+
+
+def described(form: Form, x: str, y: str, values: Mapping[str, float], sensor: str = "") -> str:
+    """Say what a form does."""
+    texts = {name: number(float(value)) for name, value in values.items()}
+    left, op, right = _compared(x)
+    named = {"left": left, "op": op, "right": right, "closed": _CLOSED.get(op, "")}
+    return plainly(form.template.summary, {"x": x, "y": y, "sensor": sensor, **named, **texts})
+
+
+def form_edits(
+    source: Document, node: ast.expr, form: Form, values: Mapping[str, float], condition: str, sensor: str
+) -> list[Edit]:
+    """Return the edits that write a form at an expression. Raises RepairError where it cannot be written there."""
+    made = form.template
+    statement = source.statement(node)
+    fill = {name: number(float(value)) for name, value in values.items()} | {"sensor": sensor}
+    keeper = _keeper(source, statement) if made.state else None
+    taken = set(names(source)) | class_attributes(source)
+    states = {}
+    for name, _ in made.state:
+        assert keeper is not None  # noqa: S101
+        states[name] = free(f"{name}_{_short(statement, node)}", taken)
+        taken.add(states[name])
+        fill[name] = keeper.prefix + states[name]
+    found = list(_written(source, statement, node, form, fill, condition))
+    if keeper is not None:
+        found += _state_edits(keeper, [(states[name], initial) for name, initial in made.state])
+    return found
+
+
+def _written(
+    source: Document,
+    statement: ast.stmt,
+    node: ast.expr,
+    form: Form,
+    fill: Mapping[str, str],
+    condition: str,
+) -> list[Edit]:
+    made, code = form.template, source.source(node)
+    if made.on == "pair":
+        return _swapped(source, node, form, condition)
+    if made.on == "comparison":
+        left, op, right = _compared(code)
+        if not op:
+            raise RepairError(f"{source.path}:{node.lineno} compares more than two values.")
+        back = "+" if op.startswith("<") else "-"
+        fill = {**fill, "left": left, "op": op, "right": right, "closed": _CLOSED[op], "back": back}
+    again = made.uses("x") > 1 or bool(made.lines)
+    if again and made.on != "comparison" and not isinstance(node, ast.Name | ast.Attribute):
+        return _behind(source, statement, node, form, fill, condition)
+    fill = {**fill, "x": code}
+    if made.lines and not _can_stand_before(source, statement):
+        raise RepairError(f"{source.path}:{node.lineno}: no line can be written before this one.")
+    start, indent = source.start(statement), source.indentation(statement)
+    before = [Edit(start, start, f"{filled(line, fill)}\n{indent}") for line in made.lines]
+    new = filled(made.expression, fill)
+    text = choice(condition, new, code) if condition else new
+    return [*before, Edit(source.start(node), source.end(node), fitted(source, node, text))]
+
+
+def _behind(
+    source: Document,
+    statement: ast.stmt,
+    node: ast.expr,
+    form: Form,
+    fill: Mapping[str, str],
+    condition: str,
+) -> list[Edit]:
+    """Change a value behind its assignment, where it has a name."""
+    target = _target(statement)
+    if target is None or statement.value is not node or not source.alone(statement):  # type: ignore[attr-defined]
+        raise RepairError(f"{source.path}:{node.lineno}: the value has no name that it can be asked for by.")
+    name = source.source(target)
+    fill = {**fill, "x": name}
+    new = filled(form.template.expression, fill)
+    lines = [filled(line, fill) for line in form.template.lines]
+    lines.append(f"{name} = {choice(condition, new, name) if condition else new}")
+    indent, end = source.indentation(statement), source.line_end(statement)
+    return [Edit(end, end, "".join(f"\n{indent}{line}" for line in lines))]
+
+
+def _swapped(source: Document, node: ast.expr, form: Form, condition: str) -> list[Edit]:
+    assert form.partner is not None  # noqa: S101
+    other = source.find(form.partner)
+    pairs = [(node, source.source(other)), (other, source.source(node))]
+    return [
+        Edit(
+            source.start(one),
+            source.end(one),
+            fitted(source, one, choice(condition, new, source.source(one)) if condition else new),
+        )
+        for one, new in pairs
+    ]
+
+
+def _state_edits(keeper: Keeper, states: Sequence[tuple[str, str]]) -> list[Edit]:
+    lines = [
+        f"{keeper.prefix if keeper.prefix and keeper.indent and not keeper.behind else ''}{name} = {initial}"
+        for name, initial in states
+    ]
+    text = f"\n{keeper.indent}".join(lines) + keeper.behind + f"\n{keeper.indent}"
+    found = [Edit(keeper.place, keeper.place, text)]
+    if keeper.declare is not None:
+        declared = ", ".join(name for name, _ in states)
+        found.append(Edit(keeper.declare, keeper.declare, f"global {declared}\n{keeper.declare_indent}"))
+    return found
+
+
+def _keeper(source: Document, statement: ast.stmt) -> Keeper:
+    """Return where state is kept: an attribute of the instance, a variable before the loop, or a global."""
+    method = source.method(statement)
+    if method is not None and source.function(statement) is method[1]:
+        owner, _, instance = method
+        init = next(
+            (each for each in owner.body if isinstance(each, Function) and each.name == "__init__"), None
+        )
+        if init is not None and init.args.args:
+            first = _first(init.body)
+            return Keeper(
+                f"{init.args.args[0].arg}." if init is method[1] else f"{instance}.",
+                source.start(first),
+                source.indentation(first),
+            )
+        first = _first(owner.body)
+        place = source.line_start(first) + len(source.indentation(first))
+        return Keeper(f"{instance}.", place, source.indentation(first), behind="\n")
+    function = source.function(statement)
+    around = [each for each in source.ancestors(statement) if isinstance(each, Loop)]
+    inside = [each for each in around if source.function(each) is function]
+    if inside:
+        loop = inside[-1]
+        return Keeper("", source.start(loop), source.indentation(loop))
+    if function is None or source.parents[function] is not source.tree:
+        raise RepairError(
+            f"{source.path}:{statement.lineno}: there is no place that keeps state between calls."
+        )
+    first = _first(function.body)
+    return Keeper("", source.line_start(function), "", "\n\n", source.start(first), source.indentation(first))
+
+
+def _first(body: Sequence[ast.stmt]) -> ast.stmt:
+    """Return the first statement behind a docstring and a call of the base class."""
+    for statement in body:
+        value = statement.value if isinstance(statement, ast.Expr) else None
+        docstring = isinstance(value, ast.Constant) and isinstance(value.value, str)
+        base = isinstance(value, ast.Call) and "__init__" in ast.unparse(value.func)
+        if not docstring and not base:
+            return statement
+    raise RepairError("a body that holds nothing but its docstring keeps no state.")
+
+
+def _can_stand_before(source: Document, statement: ast.stmt) -> bool:
+    simple = isinstance(
+        statement, ast.Assign | ast.AnnAssign | ast.AugAssign | ast.Expr | ast.Return | ast.If
+    )
+    elif_ = isinstance(statement, ast.If) and source.text.startswith("elif", source.start(statement))
+    return simple and not elif_ and source.leads(statement)
+
+
+def _target(statement: ast.stmt) -> ast.expr | None:
+    """Return the one name or attribute that a statement assigns to."""
+    target = None
+    if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
+        target = statement.targets[0]
+    elif isinstance(statement, ast.AnnAssign):
+        target = statement.target
+    return target if isinstance(target, ast.Name | ast.Attribute) else None
+
+
+def _short(statement: ast.stmt, node: ast.expr) -> str:
+    """Return a word for a value: the last part of what it is assigned to, or of what is compared."""
+    named = _target(statement) or (node.left if isinstance(node, ast.Compare) else node)
+    text = ast.unparse(named).rpartition(".")[2]
+    return text if text.isidentifier() else "value"
+
+
+def _compared(code: str) -> tuple[str, str, str]:
+    """Return left side, operator and right side of a comparison; no operator where it is none of two sides."""
+    try:
+        node = ast.parse(f"({code}\n)", mode="eval").body
+    except SyntaxError:
+        return code, "", ""
+    if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _OPS:
+        return ast.unparse(node.left), _OPS[type(node.ops[0])], ast.unparse(node.comparators[0])
+    return code, "", ""

@@ -1,0 +1,139 @@
+"""Templates of structural repairs: data in TOML files, each with an example that is its test and its page."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.patching.expressions import ATOM, TERM, enclosed
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:  # pragma: no cover
+    import tomli as tomllib
+
+SHIPPED = Path(__file__).parent.parent / "templates"
+OWN = "tarl_templates"  # folder in pytest's root directory whose templates are tried, too
+KINDS = ("value", "input", "comparison", "pair", "sensor")
+SCALES = (
+    "",
+    "typical",
+    "sensor",
+)  # a default as it is, times the usual size of the value, over that of the sensor
+OPERATORS = ("op", "closed", "back")  # of a comparison: its own, the other one of < and <=, the way back
+_KEYS = {"summary", "on", "cost", "lines", "expression", "state", "parameters", "example"}
+_PLACEHOLDER = re.compile(r"\{(\w+)\}")
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A number that is searched for, and where the search begins."""
+
+    name: str
+    default: float
+    of: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """What is written in place of an expression, the lines before it, and the state that they keep between calls."""
+
+    name: str
+    summary: str
+    on: str
+    cost: int
+    expression: str
+    lines: tuple[str, ...] = ()
+    state: tuple[tuple[str, str], ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+
+    def uses(self, placeholder: str) -> int:
+        """Return how often a placeholder stands in what it writes."""
+        return sum(_PLACEHOLDER.findall(text).count(placeholder) for text in (*self.lines, self.expression))
+
+
+def templates(root: Path) -> tuple[Template, ...]:
+    """Return the templates that come with TARL and those of the project, cheapest first. Raises SettingsError."""
+    files = [*sorted(SHIPPED.glob("*.toml")), *sorted((root / OWN).glob("*.toml"))]
+    found = {path.stem: template(path) for path in files}
+    return tuple(sorted(found.values(), key=lambda one: one.cost))
+
+
+def template(path: Path) -> Template:
+    """Read one template. Raises SettingsError with a sentence where it is none."""
+    data = contents(path)
+    unknown = sorted(data.keys() - _KEYS)
+    if unknown:
+        raise SettingsError(f"{path}: a template has no {unknown[0]!r}; it has {', '.join(sorted(_KEYS))}.")
+    try:
+        parameters = tuple(
+            Parameter(name, float(one["default"]), one.get("of", ""))
+            for name, one in data.get("parameters", {}).items()
+        )
+        made = Template(
+            path.stem,
+            str(data["summary"]),
+            str(data["on"]),
+            int(data["cost"]),
+            str(data["expression"]),
+            tuple(map(str, data.get("lines", ()))),
+            tuple((name, str(initial)) for name, initial in data.get("state", {}).items()),
+            parameters,
+        )
+    except (KeyError, TypeError, ValueError, AttributeError) as problem:
+        raise SettingsError(
+            f"{path}: this is no template ({type(problem).__name__}: {problem}); it needs summary, on, cost and "
+            "expression."
+        ) from problem
+    if made.on not in KINDS:
+        raise SettingsError(f"{path}: on = {made.on!r} is not known; it is one of {', '.join(KINDS)}.")
+    _check_placeholders(path, made)
+    return made
+
+
+def contents(path: Path) -> Mapping[str, Any]:
+    """Read a TOML file. Raises SettingsError."""
+    try:
+        return tomllib.loads(path.read_text("utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as problem:
+        raise SettingsError(f"{path} cannot be read as TOML: {problem}.") from problem
+
+
+def filled(text: str, values: Mapping[str, str]) -> str:
+    """Fill a text's placeholders, in parentheses where the expression around needs them."""
+
+    def put(match: re.Match[str]) -> str:
+        code = values[match[1]]
+        if match[1] in OPERATORS:
+            return code
+        before, after = text[: match.start()].rstrip()[-1:], text[match.end() :].lstrip()[:1]
+        free = before in ("", "(", ",") and after in ("", ")", ",")
+        return code if free else enclosed(code, TERM if before in ("", "(", ",") and after == "*" else ATOM)
+
+    return _PLACEHOLDER.sub(put, text)
+
+
+def plainly(text: str, values: Mapping[str, str]) -> str:
+    """Fill a sentence's placeholders."""
+    return _PLACEHOLDER.sub(lambda match: values.get(match[1], match[0]), text)
+
+
+def _check_placeholders(path: Path, made: Template) -> None:
+    known = {"x", "y", "left", "right", "sensor", *OPERATORS}
+    known |= {name for name, _ in made.state} | {one.name for one in made.parameters}
+    for name in _placeholders(made):
+        if name not in known:
+            raise SettingsError(f"{path}: nothing fills {{{name}}}; known are {', '.join(sorted(known))}.")
+    for one in made.parameters:
+        if one.of not in SCALES:
+            raise SettingsError(f"{path}: of = {one.of!r} is not known; it is typical, sensor, or left out.")
+
+
+def _placeholders(made: Template) -> Iterator[str]:
+    for text in (*made.lines, made.expression):
+        yield from _PLACEHOLDER.findall(text)

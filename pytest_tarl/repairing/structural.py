@@ -1,0 +1,259 @@
+"""Repairs of structure, tried when no constant suffices: templates at the expressions that the slices rank first.
+
+Each parameter of a template at an expression is an operand like any other, so the sweep searches it.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations, groupby
+
+import numpy as np
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.learning.tables import START, Sample
+from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.patching.document import Document, document
+from pytest_tarl.patching.mutate import Mutation, form_values
+from pytest_tarl.patching.structures import Form, described
+from pytest_tarl.patching.templates import Template, templates
+from pytest_tarl.repairing.order import Order
+from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
+from pytest_tarl.searching.sweep import Sweep
+from tarl_lint.model import Operand, SiteId, Span
+
+MOST = {
+    "value": 5,
+    "input": 3,
+    "comparison": 5,
+    "pair": 4,
+    "sensor": 3,
+}  # expressions that a template is tried at
+_NUMERIC = ("abs", "float", "int", "max", "min", "pow", "round", "sum")
+_AXES = (("x", "y"), ("y", "z"), ("x", "z"), ("left", "right"), ("roll", "pitch"))
+
+
+class Structures:
+    """A search over templates, cheapest first; each price has its share of the episodes."""
+
+    def __init__(self, order: Order, guards: Sequence[Guard], trials: Trials) -> None:
+        self.order = order
+        self.guards = guards
+        self.trials = trials
+        self._sweeps: list[Sweep] = []
+        self._found: dict[Operand, Form] = {}
+
+    def candidates(self) -> Iterator[Candidate]:
+        """Yield confirmed candidates, those of cheap templates first. Raises BudgetSpentError."""
+        groups = self._groups()
+        whole = self.trials.budget
+        for number, operands in enumerate(groups):
+            sweep = Sweep(operands, self.mutate, self.guards, self.trials, self.order.goal)
+            self._sweeps.append(sweep)
+            self.trials.budget = self.trials.spent + (whole - self.trials.spent) // (len(groups) - number)
+            try:
+                yield from sweep.candidates()
+            except BudgetSpentError:
+                if number == len(groups) - 1:
+                    raise
+            finally:
+                self.trials.budget = whole
+
+    def effects(self) -> dict[str, list[OperandEffect]]:
+        """Return, per site, what each template's best values gained."""
+        found: dict[str, list[OperandEffect]] = {}
+        for sweep in self._sweeps:
+            for site, effects in sweep.effects().items():
+                found.setdefault(site, []).extend(effects)
+        return found
+
+    def mutate(self, operand: Operand, factor: float) -> Mutation | None:
+        """Return one step of a parameter; a template without any is there or not."""
+        form = self._found[operand]
+        if not form.parameter:
+            return Mutation(operand, True, form=form)
+        return Mutation(operand, factor, form=form) if factor > 0 or form.template.on == "sensor" else None
+
+    def _groups(self) -> list[list[Operand]]:
+        spots = list(_spots(self.order))
+        known = templates(self.order.root)
+        groups = []
+        for _, same in groupby(known, key=lambda one: one.cost):
+            operands: list[Operand] = []
+            for one in same:
+                for operand, form in _forms(self.order, one, spots):
+                    self._found[operand] = form
+                    operands.append(operand)
+            if operands:
+                groups.append(operands)
+        return groups
+
+
+def form_words(order: Order, mutation: Mutation) -> str:
+    """Say what a structural mutation does."""
+    form = mutation.form
+    assert form is not None  # noqa: S101
+    source = document(mutation.operand.span.path, order.analysis.sources[mutation.operand.span.path])
+    x = _folded(source, source.find(mutation.operand.span))
+    y = _folded(source, source.find(form.partner)) if form.partner is not None else ""
+    return described(form, x, y, form_values(mutation), form.sensor.name if form.sensor else "")
+
+
+class _Spot:
+    """An expression that a template may be written at."""
+
+    def __init__(self, site: SiteId, source: Document, node: ast.expr, kind: str, typical: float) -> None:
+        self.site = site
+        self.source = source
+        self.node = node
+        self.kind = kind
+        self.typical = typical
+
+
+def _forms(order: Order, template: Template, spots: Sequence[_Spot]) -> Iterator[tuple[Operand, Form]]:
+    """Yield an operand for every parameter of a template at every spot that it fits."""
+    kind = "value" if template.on == "sensor" else template.on
+    if template.on == "pair":
+        for one, other in _pairs(spots):
+            partner = _span(other.source, other.node)
+            yield from _operands(template, one, Form(template, partner=partner), 1.0)
+        return
+    fitting = [spot for spot in spots if spot.kind == kind or (kind == "value" and spot.kind == "input")]
+    fitting.sort(key=lambda spot: spot.kind != kind)
+    for spot in fitting[: MOST[template.on]]:
+        if template.on != "sensor":
+            yield from _operands(template, spot, Form(template), spot.typical)
+            continue
+        for sensor in order.comparison.sensors:
+            if sensor.numeric and sensor.guardable and sensor.low is not None and sensor.high is not None:
+                reach = max(abs(sensor.low), abs(sensor.high)) or 1.0
+                yield from _operands(template, spot, Form(template, sensor=sensor), 1.0 / reach)
+
+
+def _operands(template: Template, spot: _Spot, bare: Form, scale: float) -> Iterator[tuple[Operand, Form]]:
+    defaults = tuple(
+        (one.name, float(f"{one.default * (scale if one.of else 1.0):.4g}")) for one in template.parameters
+    )
+    code = _folded(spot.source, spot.node)
+    for name, value in defaults or (("", None),):
+        form = Form(template, name, defaults, bare.partner, bare.sensor)
+        by = f" by {bare.sensor.name}" if bare.sensor else ""
+        text = f"{template.name.replace('_', ' ')}{by} of {code}{f', {name}' if name else ''}"
+        yield Operand(spot.site, _span(spot.source, spot.node), text, value if name else False), form
+
+
+def _spots(order: Order) -> Iterator[_Spot]:
+    """Yield the expressions of the flows' statements, those of the sites that the slices rank first in front."""
+    rank = {culprit.site.id: at for at, culprit in enumerate(order.comparison.culprits)}
+    sizes = _typical(order)
+    steps = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
+    seen: set[tuple[str, int]] = set()
+    for step in steps:
+        try:
+            source = document(step.span.path, order.analysis.sources[step.span.path])
+        except (RepairError, KeyError):
+            continue
+        for node, kind in _expressions(source, step.span):
+            key = (source.path, source.start(node))
+            if key not in seen:
+                seen.add(key)
+                usual = sizes.get(str(step.site), 1.0)
+                yield _Spot(
+                    step.site, source, node, kind, _threshold(node) if kind == "comparison" else usual
+                )
+
+
+def _expressions(source: Document, span: Span) -> Iterator[tuple[ast.expr, str]]:
+    """Yield what may be changed in the statement at a span, and what it is."""
+    statements = [
+        node for node in ast.walk(source.tree) if isinstance(node, ast.stmt) and node.lineno == span.line
+    ]
+    for statement in statements:
+        if isinstance(statement, ast.If | ast.While):
+            for node in ast.walk(statement.test):
+                if isinstance(node, ast.Compare) and len(node.ops) == 1 and _orders(node.ops[0]):
+                    yield node, "comparison"
+        elif isinstance(statement, ast.Assign | ast.AnnAssign | ast.Return) and statement.value is not None:
+            if _is_numeric(statement.value):
+                yield statement.value, "value"
+            elif isinstance(statement.value, ast.Attribute):
+                yield statement.value, "input"
+        elif isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):
+            yield from ((each, "value") for each in statement.value.args if _is_numeric(each))
+
+
+def _is_numeric(node: ast.expr) -> bool:
+    """Tell whether an expression calculates a number."""
+    if isinstance(node, ast.BinOp):
+        return not isinstance(node.left, ast.Constant) or not isinstance(node.left.value, str)
+    if isinstance(node, ast.UnaryOp):
+        return isinstance(node.op, ast.USub) and not isinstance(node.operand, ast.Constant)
+    if isinstance(node, ast.Call):
+        name = ast.unparse(node.func)
+        return name in _NUMERIC or name.startswith(("math.", "np.", "numpy."))
+    return False
+
+
+def _orders(op: ast.cmpop) -> bool:
+    return isinstance(op, ast.Lt | ast.LtE | ast.Gt | ast.GtE)
+
+
+def _pairs(spots: Sequence[_Spot]) -> list[tuple[_Spot, _Spot]]:
+    """Return expressions of one function that differ by their axis only."""
+    found = []
+    for one, other in combinations(spots, 2):
+        together = one.source is other.source and one.source.function(one.node) is other.source.function(
+            other.node
+        )
+        if together and one.kind != "comparison" and _axis_apart(one, other):
+            found.append((one, other))
+    return found[: MOST["pair"]]
+
+
+def _axis_apart(one: _Spot, other: _Spot) -> bool:
+    for text in (lambda spot: spot.source.source(spot.node), _assigned):
+        first, second = text(one).rpartition("."), text(other).rpartition(".")
+        names = {(first[2], second[2]), (second[2], first[2])}
+        if first[0] == second[0] and any(axes in names for axes in _AXES):
+            return True
+    return False
+
+
+def _assigned(spot: _Spot) -> str:
+    statement = spot.source.statement(spot.node)
+    return ast.unparse(statement.targets[0]) if isinstance(statement, ast.Assign) else ""
+
+
+def _threshold(node: ast.expr) -> float:
+    """Return the size of the number that is compared with; 1 where it is none."""
+    numbers = [each.value for each in ast.walk(node) if isinstance(each, ast.Constant)]
+    sizes = [abs(float(value)) for value in numbers if isinstance(value, int | float) and value]
+    return sizes[0] if sizes else 1.0
+
+
+def _typical(order: Order) -> Mapping[str, float]:
+    """Return the mean size of what each site produces, off-line."""
+    sample: Sample = order.fixture.sample
+    found: dict[str, float] = {}
+    for taint_list, recorded in zip(order.fixture.lists, sample.lists, strict=True):
+        visits = recorded.visits
+        events = visits.state != START
+        site = (visits.state[events] - 1) % max(recorded.width, 1)
+        counts = np.bincount(site, weights=visits.count[events], minlength=recorded.width)
+        flows = recorded.flow.sum(axis=0)
+        for place, count, flow in zip(taint_list.sites, counts.tolist(), flows.tolist(), strict=True):
+            if count and flow:
+                found[place.id] = flow / count
+    return found
+
+
+def _span(source: Document, node: ast.expr) -> Span:
+    start = source.start(node) - source.line_starts[node.lineno - 1]
+    last = node.end_lineno or node.lineno
+    end = source.end(node) - source.line_starts[last - 1]
+    return Span(source.path, node.lineno, start + 1, last, end + 1)
+
+
+def _folded(source: Document, node: ast.expr) -> str:
+    return " ".join(source.source(node).split())

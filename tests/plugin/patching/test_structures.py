@@ -1,0 +1,103 @@
+"""Templates of structural repairs: each one's example, what a user's own file may say, laws of what is written."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.patching.document import apply_edits, document
+from pytest_tarl.patching.structures import Form, form_edits
+from pytest_tarl.patching.templates import SHIPPED, contents, template, templates
+from tarl_lint.model import Span
+
+FILES = sorted(SHIPPED.glob("*.toml"))
+
+
+def span(text: str, code: str) -> Span:
+    start = text.index(code)
+    line, column = text.count("\n", 0, start) + 1, start - (text.rfind("\n", 0, start) + 1) + 1
+    return Span("node.py", line, column, line, column + len(code))
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_the_example_of_a_template_is_what_it_writes(path: Path) -> None:
+    example = contents(path)["example"]
+    before = example["before"].lstrip("\n")
+    partner = span(before, example["pair"]) if "pair" in example else None
+    form = Form(template(path), partner=partner)
+    source = document("node.py", before)
+    node = source.find(span(before, example["at"]))
+    edits = form_edits(source, node, form, example.get("values", {}), "", example.get("sensor", ""))
+    assert apply_edits(source, edits) == example["after"].lstrip("\n")
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_under_a_condition_the_original_value_stays_otherwise(path: Path) -> None:
+    example = contents(path)["example"]
+    before = example["before"].lstrip("\n")
+    partner = span(before, example["pair"]) if "pair" in example else None
+    source = document("node.py", before)
+    node = source.find(span(before, example["at"]))
+    edits = form_edits(
+        source,
+        node,
+        Form(template(path), partner=partner),
+        example.get("values", {}),
+        "wet",
+        example.get("sensor", ""),
+    )
+    text = apply_edits(source, edits)
+    chosen = [each for each in ast.walk(ast.parse(text)) if isinstance(each, ast.IfExp)]
+    assert any(ast.unparse(each.test) == "wet" for each in chosen)
+
+
+def test_every_template_is_in_the_docs() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "structures.md").read_text("utf-8")
+    for path in FILES:
+        assert f"`{path.stem}`" in page
+        assert contents(path)["example"]["after"].strip("\n").splitlines()[-1] in page
+
+
+def test_a_project_adds_templates_of_its_own_and_replaces_ours(tmp_path: Path) -> None:
+    folder = tmp_path / "tarl_templates"
+    folder.mkdir()
+    (folder / "root.toml").write_text(
+        'summary = "take the root"\non = "value"\ncost = 2\nexpression = "math.sqrt({x})"\n'
+    )
+    (folder / "sign.toml").write_text(
+        'summary = "other"\non = "value"\ncost = 9\nexpression = "-1.0 * {x}"\n'
+    )
+    found = {one.name: one for one in templates(tmp_path)}
+    assert found.keys() == {path.stem for path in FILES} | {"root"}
+    assert found["sign"].cost == 9
+    costs = [one.cost for one in templates(tmp_path)]
+    assert costs == sorted(costs)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("summary = ", "cannot be read as TOML"),
+        ('summary = "s"\non = "value"\ncost = 1\n', "it needs summary, on, cost and expression"),
+        ('summary = "s"\non = "values"\ncost = 1\nexpression = "{x}"\n', "on = 'values' is not known"),
+        ('summary = "s"\non = "value"\ncost = 1\nexpression = "{z}"\n', "nothing fills {z}"),
+        ('summary = "s"\non = "value"\ncost = 1\nexpression = "{x}"\nlimes = 3\n', "has no 'limes'"),
+        (
+            'summary = "s"\non = "value"\ncost = 1\nexpression = "{x}"\n[parameters.a]\ndefault = 1\nof = "it"\n',
+            "of = 'it' is not known",
+        ),
+        (
+            'summary = "s"\non = "value"\ncost = 1\nexpression = "{x}"\nparameters = 3\n',
+            "this is no template",
+        ),
+    ],
+)
+def test_a_template_that_is_none_is_explained(tmp_path: Path, text: str, words: str) -> None:
+    (tmp_path / "own.toml").write_text(text)
+    with pytest.raises(SettingsError) as raised:
+        template(tmp_path / "own.toml")
+    assert words in str(raised.value)
+    assert "own.toml" in str(raised.value)

@@ -1,0 +1,122 @@
+"""Repairs of structure: what no constant brings back."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from tests.plugin.tank import RECORD, result
+
+REPAIR = ("--tarl-online", "--tarl-episodes=10", "--tarl-repair")
+NODE = """\
+import rospy
+from std_msgs.msg import Float64
+
+error = None
+
+
+def on_error(msg):
+    global error
+    error = msg.data
+
+
+def main():
+    rospy.init_node("keeper")
+    rospy.Subscriber("/error", Float64, on_error)
+    valve = rospy.Publisher("/valve", Float64, queue_size=1)
+    rate = rospy.Rate(10)
+    while not rospy.is_shutdown():
+        if error is not None:
+            flow = error + error
+            valve.publish(flow)
+        rate.sleep()
+
+
+if __name__ == "__main__":
+    main()
+"""
+TEST = """\
+import pytest
+from pytest_tarl import Drift, Sensor
+from pytest_tarl.ros import message_type
+
+Float64 = message_type("std_msgs/msg/Float64")
+
+
+@pytest.mark.tarl(
+    nodes=["keeper.py"],
+    sensors=[Sensor("error", topic="/error", field="data", low=-1, high=1, bins=10)],
+    drifts={"changed": Drift(True, permanent=True)},
+    tolerance=0.5,
+)
+def test_fills(tarl, tarl_drift):
+    draws = tarl.rng("world")
+    level, total = float(draws.uniform(0.0, 0.2)), 0.0
+    tarl.start("keeper.py")
+    for _ in range(30):
+        told = 1.0 - level + float(draws.normal(0, 0.005))
+        tarl.bus.publish("/error", Float64(data=SENSED))
+        tarl.step(0.1)
+        valve = tarl.bus.latest("/valve")
+        flow = valve.data if valve else 0.0
+        level += MOVED
+        tarl.reward(-abs(1.0 - level))
+    assert abs(1.0 - level) < 0.15, "tank not full"
+"""
+CASES = {
+    "sign": ("-told if tarl_drift else told", "0.15 * flow"),
+    "limit": ("told", "0.0 if tarl_drift and flow > 1.5 else 0.15 * flow"),
+    "integral": ("told", "0.15 * flow - (0.13 if tarl_drift else 0.0)"),
+}
+
+
+def prepared(pytester: pytest.Pytester, case: str) -> None:
+    sensed, moved = CASES[case]
+    pytester.makefile(".py", keeper=NODE, test_tank=TEST.replace("SENSED", sensed).replace("MOVED", moved))
+    pytester.makeini("[pytest]\naddopts = -p no:randomly -p no:asyncio -p no:rerunfailures\n")
+    pytester.runpytest(*RECORD).assert_outcomes(passed=1)
+
+
+@pytest.mark.parametrize(
+    ("case", "words"),
+    [
+        ("sign", ("turn the sign of",)),
+        ("limit", ("limit", "at most", "smooth")),
+        ("integral", ("of the sum of",)),
+    ],
+)
+def test_what_no_constant_brings_back_is_brought_back_by_structure(
+    pytester: pytest.Pytester, case: str, words: tuple[str, ...]
+) -> None:
+    prepared(pytester, case)
+    done = pytester.runpytest(*REPAIR)
+    told = " ".join(done.stdout.str().split())
+    found = result(pytester)
+    assert found["repair"]["accepted"], told
+    assert any(word in told.partition("repair accepted: ")[2].partition(" page ")[0] for word in words)
+    assert "so changes of structure were tried in" in told
+    (patch,) = pytester.path.glob(".tarl/patches/*.patch")
+    applied = pytester.run(sys.executable, "-m", "pytest_tarl", "apply", str(patch))
+    assert applied.ret == 0
+    pytester.runpytest(*RECORD, "--tarl-drift=changed").assert_outcomes(passed=1)
+
+
+def test_constants_alone_can_be_asked_for(pytester: pytest.Pytester) -> None:
+    prepared(pytester, "sign")
+    done = pytester.runpytest(*REPAIR, "--tarl-constants")
+    assert not result(pytester)["repair"]["accepted"]
+    done.stdout.fnmatch_lines(["*--tarl-constants*"])
+
+
+def test_a_template_of_the_project_is_tried(pytester: pytest.Pytester) -> None:
+    prepared(pytester, "sign")
+    folder = pytester.mkdir("tarl_templates")
+    (folder / "mirrored.toml").write_text(
+        'summary = "mirror {x}"\non = "input"\ncost = 0\nexpression = "0.0 - {x}"\n'
+    )
+    done = pytester.runpytest(*REPAIR)
+    assert "mirror msg.data" in " ".join(done.stdout.str().split())
+    (folder / "mirrored.toml").write_text("summary = 3")
+    done = pytester.runpytest(*REPAIR)
+    assert "mirrored.toml: this is no template" in " ".join(done.stdout.str().split())
