@@ -119,3 +119,12 @@ def test_logs_are_rewarded_by_robustness(tank: pytest.Pytester, observed: Path) 
     assert json.loads(path.read_text())["atr"]["online"] == pytest.approx(
         rows(tank)[UPPER]["online"]["robustness"]
     )
+
+
+def test_a_log_without_signals_of_the_reward_is_refused(tank: pytest.Pytester, observed: Path) -> None:
+    changed(tank, "test_tank", "always (flow > -1)", "always (unheard > 0)")
+    changed(tank, "test_tank", '"unheard"],', '"unheard"], reward="robustness",')
+    told = tank.runpytest("-q", "--tarl-online", f"--tarl-log={observed}")
+    told.assert_outcomes(failed=1, deselected=1)
+    text = " ".join(told.stdout.str().split())
+    assert "The log lacks signals of the formula 'always (unheard > 0)'" in text
