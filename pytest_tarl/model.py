@@ -127,6 +127,7 @@ class Guarantee:
     quantile: float | None
     needed: int
     varied: bool
+    declared: tuple[float, float] | None = None  # between which every total lies, where the marker says so
 
 
 class LossInterval(NamedTuple):

@@ -240,7 +240,9 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
 
 def _guarantee(told: Mapping[str, Any]) -> Guarantee:
     """Return the bounds that a header states. Raises DamagedError where they are none."""
-    found = Guarantee(**{**told, "success": Bound(**told["success"]), "mean": Bound(**told["mean"])})
+    declared = None if told.get("declared") is None else tuple(told["declared"])
+    bounds = {"success": Bound(**told["success"]), "mean": Bound(**told["mean"])}
+    found = Guarantee(**{**told, **bounds, "declared": declared})
     numbers = [
         *(
             getattr(bound, name)
@@ -249,6 +251,7 @@ def _guarantee(told: Mapping[str, Any]) -> Guarantee:
         ),
         *(found.average, found.share, found.episodes, found.passed, found.needed),
         *(() if found.quantile is None else (found.quantile,)),
+        *((found.declared or ()) if len(found.declared or (0, 0)) == 2 else (None,)),
     ]
     texts = [found.success.method, found.mean.method]
     if not all(type(one) in (int, float) for one in numbers) or not all(type(one) is str for one in texts):

@@ -47,6 +47,7 @@ def stated(
         quantile=None if anytime else quantile_low(totals, QUANTILE, sure),
         needed=0 if anytime else episodes_for_quantile(QUANTILE, sure),
         varied=varied,
+        declared=None if declared is None else (declared.low, declared.high),
     )
 
 

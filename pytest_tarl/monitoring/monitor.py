@@ -132,7 +132,8 @@ def begun(fixture: Fixture, *, alpha: float, seed: int) -> Monitor:
 
 
 def shares(stated: int, scores: int) -> Floats:
-    """Return each process's share of α: half for the bounds, a quarter for whole missions, a quarter for cells."""
+    """Return each process's share of α: half for the bounds, if any, the rest in equal parts for missions and cells."""
     cells = scores - len(WHOLE)
-    parts = [(stated, 0.5), (len(WHOLE), 0.25 if cells else 0.5), (cells, 0.25)]
+    rest = 0.5 if stated else 1.0
+    parts = [(stated, 0.5), (len(WHOLE), rest / 2 if cells else rest), (cells, rest / 2)]
     return np.concatenate([np.full(count, part / max(count, 1)) for count, part in parts])

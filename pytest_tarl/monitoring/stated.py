@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from pytest_tarl.learning.bounds import rate
 from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.guarantees import CONFIDENCE
 from pytest_tarl.learning.tables import Floats
-
-CONFIDENCE = 0.95
+from pytest_tarl.model import Bound as Rate
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,22 @@ class Bound:
 
 
 def bounds(fixture: Fixture) -> tuple[Bound, ...]:
-    """Return what the fixture states: of success always, of the mean total where a range of it was declared."""
-    passed = fixture.sample.passed
-    found = rate(int(passed.sum()), len(passed), CONFIDENCE)
-    return (Bound("success", found.low, found.confidence),)
+    """Return what the fixture states: of success, and of the mean total where a range of it was declared.
+
+    Nothing where its episodes are all the same, since they tell of one world only. A fixture of an older version
+    states nothing; its episodes tell the same bound of success.
+    """
+    told = fixture.stated
+    if told is None:
+        passed = fixture.sample.passed
+        return (_success(rate(int(passed.sum()), len(passed), CONFIDENCE)),)
+    if not told.varied:
+        return ()
+    if told.declared is None:
+        return (_success(told.success),)
+    low, high = told.declared
+    return _success(told.success), Bound("total", told.mean.low, told.mean.confidence, low, high)
+
+
+def _success(found: Rate) -> Bound:
+    return Bound("success", found.low, found.confidence)

@@ -156,6 +156,8 @@ def _region(monitor: Monitor) -> tuple[Cell, ...]:
 
 def _notes(monitor: Monitor) -> list[str]:
     counts, notes = monitor.counts, []
+    if not monitor.bounds:
+        notes.append("The fixture's episodes are all the same, so it states no bound that could be tested.")
     if counts.without_steps:
         notes.append(f"{_missions(counts.without_steps)} without a step: only success was judged.")
     if counts.without_rewards:

@@ -91,7 +91,8 @@ def promise(status: Status) -> str:
     if not tested:
         return text
     each = " and ".join(_percent(1.0 - bound.confidence) for bound in tested)
-    return f"{text}; {_percent(status.error)} with the {each} by which the bound itself may be wrong"
+    which = "bounds themselves" if len(tested) > 1 else "bound itself"
+    return f"{text}; {_percent(status.error)} with the {each} by which the {which} may be wrong"
 
 
 def _passed(status: Status) -> str:

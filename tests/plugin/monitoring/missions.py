@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.learning.bounds import Range
 from pytest_tarl.learning.fixture import Fixture, load, save
+from pytest_tarl.learning.guarantees import stated
 from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.statistics import sample
 from pytest_tarl.observing.frames import LogFile, encoded
@@ -60,10 +62,12 @@ def trace(one: Walk) -> Trace:
     return Trace(distinct, none, np.empty(0), none, none, steps, np.array(one.reward), {})
 
 
-def fixture(path: Path, missions: list[Walk], sensors: tuple[Sensor, ...] = SENSORS) -> Fixture:
+def fixture(path: Path, missions: list[Walk], declared: Range | None = None, varied: bool = True) -> Fixture:
     """Record missions as a fixture, and read it back as a watch does."""
     samples = [sample(trace(one), episode_seed(0, "x", n), one.passed, ()) for n, one in enumerate(missions)]
-    save(Fixture(TEST, 0, sensors, (), {}, merge(samples), ()), path)
+    whole = merge(samples)
+    bounds = stated(whole.passed.tolist(), whole.total.tolist(), declared=declared, varied=varied)
+    save(Fixture(TEST, 0, SENSORS, (), {}, whole, (), stated=bounds), path)
     return load(path)
 
 

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ import pytest
 from jsonschema import validate
 
 from pytest_tarl.commands.cli import main
+from pytest_tarl.learning.bounds import Range
 from pytest_tarl.monitoring import dashboard, monitor, watch
 from pytest_tarl.monitoring.reading import LogReader
 from tests.plugin.monitoring.missions import Walk, content, fixture, log, walks
@@ -190,6 +192,48 @@ def test_without_output_to_write_to_it_ends_quietly(root: Path) -> None:
         command, shell=True, cwd=root, capture_output=True, text=True, check=False, env={**os.environ}
     )
     assert "Traceback" not in done.stderr
+
+
+def test_the_mean_is_tested_where_a_range_was_declared(
+    root: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fixture(root / "g.npz", walks(200, 1), Range(0.0, 12.0))
+    less = [replace(one, reward=tuple(0.6 * amount for amount in one.reward)) for one in walks(300, 3)]
+    log(root / "same.log", walks(300, 4))
+    log(root / "less.log", less)
+    assert main(["watch", "same.log", "--fixture", "g.npz", "--once", "--state", "same.npz"]) == 0
+    assert (
+        main(["watch", "less.log", "--fixture", "g.npz", "--once", "--state", "less.npz", "--json", "-"]) == 1
+    )
+    said, _, document = capsys.readouterr().out.rpartition("\n{")
+    assert "a mission earns at least 5." in said
+    assert "15 % with the 5 % and 5 % by which the bounds themselves may be wrong" in said
+    success, total = json.loads("{" + document)["bounds"]
+    assert (success["of"], total["of"]) == ("success", "total")
+    assert success["evidence"]["alarm"] is None
+    assert total["evidence"]["alarm"]["mission"] < 200
+
+
+def test_totals_outside_of_the_declared_range_are_told(
+    root: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fixture(root / "g.npz", walks(80, 1), Range(0.0, 12.0))
+    one = walks(1, 3)[0]
+    log(root / "m.log", [replace(one, reward=(-100.0,) * len(one.cells)), one])
+    main(["watch", "m.log", "--fixture", "g.npz", "--once"])
+    assert (
+        "1 mission with a total outside of the declared range: counted as at its end"
+        in capsys.readouterr().out
+    )
+
+
+def test_a_fixture_of_one_world_states_no_bound(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    fixture(root / "g.npz", walks(1, 1) * 80, varied=False)
+    log(root / "m.log", walks(1, 1) * 200)
+    assert main(["watch", "m.log", "--fixture", "g.npz", "--once"]) == 0
+    out = capsys.readouterr().out
+    assert "episodes are all the same, so it states no bound that could be tested" in out
+    assert "a false alarm, ever: at most 5 % (alpha)\n" in out
 
 
 def test_before_the_first_mission_the_account_says_what_will_be_tested(
