@@ -21,6 +21,7 @@ from pytest_tarl.learning.binning import learned_edges
 from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison, Repair
+from pytest_tarl.named import silent_files
 from pytest_tarl.options import Options
 from pytest_tarl.recording import Progress, Tell, read_values, record
 from pytest_tarl.repairing.order import Neighbour, Order
@@ -92,7 +93,7 @@ class Mission:
         self._ignore()
         if fixture is None:
             return replace(self, designation=replace(self.designation, sensors=sensors))._record(
-                rollout, sites
+                rollout, sites, analysis
             )
         return self._online(rollout, sites, analysis, fixture)
 
@@ -158,7 +159,12 @@ class Mission:
             )
         return name
 
-    def _record(self, rollout: Rollout, sites: Plan) -> Account:
+    def _silent(self, analysis: Analysis) -> Iterator[str]:
+        """Name the nodes' files in which nothing is recorded."""
+        files = [(self.folder / node).resolve() for node in self.designation.nodes]
+        return silent_files(files, analysis, self.root.resolve())
+
+    def _record(self, rollout: Rollout, sites: Plan, analysis: Analysis) -> Account:
         drift = self._recorded_drift
         result = record(
             rollout,
@@ -177,7 +183,8 @@ class Mission:
         written = self.fixture_path.relative_to(self.root)
         bounds = [f"  {told}" for told in guarantees.sentences(result.stated)] if result.stated else []
         lines = [f"{self.test}: {result.line}", *bounds, f"  wrote {written}", *self._adopted(sites)]
-        return Account((*lines, *(f"  {note}" for note in result.notes)))
+        notes = (*result.notes, *self._silent(analysis))
+        return Account((*lines, *(f"  {note}" for note in notes)))
 
     def _test_side(self) -> Digests:
         """Return the digests of the test's own modules."""
@@ -230,8 +237,13 @@ class Mission:
             comparison = repaired.comparison
             episodes |= repaired.episodes
             interrupted = repaired.interrupted
-        edited = remark(fixture.world, self._test_side())
-        notes = (*comparison.notes, *edited, *self._not_run(comparison.repair), *self._design_lost(fixture))
+        notes = (
+            *comparison.notes,
+            *remark(fixture.world, self._test_side()),
+            *self._silent(analysis),
+            *self._not_run(comparison.repair),
+            *self._design_lost(fixture),
+        )
         told = replace(comparison, target=self.target, flags=self.options.flags, notes=notes)
         return Compared(self, told, online, episodes, interrupted)
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import dis
 import gc
 import sys
-from collections.abc import Collection, Iterable
+from collections import deque
+from collections.abc import Collection, Iterable, Iterator
 from importlib.machinery import SourceFileLoader
+from importlib.util import resolve_name
 from pathlib import Path
 from types import FunctionType, ModuleType
 
@@ -44,6 +47,25 @@ def of_tests(file: Path) -> bool:
     return file.name == "conftest.py" or file.name.startswith("test_") or file.name.endswith("_test.py")
 
 
+def _imported(module: ModuleType) -> Iterator[str]:
+    """Yield the dotted names that a module imports while it is loaded: a number taken from one says nothing of it."""
+    spec = module.__dict__["__spec__"]
+    code = spec.loader.get_code(spec.name)
+    if code is None:
+        return
+    before: deque[object] = deque((None, None), 2)  # of an import: how many levels up, and what is taken out
+    for one in dis.get_instructions(code):
+        if one.opname == "IMPORT_NAME":
+            level, taken = before
+            dots = "." * level if isinstance(level, int) else ""
+            base = (
+                resolve_name(f"{dots}{one.argval}", spec.parent) if dots and spec.parent else str(one.argval)
+            )
+            yield base
+            yield from (f"{base}.{name}" for name in (taken if isinstance(taken, tuple) else ()))
+        before.append(one.argval)
+
+
 def _renewable(module: ModuleType | None) -> bool:
     spec = module.__dict__.get("__spec__") if isinstance(module, ModuleType) else None
     if spec is None or not isinstance(spec.loader, SourceFileLoader) or not spec.origin:
@@ -51,9 +73,11 @@ def _renewable(module: ModuleType | None) -> bool:
     return spec.name.partition(".")[0] not in _OURS and not of_tests(Path(spec.origin))
 
 
-def _holds(module: ModuleType, going: Collection[int], names: Collection[str]) -> bool:
+def _holds(module: ModuleType, going: Collection[int], names: set[str]) -> bool:
     if id(module) in going:
         return False
+    if not names.isdisjoint(_imported(module)):
+        return True
     for value in list(module.__dict__.values()):
         if id(value) in going:
             return True

@@ -61,7 +61,7 @@ class Between:
 def factor(mutation: Mutation) -> float | None:
     """Return the positive factor that a mutation moves its operand by; None where it is no such factor."""
     operand, value = mutation.operand, mutation.value
-    if isinstance(operand.value, bool) or isinstance(value, bool):
+    if mutation.form is not None or isinstance(operand.value, bool) or isinstance(value, bool):
         return None
     if operand.value == 0:
         return 1.0 + value if value > 0 else 1.0 / (1.0 - value)  # as `mutations` steps away from zero

@@ -14,6 +14,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.files import write_atomically
 from pytest_tarl.model import Attempt, Comparison, Edit, Guarantee, Repair
 from pytest_tarl.patching import patch
+from pytest_tarl.patching.dependencies import undeclared
 from pytest_tarl.patching.mutate import Mutation, guard_text
 from pytest_tarl.patching.reading import read
 from pytest_tarl.patching.suggesting import sarif
@@ -24,6 +25,7 @@ from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.structural import form_words
 from pytest_tarl.report import guarantees, words
+from pytest_tarl.searching.plainness import edges
 from pytest_tarl.searching.search import Candidate, effective_value
 from tarl_lint import __version__
 
@@ -45,7 +47,7 @@ def delivered(
     changed = mutants.source(candidate)
     _verify(order, candidate, changed)
     originals = {path: path.read_bytes() for path in changed}
-    header = _evidence(order, accepted, guard, search, acceptance, bounds)
+    header = _evidence(mutants, accepted, guard, search, acceptance, bounds)
     diff = patch.unified_diff(originals, changed, order.root, header)
     place = _written(order, diff)
     return Repair(True, guard, _edits(order, candidate), patch.readable(diff), place, history=history)
@@ -109,7 +111,12 @@ def attempts(order: Order, tried: Iterable[Tried]) -> tuple[Attempt, ...]:
 
 
 def _guard(order: Order, candidate: Candidate) -> str:
-    return guard_text(candidate.guard, order.analysis, candidate.mutations, order.fixture.topics)
+    try:
+        return guard_text(candidate.guard, order.analysis, candidate.mutations, order.fixture.topics)
+    except RepairError:  # the node has no expression for it, which is why the candidate was dropped
+        return " and ".join(
+            f"{one.low:g} <= {one.sensor.name} <= {one.high:g}" for one in candidate.guard.conjuncts
+        )
 
 
 def _edits(order: Order, candidate: Candidate) -> tuple[Edit, ...]:
@@ -130,7 +137,7 @@ def _edit(order: Order, mutation: Mutation) -> Edit:
 
 
 def _evidence(
-    order: Order,
+    mutants: Mutants,
     accepted: Accepted,
     guard: str,
     search: int,
@@ -138,6 +145,7 @@ def _evidence(
     bounds: Mapping[str, Guarantee],
 ) -> list[str]:
     """Return what the patch's header tells: what changes, and why it was accepted."""
+    order = mutants.order
     totals = order.comparison.totals
     repaired = [outcome.total for outcome in accepted.acceptance.drifted]
     nominal = [outcome.total for outcome in accepted.acceptance.nominal]
@@ -151,6 +159,7 @@ def _evidence(
         f"drifted: {words.average(totals['online'])}",
         f"drifted and repaired: {words.average(repaired)}, of seeds that nothing was chosen by",
         _designed_and_repaired(order, nominal),
+        *remarks(mutants, accepted.candidate),
         *(f"other test: {words.one_line(told)}" for told in accepted.beside.held),
         *_stated(bounds),
         f"episodes spent: search {search}, acceptance {acceptance}",
@@ -158,6 +167,33 @@ def _evidence(
         *([f"record: {words.recording(_in_root(order))}"] if order.permanent else []),
         f"again: {_again(order)}",
     ]
+
+
+def remarks(mutants: Mutants, candidate: Candidate) -> list[str]:
+    """Return what a reviewer should know of an accepted repair beside its figures."""
+    return [*_jumps(candidate), *undeclared(mutants.source(candidate), mutants.order.root)]
+
+
+def _jumps(candidate: Candidate) -> list[str]:
+    """Say how far the constants jump where a condition on a number sets in; nothing where there is none."""
+    sensors = edges(candidate.guard)
+    if not sensors:
+        return []
+    moved = []
+    for mutation in candidate.mutations:
+        value, new = mutation.operand.value, effective_value(mutation)
+        if mutation.form is not None:
+            continue
+        if value is None or isinstance(value, bool):
+            moved.append(f"{mutation.operand.code} × {float(mutation.value):g}")
+        else:
+            times = f" (× {new / value:.3g})" if value else ""
+            moved.append(
+                f"{mutation.operand.code} from {words.expected(float(value)):g} to {words.expected(new):g}{times}"
+            )
+    if not moved:
+        return []
+    return [f"jump at the edge of the condition on {' and '.join(sensors)}: {', '.join(moved)}"]
 
 
 def _designed_and_repaired(order: Order, nominal: Sequence[float]) -> str:

@@ -59,7 +59,8 @@ def alike(one: Candidate, other: Candidate) -> bool:
     if one.guard != other.guard or operands(one) != operands(other):
         return False
     values = {mutation.operand: mutation for mutation in other.mutations}
-    return all(_near(mutation, values[mutation.operand]) for mutation in one.mutations)
+    pairs = [(mutation, values[mutation.operand]) for mutation in one.mutations]
+    return all(mine.form == its.form and _near(mine, its) for mine, its in pairs)
 
 
 def _near(one: Mutation, other: Mutation) -> bool:

@@ -12,7 +12,7 @@ from pytest_tarl.learning.judgements import with_worlds
 from pytest_tarl.model import Comparison, FormulaRow, Guarantee, Guard, OperandEffect, SearchTrace, SitePlace
 from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.accepting import Accepted, Examiner, Refused
-from pytest_tarl.repairing.delivering import attempts, delivered, withheld
+from pytest_tarl.repairing.delivering import attempts, delivered, remarks, withheld
 from pytest_tarl.repairing.guaranteeing import guaranteed
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
@@ -179,7 +179,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         repair=delivered(mutants, accepted, found.episodes, examiner.spent, history, bounds)
         if accepted
         else withheld(order, refused, history),
-        notes=(*order.comparison.notes, *_notes(order, examiner, found, watch)),
+        notes=(*order.comparison.notes, *_notes(mutants, examiner, found, watch)),
         ranking=sureness(order, found.effects or {}, accepted, found.ranking),
     )
     episodes = {"search": found.episodes, "acceptance": examiner.spent + spent}
@@ -204,13 +204,15 @@ def _ended(examiner: Examiner, found: _Findings) -> Refused:
     return examiner.refused
 
 
-def _notes(order: Order, examiner: Examiner, found: _Findings, watch: Watch) -> Iterator[str]:
+def _notes(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Watch) -> Iterator[str]:
     """Say what was not searched, what was dropped for the sake of others, and what cut the search short."""
-    accepted = found.accepted is not None
+    order, accepted = mutants.order, found.accepted is not None
     told = found.accepted.candidate if found.accepted else examiner.refused.candidate
     if told is not None:
         yield from dict.fromkeys(examiner.placing.notes(told))
     yield from unnamed_modules(order)
+    if found.accepted is not None:
+        yield from remarks(mutants, found.accepted.candidate)
     yield from _of_the_range(order, examiner, watch)
     yield from (
         f"a candidate was dropped since another test loses: {told}" for told in dict.fromkeys(examiner.lost)

@@ -59,6 +59,7 @@ def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
         ),
         *_combined([_hull(region.novel, i, one) for i, one in enumerate(evidence.sensors)], evidence),
         *_combined([_steepest(evidence, i) for i in range(len(evidence.sensors))], evidence),
+        *_values(evidence),
     ]
     proposals += [_widened(guard) for guard in proposals]
     offline, sensors = evidence.offline, evidence.sensors
@@ -161,6 +162,15 @@ def _steepest(evidence: Evidence, i: int) -> Bins | None:
         if running > best_sum and start is not None:
             best, best_sum = (start, index), running
     return best
+
+
+def _values(evidence: Evidence) -> Iterator[Guard]:
+    """Yield every value of a boolean or categorical sensor that was met on-line, where it has others."""
+    for i, sensor in enumerate(evidence.sensors):
+        met = sorted({cell[i] for cell in evidence.online.cells}) if not sensor.numeric else []
+        for index in met:
+            only = [(index, index) if at == i else None for at in range(len(evidence.sensors))]
+            yield from _combined(only, evidence)
 
 
 def _combined(intervals: Sequence[Bins | None], evidence: Evidence) -> Iterator[Guard]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.searching.plainness import oddness, plainer
 from pytest_tarl.searching.screening import screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confirmed, operand_effect
 from pytest_tarl.searching.together import Joint, Together
@@ -34,6 +35,8 @@ REFINEMENTS = 3  # of one operand in a row ...
 PROMISING = 0.4  # ... while it gains at least this share of the loss ...
 REFINED = 8  # ... and runs that refine one operand in all
 FINEST = 1.1  # ratio of two factors between which there is nothing to find
+PLAINER_ROUNDS = 2  # of refinement, of each constant that reads plainer than what was found ...
+PLAINER = 12  # ... and runs after which none is looked for any more
 SLACK = 0.1  # share of the loss that may be lost on the way further out
 
 
@@ -63,6 +66,7 @@ class Sweep:
         self._gains: dict[tuple[Unit, Guard], dict[float, float]] = {}  # factor → gain in reward
         self._tried: set[Candidate] = set()
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
+        self._refused: set[tuple[Unit, Guard]] = set()  # held in the search, and was refused afterwards
         self._turn = 0
 
     def candidates(self) -> Iterator[Candidate]:
@@ -75,6 +79,7 @@ class Sweep:
                 moving = self._moving(block)
                 for factor in NEAR:
                     yield from self._all(factor, guard, moving)
+                yield from self._narrow(guard, moving)
                 yield from self._leaders_together(guard)
         for factor, before in FURTHER:
             for guard in chief:
@@ -114,6 +119,16 @@ class Sweep:
                 yield from self._try(unit, guard, FLIP, pair)
         yield from self._refine(pair)
 
+    def _narrow(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
+        """Try smaller steps of what lost both ways: it matters, and the right value lies close to the original."""
+        tried = {unit: self._gains.get((unit, guard), {}) for unit in among}
+        lost = [
+            unit for unit, gains in tried.items() if all(gains.get(one, 0.0) < -self.slack for one in NEAR)
+        ]
+        for factor in BETWEEN:
+            if lost:
+                yield from self._all(factor, guard, lost)
+
     def _moving(self, among: Sequence[Unit]) -> list[Unit]:
         """Leave out what was moved both ways, under one guard or another, and never changed a reward."""
         gains: dict[Unit, list[float]] = {}
@@ -143,7 +158,24 @@ class Sweep:
             holds = confirmed(candidate, self.trials, self.goal, pair)
             gains[factor] = self.trials.gain(candidate, self.goal.pairs)
             if holds:
+                yield from self._plainer(candidate, unit, pair)
                 yield candidate
+                self._refused.add((unit, guard))
+
+    def _plainer(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
+        """Spend a few episodes on what a maintainer would rather write than what was found."""
+        odd, guard, begun = oddness(found.mutations), found.guard, self.trials.spent
+        gains = {one: gains for (one, held), gains in self._gains.items() if held == guard and one != unit}
+        others = [one for one in self.units if one != unit]
+        for other in plainer(odd, gains, others, PROMISING * self.goal_gain):
+            for factor in NEAR if other not in gains else ():
+                yield from self._try(other, guard, factor, pair)
+            for _ in range(PLAINER_ROUNDS):
+                reached = max(self._gains.get((other, guard), {1.0: 0.0}).values())
+                if reached >= PROMISING * self.goal_gain and (other, guard) not in self._refused:
+                    yield from self._between((other, guard), pair)
+            if self.trials.spent - begun >= PLAINER:
+                return
 
     def _expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
         """Tell what is tried next, unless something comes between."""
@@ -161,7 +193,11 @@ class Sweep:
     def _refine(self, pair: int) -> Iterator[Candidate]:
         """Refine the most improving operand, and go on as long as it comes closer to what is needed."""
         for _ in range(REFINEMENTS):
-            open_to = [tried for tried in self._gains if self._refined[tried] < REFINED]
+            open_to = [
+                tried
+                for tried in self._gains
+                if self._refined[tried] < REFINED and tried not in self._refused
+            ]
             best = max(open_to, key=lambda tried: max(self._gains[tried].values()), default=None)
             if best is None:
                 return
@@ -199,7 +235,11 @@ class Sweep:
         yield from self._joining(gains).candidates(Joint(((unit, factor),), guard))
 
     def _leaders_together(self, guard: Guard) -> Iterator[Candidate]:
-        """Join what gained most at different places, each as it was best: main effects that add up."""
+        """Join what gained most at different places, each as it was best: main effects that add up.
+
+        What was refused alone is refined again afterwards only: others beside it come before its near-duplicates.
+        """
+        self._refused -= {tried for tried in self._refused if tried[1] == guard}
         leaders: dict[SiteId, tuple[float, Unit, float]] = {}
         for (unit, held), gains in self._gains.items():
             gain, factor = max((gain, factor) for factor, gain in gains.items())

@@ -21,9 +21,11 @@ PLACES = ("workspace", "package", "tests", "site")
 FORMS = {
     "module": "import {0}\n\n\ndef value():\n    return {0}.value()\n",
     "name": "from {0} import value\n",
+    "number": "from {0} import NUMBER\n\n\ndef value():\n    return NUMBER\n",
     "constant": "import {0}\nKEPT = {0}.value()\n\n\ndef value():\n    return KEPT\n",
     "inside": "def value():\n    import {0}\n    return {0}.value()\n",
 }
+LEAF = "NUMBER = {0}\n\n\ndef value():\n    return {0}\n"
 
 
 @pytest.fixture(autouse=True)
@@ -45,8 +47,8 @@ def laid_out(top: Path, places: list[str], forms: list[str]) -> list[Path]:
     names = [f"link{at}_{top.name.replace('-', '_')}" for at in range(len(places))]
     files = [folders[place] / f"{name}.py" for place, name in zip(places, names, strict=True)]
     for file, form, following in zip(files, forms, names[1:], strict=False):
-        file.write_text(FORMS[form].format(following))
-    files[-1].write_text("def value():\n    return 1\n")
+        file.write_text(FORMS[form].format(following) + "\n\nNUMBER = value()\n")
+    files[-1].write_text(LEAF.format(1))
     node = folders["workspace"] / "node.py"
     node.write_text(f"import {names[0]}\n\nout = {names[0]}.value()\n")
     importlib.invalidate_caches()
@@ -75,7 +77,7 @@ def test_an_edited_file_is_what_runs_wherever_the_modules_between_it_and_the_nod
         leaf = files[-1]
         assert ran(top / "tests", node, {leaf: leaf.read_text()}) == (1, ())
         for value in (2, 3):
-            assert ran(top / "tests", node, {leaf: f"def value():\n    return {value}\n"}) == (value, ())
+            assert ran(top / "tests", node, {leaf: LEAF.format(value)}) == (value, ())
         assert ran(top / "tests", node, {leaf: leaf.read_text()}) == (1, ())
 
 
@@ -95,7 +97,7 @@ def test_a_helper_that_somebody_else_keeps_is_told(tmp_path: Path) -> None:
     importlib.import_module("keeper_of_things")
     assert ran(tmp_path / "tests", node, {leaf: leaf.read_text()}) == (1, ())
     text = "import sys\nimport keeper_of_things as keeper\nout = keeper.first()\n"
-    out, older = ran(tmp_path / "tests", node, {node: text, leaf: "def value():\n    return 2\n"})
+    out, older = ran(tmp_path / "tests", node, {node: text, leaf: LEAF.format(2)})
     assert (out, older) == (1, (leaf,))
 
 
@@ -103,13 +105,13 @@ def test_a_file_that_the_test_imported_before_is_told_when_it_is_edited(tmp_path
     node, leaf = laid_out(tmp_path, ["workspace"], [])
     importlib.import_module(leaf.stem)
     with pytest.warns(UserWarning, match="was imported"):
-        assert ran(tmp_path / "tests", node, {leaf: "def value():\n    return 2\n"}) == (1, (leaf,))
+        assert ran(tmp_path / "tests", node, {leaf: LEAF.format(2)}) == (1, (leaf,))
 
 
 def test_an_edited_file_that_no_episode_needs_is_no_error(tmp_path: Path) -> None:
     node, leaf = laid_out(tmp_path, ["workspace"], [])
     node.write_text("out = 7\n")
-    assert ran(tmp_path / "tests", node, {leaf: "def value():\n    return 2\n"}) == (7, ())
+    assert ran(tmp_path / "tests", node, {leaf: LEAF.format(2)}) == (7, ())
 
 
 @pytest.mark.parametrize(

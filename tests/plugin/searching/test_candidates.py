@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from pytest_tarl import Sensor
 from pytest_tarl.instrumentation.trace import Trace
@@ -87,7 +89,16 @@ def test_changes_propose_a_guard_where_the_region_spans_everything() -> None:
     seen = evidence(spread, changes=CHANGES)
     assert Guard((Conjunct(WET, 1.0, 1.0),)) in candidate_guards(seen)
     assert Guard((Conjunct(X, 4.0, 7.0),)) in candidate_guards(seen)
-    assert candidate_guards(evidence(spread)) == (ALWAYS,)
+    assert all(one.sensor == WET for guard in candidate_guards(evidence(spread)) for one in guard.conjuncts)
+
+
+@given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 3)), min_size=1, max_size=30), st.integers(0, 3))
+def test_every_value_met_on_line_of_a_sensor_without_an_order_is_a_guard(cells: list[Cell], at: int) -> None:
+    kind = Sensor("kind", topic="/kind", field="data", categories=("a", "b", "c", "d"))
+    worlds = (world(1, [(0, at), (5, (at + 1) % 4)]), world(2, cells))
+    guards = candidate_guards(evidence(Region(()), (X, kind), worlds))
+    for value in {cell[1] for cell in cells}:
+        assert Guard((Conjunct(kind, value, value),)) in guards
 
 
 def test_a_guard_that_holds_wherever_the_robot_came_has_none_at_all_before_it() -> None:

@@ -1,0 +1,43 @@
+"""Files that a marker names among its nodes and that nothing is recorded in."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tarl_lint.api import Analysis
+
+
+def silent_files(files: Sequence[Path], analysis: Analysis, root: Path) -> Iterator[str]:
+    """Yield a sentence for every named file without a site, and why that is where it can be told."""
+    passed = {(root / step.span.path).resolve() for step in analysis.sites}
+    for file in files:
+        if file.suffix == ".py" and file.resolve() not in passed:
+            place = file.relative_to(root).as_posix() if file.is_relative_to(root) else str(file)
+            yield (
+                f"{place} is named among the nodes and no flow from a subscription to a publish call passes it, so "
+                f"nothing is recorded or searched in it: {_why(file, files)}"
+            )
+
+
+def _why(file: Path, files: Sequence[Path]) -> str:
+    folder = file.parent
+    importing = [one.name for one in files if one != file and f"{folder.name}.{file.stem}" in _imports(one)]
+    if importing and not (folder / "__init__.py").exists():
+        missing = f"{importing[0]} imports it from {folder.name}, which has no __init__.py"
+        return f"{missing}; add one, empty, and record again"
+    return "leave it out of nodes, or look with `tarl-lint` where the flow goes"
+
+
+def _imports(file: Path) -> set[str]:
+    """Return the dotted names that a file imports, those of names out of modules included."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(file.read_bytes())):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            found |= {node.module, *(f"{node.module}.{each.name}" for each in node.names)}
+        elif isinstance(node, ast.Import):
+            found |= {each.name for each in node.names}
+    return {".".join(name.split(".")[-2:]) for name in found} | found

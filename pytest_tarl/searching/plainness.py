@@ -1,0 +1,63 @@
+"""Which of two repairs a maintainer would rather write."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from enum import IntEnum
+from math import isfinite
+
+from pytest_tarl.model import Guard
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.searching.units import Unit
+
+
+class Oddness(IntEnum):
+    """How a change reads: a gain on a named constant, a gain on a number in a line, an offset or another sign."""
+
+    NAMED = 0
+    INNER = 1
+    OFFSET = 2
+
+
+def oddness(mutations: Iterable[Mutation]) -> Oddness:
+    """Return how the oddest of some mutations reads."""
+    return max((_of(one) for one in mutations), default=Oddness.NAMED)
+
+
+def plainer(
+    odd: Oddness, gains: Mapping[Unit, Mapping[float, float]], units: Sequence[Unit], promising: float
+) -> list[Unit]:
+    """Return the units that read plainer than what was found, the most gaining first.
+
+    Those that gain a good share are worth refining. In place of an offset those that were not tried yet are, too.
+    """
+    read = [unit for unit in units if _kind(unit) < odd]
+    gaining = [unit for unit in read if max(gains.get(unit, {}).values(), default=0.0) >= promising]
+    untried = [unit for unit in read if unit not in gains] if odd is Oddness.OFFSET else []
+    return [*sorted(gaining, key=lambda unit: -max(gains[unit].values())), *untried]
+
+
+def edges(guard: Guard) -> tuple[str, ...]:
+    """Return the sensors at whose values a repair under this guard sets in from one moment to the next."""
+    return tuple(
+        one.sensor.name
+        for one in guard.conjuncts
+        if one.sensor.numeric and (isfinite(one.low) or isfinite(one.high))
+    )
+
+
+def _kind(unit: Unit) -> Oddness:
+    operand = unit.operands[0]
+    if operand.value == 0 and not isinstance(operand.value, bool):
+        return Oddness.OFFSET
+    return Oddness.INNER if operand.literal else Oddness.NAMED
+
+
+def _of(mutation: Mutation) -> Oddness:
+    operand, value = mutation.operand, mutation.value
+    if isinstance(operand.value, bool) or isinstance(value, bool):
+        return Oddness.INNER if operand.literal else Oddness.NAMED
+    factor = value / operand.value if operand.literal and operand.value else value
+    if operand.value == 0 or factor < 0:
+        return Oddness.OFFSET
+    return Oddness.INNER if operand.literal else Oddness.NAMED

@@ -1,0 +1,98 @@
+"""Among what holds, what a maintainer would write: gains before offsets, names before numbers in a line."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pytest_tarl.model import Conjunct, Guard
+from pytest_tarl.patching.mutate import Mutation, mutations
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.plainness import Oddness, edges, oddness
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.sweep import Sweep
+from pytest_tarl.sensors import Sensor
+from tarl_lint.model import Operand
+from tests.plugin.searching.test_search import operand
+
+OFFSET, INNER = operand(3, "0.0", 0.0), operand(4, "2.5", 2.5)
+NAMED = replace(operand(5, "GAIN", 2.0), definition=operand(1, "2.0", 2.0).span)
+POSITION = Sensor("pos", topic="/odom", field="x", low=0, high=10, bins=10)
+
+
+@pytest.mark.parametrize(
+    ("mutation", "expected"),
+    [
+        (Mutation(OFFSET, 1.2), Oddness.OFFSET),
+        (Mutation(NAMED, -1.0), Oddness.OFFSET),
+        (Mutation(INNER, -2.5), Oddness.OFFSET),
+        (Mutation(INNER, 5.0), Oddness.INNER),
+        (Mutation(NAMED, 2.2), Oddness.NAMED),
+        (Mutation(operand(6, "True", True), value=False), Oddness.INNER),
+    ],
+)
+def test_how_a_change_reads(mutation: Mutation, expected: Oddness) -> None:
+    assert oddness([mutation]) == expected
+    assert oddness([Mutation(NAMED, 2.2), mutation]) == expected
+
+
+def test_only_conditions_on_numbers_have_an_edge() -> None:
+    wet = Sensor("wet", topic="/wet", field="data")
+    assert edges(Guard((Conjunct(wet, 1, 1), Conjunct(POSITION, 4, math.inf)))) == ("pos",)
+    assert edges(Guard((Conjunct(POSITION, -math.inf, math.inf),))) == ()
+
+
+def restoring(right: dict[Operand, float], window: float, harm: float = 0.0) -> Sweep:
+    """A world in which each of some operands restores the reward alone, within a window around its right factor."""
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        noise = float(np.random.default_rng(seed).normal(0, 0.05))
+        total = 0.0
+        for mutation in candidate.mutations:
+            of = mutation.operand
+            value = float(mutation.value)
+            factor = 1 + value if of.value == 0 else value / float(of.value or 1) if of.literal else value
+            off = abs(math.log(max(factor, 1e-3) / right[of])) if of in right and factor > 0 else 9.0
+            total = (
+                max(total, 10.0)
+                if off < window
+                else total - harm
+                if of not in right or off > window
+                else total
+            )
+        return Outcome(total + noise, total > 5)
+
+    pairs = tuple(Pair(seed, run(Candidate((), ALWAYS), seed).total) for seed in range(8))
+    goal = Goal(pairs, near=9.0, enough=9.5, online=0.0, passing=True)
+    filler = tuple(operand(at, f"{at}.0", float(at)) for at in range(20, 26))
+    return Sweep(
+        (*sorted(right, key=lambda one: one.span), *filler), mutations, (ALWAYS,), Trials(run, 300), goal
+    )
+
+
+def test_a_gain_is_tried_before_an_offset_that_holds_too() -> None:
+    found = restoring({OFFSET: 2.2, NAMED: 0.42}, window=0.2).candidates()
+    assert [next(found).mutations[0].operand for _ in range(2)] == [NAMED, OFFSET]
+
+
+def test_an_offset_is_taken_where_nothing_plainer_holds_and_few_runs_are_spent_on_that() -> None:
+    search = restoring({OFFSET: 2.2}, window=0.2)
+    assert next(search.candidates()).mutations[0].operand == OFFSET
+    assert search.trials.spent < 30
+
+
+@settings(max_examples=25, deadline=None)
+@given(factor=st.floats(1.35, 1.7), smaller=st.booleans())
+def test_a_narrow_window_near_the_original_is_found_soon(factor: float, smaller: bool) -> None:
+    """What loses both at 2.2 and at 0.4 gets smaller steps at once, before all others are moved further."""
+    right = 1 / factor if smaller else factor
+    search = restoring({NAMED: right}, window=0.14, harm=3.0)
+    found = next(search.candidates())
+    assert found.mutations[0].operand == NAMED
+    assert search.trials.spent <= 60
