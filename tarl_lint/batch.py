@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Final
@@ -35,7 +35,10 @@ def examine(
     scripts: Sequence[Script], config: Config, cache: Cache, jobs: int | None = 1, tell: Tell = silent
 ) -> Report:
     """Return what is found in the files, whatever the number of processes (None: as many as pay)."""
-    digests = {s.path: digest([s.path, s.name, str(s.is_package), *s.started, s.text]) for s in scripts}
+    digests = {
+        s.path: digest([s.path, s.name, str((s.is_package, s.installed)), *s.started, s.text])
+        for s in scripts
+    }
     whole = digest(digests.values())
     known = cache.plan(whole)
     if known:
@@ -48,13 +51,24 @@ def examine(
     cache.save()
     errors = sorted((e for r in reports for e in r.errors), key=lambda e: (e.path, e.line, e.message))
     findings = tuple(f for r in reports for f in r.findings)
-    return Report(findings, tuple(errors), tuple(sorted({c for r in reports for c in r.cut})))
+    return Report(
+        findings,
+        tuple(errors),
+        tuple(sorted({c for r in reports for c in r.cut})),
+        _every(r.ended for r in reports),
+    )
+
+
+def _every(names: Iterable[Iterable[str]]) -> tuple[str, ...]:
+    return tuple(sorted({name for some in names for name in some}))
 
 
 def _tasks(scripts: Sequence[Script], config: Config) -> list[Task]:
-    grouped = [Task(group, analyse=True) for group in groups(scripts, config)]
+    found = (group for group in groups(scripts, config) if not all(s.installed for s in group))
+    grouped = [Task(group, analyse=True) for group in found]
     inside = {s.path for task in grouped for s in task.scripts}
-    return [*grouped, *(Task((s,), analyse=False) for s in scripts if s.path not in inside)]
+    alone = (s for s in scripts if s.path not in inside and not s.installed)
+    return [*grouped, *(Task((s,), analyse=False) for s in alone)]
 
 
 def _reports(
@@ -109,9 +123,9 @@ def perform(task: Task, config: Config) -> Report:
             return Report((), errors)
         from tarl_lint import engine  # takes longer to import than most files to check
 
-        findings, failures, cut = engine.examine(modules, config, isolate=not debugging())
+        findings, failures, cut, ended = engine.examine(modules, config, isolate=not debugging())
     mistakes = (failure(path, error) for path, error in failures.items())
-    return Report(findings, (*errors, *mistakes), cut)
+    return Report(findings, (*errors, *mistakes), cut, ended)
 
 
 def _parsed(script: Script) -> Module | SourceError:

@@ -28,7 +28,7 @@ except ImportError:
 
 T = TypeVar("T")
 
-FORMAT: Final = 4
+FORMAT: Final = 1 + 4
 PLACE: Final = (".tarl", "cache", "lint")
 AFTERWARDS: Final = frozenset(
     ["root", "exclude", "baseline", "fail_on", "per_file_ignores", "file", "origins"]
@@ -39,12 +39,14 @@ AFTERWARDS: Final = frozenset(
 class Report:
     """What was found in some files: findings without fingerprints, and files that could not be analysed.
 
-    `cut` are programs so large that not everything in them was followed to its end.
+    `cut` are programs so large that not everything in them was followed to its end, `ended` the classes that are not
+    here and that flows ended at.
     """
 
     findings: tuple[Finding, ...] = ()
     errors: tuple[SourceError, ...] = ()
     cut: tuple[Cut, ...] = ()
+    ended: tuple[str, ...] = ()
 
 
 class Cache:
@@ -65,14 +67,21 @@ class Cache:
         if packed is None:
             return None
         self._used[key] = packed
-        findings, errors, cut = packed
+        findings, errors, cut, ended = packed
         found = tuple(_unpacked(Finding, f) for f in findings)
-        return Report(found, tuple(SourceError(*e) for e in errors), tuple(Cut(*c) for c in cut))
+        return Report(
+            found, tuple(SourceError(*e) for e in errors), tuple(Cut(*c) for c in cut), tuple(ended)
+        )
 
     def put(self, key: str, report: Report) -> None:
         """Store a report, unless a mistake of ours is in it: the next version may do better."""
         if self._file is not None and not any(error.bug for error in report.errors):
-            self._used[key] = [_packed(report.findings), _packed(report.errors), _packed(report.cut)]
+            self._used[key] = [
+                _packed(report.findings),
+                _packed(report.errors),
+                _packed(report.cut),
+                list(report.ended),
+            ]
 
     def plan(self, key: str) -> Sequence[str]:
         """Return the keys of the reports of a whole run, empty when one of them is missing."""

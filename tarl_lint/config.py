@@ -61,6 +61,7 @@ class Config:
     `wrappers` are functions that subscribe, publish or wait as one of ROS does.
     `remaps` are pairs of topics: as the code names them, and as they are called when launched.
     With `tf2`, what is looked up in the tree of transforms is a source too.
+    `follow_installed` names packages whose sources in the virtual environment `python` are analysed too.
     `origins` names where each value comes from: "default", "command line" or the settings file.
     """
 
@@ -77,6 +78,8 @@ class Config:
     wrappers: tuple[Wrapper, ...] = ()
     remaps: tuple[tuple[str, str], ...] = ()
     tf2: bool = False
+    follow_installed: tuple[str, ...] = ()
+    python: str = ""
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] = ()
     file: Path | None = None
     origins: tuple[tuple[str, str], ...] = ()
@@ -139,6 +142,8 @@ def resolve(options: Options) -> Config:
         wrappers=choose("wrappers", None, ()),
         remaps=choose("remaps", None, ()),
         tf2=choose("tf2", None, False),
+        follow_installed=choose("follow-installed", None, ()),
+        python=choose("python", None, ""),
         per_file_ignores=choose("per-file-ignores", options.per_file_ignores, ()),
         file=file,
         origins=tuple(origins.items()),

@@ -33,22 +33,24 @@ def lint(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
 
 def examine(
     modules: Sequence[Module], config: Config, *, isolate: bool = False
-) -> tuple[tuple[Finding, ...], dict[str, Exception], tuple[Cut, ...]]:
-    """Return the findings in modules that belong together, on which files we failed, and programs that were too much.
+) -> tuple[tuple[Finding, ...], dict[str, Exception], tuple[Cut, ...], tuple[str, ...]]:
+    """Return the findings in modules that belong together, on which files we failed, programs that were too much.
+
+    The last are the classes that are not here and that flows ended at: methods that these pass data to.
 
     Unless isolated, failures are raised. The rest is found all the same, as if what failed did nothing.
     """
     if one_sided(modules, config, HAZARDS):
-        return (), {}, ()
+        return (), {}, (), ()
     failures: dict[str, Exception] | None = {} if isolate else None
     with without_collection():
-        found, cut = with_deep_stack(lambda: _found(modules, config, failures))
-    return found, failures or {}, cut
+        found, cut, ended = with_deep_stack(lambda: _found(modules, config, failures))
+    return found, failures or {}, cut, ended
 
 
 def _found(
     modules: Sequence[Module], config: Config, failures: dict[str, Exception] | None
-) -> tuple[tuple[Finding, ...], tuple[Cut, ...]]:
+) -> tuple[tuple[Finding, ...], tuple[Cut, ...], tuple[str, ...]]:
     machine = Linker(modules, config, failures, thorough=False)
     machine.link()
     tracer = Tracer(machine)
@@ -56,8 +58,10 @@ def _found(
     found = (*findings(flows), *hazards(tracer, flows, config))
     tracer.texts.release()
     machine.release()
+    ended = tuple(sorted(machine.ended))
     trees = {module.path: module.tree for module in modules}
-    return found, tuple(sorted(Cut(path, node_name(trees[path])) for path in machine.cut if path in trees))
+    cut = sorted(Cut(path, node_name(trees[path])) for path in machine.cut if path in trees)
+    return found, tuple(cut), ended
 
 
 def analyse(modules: Sequence[Module], config: Config) -> tuple[Flow, ...]:

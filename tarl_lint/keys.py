@@ -60,6 +60,12 @@ def _names(value: Any) -> tuple[str, ...] | None:
     return names if good else None
 
 
+def _packages(value: Any) -> tuple[str, ...] | None:
+    """Accept names of packages as they are imported, without dots."""
+    names = _texts(value)
+    return names if names is not None and all(name.isidentifier() for name in names) else None
+
+
 def _identifiers(name: str) -> bool:
     return all(part.isidentifier() for part in name.split("."))
 
@@ -132,6 +138,8 @@ KEYS: Final[Mapping[str, tuple[Callable[[Any], Any], str]]] = {
         _wrappers,
         'a table such as {"bus.listen" = "rospy.Subscriber", "bus.talk" = {like = "rospy.Publisher", topic = 1}}',
     ),
+    "follow-installed": (_packages, 'a list of packages that are installed, such as ["robot_base"]'),
+    "python": (_text, 'the virtual environment that holds them, such as ".venv"'),
     "remaps": (_remaps, 'a table of topics as written and as they are, such as {"scan" = "/front/scan"}'),
     "tf2": (_switch, "true or false"),
     "fail-on": (_fail_on, f"one of {', '.join(map(repr, FAIL_ON))}"),

@@ -11,6 +11,15 @@ LIBRARIES: Final = frozenset(
     ["rospy", "rclpy", "message_filters", "actionlib", "tf2_ros"]
 )  # known by the catalog
 
+KNOWN: Final = (
+    sys.stdlib_module_names | LIBRARIES | {"smach", "typing_extensions"}
+)  # their classes take no data
+
+
+def unfollowed(classes: Iterable[str]) -> tuple[str, ...]:
+    """Return the classes that are neither of Python nor of ROS as the catalog describes it."""
+    return tuple(name for name in classes if name.partition(".")[0] not in KNOWN)
+
 
 class Named(Protocol):
     """A file of Python, parsed or not."""

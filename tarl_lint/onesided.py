@@ -6,8 +6,9 @@ that a wanted rule does not rule out is run like any other.
 
 from __future__ import annotations
 
+import ast
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 from typing import Final, Protocol
 
@@ -15,6 +16,7 @@ from tarl_lint import catalog
 from tarl_lint.config import Config
 from tarl_lint.evidence import Evidence
 from tarl_lint.model import Finding
+from tarl_lint.names import KNOWN
 from tarl_lint.relevance import code, whole
 from tarl_lint.source import Module
 
@@ -61,8 +63,33 @@ def one_sided(modules: Sequence[Module], config: Config, rules: Sequence[Rule]) 
     hears, says, answers = (any(map(words.search, texts)) for words in (HEARS, SAYS, ANSWERS))
     if answers or (hears and says):
         return False
+    if hears and any(
+        _inherits_from_elsewhere(m.tree, {m.name.partition(".")[0] for m in modules}) for m in modules
+    ):
+        return False  # what is heard may go into a base class that is not here, which a note names
     side = Side(modules, texts, hears, says)
     return all(_ruled_out(rule, side) for rule in rules if config.enabled(rule.CODE))
+
+
+def _inherits_from_elsewhere(tree: ast.Module, ours: Set[str]) -> bool:
+    """Tell whether a class inherits from one of a package that is neither here, nor Python's or ROS's own."""
+    known = KNOWN | ours
+    names: set[str] = set()
+    for node in tree.body:
+        if isinstance(node, ast.ImportFrom) and node.level == 0:
+            if (node.module or "").partition(".")[0] not in known:
+                names.update(alias.asname or alias.name for alias in node.names)
+        elif isinstance(node, ast.Import):
+            roots = {alias.asname or alias.name.partition(".")[0]: alias.name for alias in node.names}
+            names.update(name for name, module in roots.items() if module.partition(".")[0] not in known)
+    bases = (base for node in tree.body if isinstance(node, ast.ClassDef) for base in node.bases)
+    return bool(names) and any(_root(base) in names for base in bases)
+
+
+def _root(expr: ast.expr) -> str:
+    while isinstance(expr, ast.Attribute):
+        expr = expr.value
+    return expr.id if isinstance(expr, ast.Name) else ""
 
 
 def _ruled_out(rule: Rule, side: Side) -> bool:

@@ -62,6 +62,21 @@ def groups(modules: Sequence[M], config: Config) -> list[tuple[M, ...]]:
     return [tuple(sorted(g, key=lambda m: turn[m.path])) for g in _connected(kept, either)]
 
 
+def reached(start: Iterable[M], others: Sequence[M]) -> list[M]:
+    """Return those of `others` that modules import, directly or by each other."""
+    first = list(start)
+    index = Index([*first, *others])
+    wanted = {m.path for m in others}
+    found: dict[str, M] = {}
+    pending = first
+    while pending:
+        for module in _imports(pending.pop(), index):
+            if module.path in wanted and module.path not in found:
+                found[module.path] = module
+                pending.append(module)
+    return [m for m in others if m.path in found]
+
+
 def mentioning(modules: Iterable[M], config: Config) -> Iterator[M]:
     """Yield the modules with a word without which a module neither subscribes nor publishes."""
     named = (*(w.name for w in config.wrappers), *config.sources, *config.sinks)

@@ -10,7 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Final
 
-from tarl_lint import baseline, batch, cache, discover, source, suppress
+from tarl_lint import baseline, batch, cache, discover, installed, names, source, suppress
 from tarl_lint.baseline import Accepted, Baseline
 from tarl_lint.cache import Cache, Report
 from tarl_lint.config import Config, Options, Stdin
@@ -44,7 +44,8 @@ class Result:
 
     `findings` are sorted by place and carry fingerprint and status; `silenced` are those that comments speak
     of. `found` are the findings as a baseline holds them, `vanished` and `kept` what the baseline holds beyond
-    that. `unmatched` are sentences about settings that speak of nothing here. `texts` are the analysed files.
+    that. `unmatched` are sentences about settings that speak of nothing here. `followed` are installed
+    packages that were analysed too, `ended` classes that are not here and that flows ended at. `texts` are the files.
     `left_out` counts what `per-file-ignores` speaks of, `off_by_default` what rules found that nobody asked for.
     Without `names_errors` files that cannot be read are counted but not listed for people; only flows of the `kinds`
     were asked for, hazards with `reports_hazards`. New findings of the codes in `failing` make the run fail.
@@ -58,6 +59,8 @@ class Result:
     kept: tuple[Accepted, ...] = ()
     unused: tuple[Suppression, ...] = ()
     unmatched: tuple[str, ...] = ()
+    followed: tuple[str, ...] = ()
+    ended: tuple[str, ...] = ()
     texts: Mapping[str, str] = field(default_factory=dict)
     statistics: Statistics = field(default_factory=Statistics)
     baseline: Path | None = None
@@ -86,11 +89,13 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
         raise UsageError(_nothing(options.paths, discovery.notes))
     known = _accepted(options, config)
     scripts, unread = read(discovery.files, options.stdin, tell)
-    report = _examine(scripts, options, config, tell)
+    followed = installed.follow(scripts, config)
+    report = installed.without(_examine((*scripts, *followed.scripts), options, config, tell), followed)
     errors = tuple(sorted((*unread, *report.errors), key=lambda e: (e.path, e.line)))
     found_in = {finding.span.path for finding in report.findings}
     broken = {error.path for error in errors if not error.bug} - found_in
     texts = {script.path: script.text for script in scripts if script.path not in broken}
+    beside = {script.path: script.text for script in followed.scripts}
     identities = _Identities(discovery.files, config)
     marked = tuple(identities.mark(f) for f in report.findings)
     wanted = tuple(f for f in marked if config.enabled(f.code))
@@ -110,8 +115,10 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
         vanished=vanished,
         kept=kept,
         unused=tuple(s for s in unused if _in_vain(s, config)),
-        unmatched=unmatched(config, texts.values()),
-        texts=texts,
+        unmatched=(*unmatched(config, texts.values()), *followed.missing),
+        followed=followed.packages,
+        ended=names.unfollowed(report.ended),
+        texts={**texts, **beside},
         statistics=Statistics(len(texts), lines, discovery.notes, report.cut),
         baseline=config.baseline if known.entries else None,
         names_errors=config.enabled(UNREADABLE),

@@ -26,6 +26,7 @@ class Module:
     tree: ast.Module
     is_package: bool = False
     started: tuple[str, ...] = ()  # names that others start, as the package says
+    installed: bool = False  # of a package that is only followed: nothing in it is started or reported
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,7 @@ class Script:
     text: str
     is_package: bool = False
     started: tuple[str, ...] = ()
+    installed: bool = False
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,7 @@ def parsed(script: Script) -> Module | SourceError:
         return SourceError(path, 1, TOO_DEEP.format("parsed"))
     except ValueError as error:
         return SourceError(path, 1, f"The file cannot be parsed ({error}): mend it, or exclude it.")
-    return Module(path, script.name, script.text, tree, script.is_package, script.started)
+    return Module(path, script.name, script.text, tree, script.is_package, script.started, script.installed)
 
 
 def _decode(path: str, data: bytes) -> str | SourceError:

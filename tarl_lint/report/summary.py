@@ -14,6 +14,7 @@ from tarl_lint.report.line import Line, View, one_line
 from tarl_lint.runner import UNREADABLE, Result
 from tarl_lint.suppress import Suppression
 
+_CLASSES: Final = 5  # classes that are not here, named one by one
 _SHOWN: Final = 20  # vanished flows listed by name
 
 
@@ -24,6 +25,7 @@ def closing(result: Result) -> Iterator[Line]:
         yield ((text, "strong"),)
     yield from _silenced(result)
     yield from not_analysed(result)
+    yield from _beyond(result)
 
 
 def hints(result: Result, view: View) -> Iterator[Line]:
@@ -48,6 +50,18 @@ def not_analysed(result: Result) -> Iterator[Line]:
     missed = list(_missed(result))
     if missed:
         yield ((f"Not analysed: {', '.join(missed)}.", "quiet"),)
+
+
+def _beyond(result: Result) -> Iterator[Line]:
+    """Yield which installed packages were followed, and at which classes that are not here flows ended."""
+    if result.followed:
+        yield ((f"Followed into installed packages: {', '.join(result.followed)}.", "quiet"),)
+    if result.ended:
+        packages = sorted({name.partition(".")[0] for name in result.ended})
+        setting = "follow-installed = [" + ", ".join(f'"{name}"' for name in packages) + "]"
+        named = ", ".join(result.ended[:_CLASSES])
+        more = f" and {len(result.ended) - _CLASSES} more" if len(result.ended) > _CLASSES else ""
+        yield ((f"Not followed: what goes into {named}{more}, which are not here ({setting}).", "quiet"),)
 
 
 def _silenced(result: Result) -> Iterator[Line]:

@@ -79,6 +79,9 @@ class Interpreter:
         self.made: set[Hashable] = set()  # classes that something instantiates
         self.guests: set[object] = set()  # classes that only others instantiate
         self.plugins: set[object] = set()  # those that a package names for others
+        self.ended: set[str] = (
+            set()
+        )  # classes that are not here and whose methods data or callbacks are passed to
         self.probe: Probe | None = None
         self.watch: Callable[[Frame, ir.Stmt], None] | None = None
 

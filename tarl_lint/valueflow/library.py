@@ -32,9 +32,21 @@ from tarl_lint.valueflow.heap import ANY
 from tarl_lint.valueflow.interpreter import Interpreter
 from tarl_lint.valueflow.invocation import Arguments, Invocation
 from tarl_lint.valueflow.special import FUNCTIONS
+from tarl_lint.valueflow.states import LATER
 from tarl_lint.valueflow.texts import TEXT_METHODS
 from tarl_lint.valueflow.userdata import MACHINE_FIELD
-from tarl_lint.valueflow.values import BOTTOM, BY_CLASS, NONE, UNKNOWN, Nodes, Obj, Value, lineage, pointer
+from tarl_lint.valueflow.values import (
+    BOTTOM,
+    BY_CLASS,
+    NONE,
+    UNKNOWN,
+    Nodes,
+    Obj,
+    Value,
+    inherited_from,
+    lineage,
+    pointer,
+)
 from tarl_lint.wrapping import facts
 
 SIGNALLING = frozenset(["connect", "emit"])
@@ -195,6 +207,8 @@ def _unknown_method(
     if (raises := fails(name)) is not None:
         ctx.ops.may_fail(ctx, ctx.use(base) | activations.all_used(ctx, arguments), raises, frame)
     learnt = activations.all_used(ctx, arguments) | given
+    if learnt or any(o.kind in LATER for v in (*arguments[0], *arguments[1].values()) for o in v.pts):
+        ctx.ended |= inherited_from(base)
     if learnt and base.pts and all(map(changeable, base.pts)) and changes(name, dropped=dropped(frame, call)):
         containers.insert_elements(ctx, base, [Value(learnt)], frame, call)
     written = catalog.METHODS_WRITING.get(name)

@@ -14,6 +14,8 @@ from tarl_lint.valueflow.values import ClassInfo, Obj, Value, lineage
 def start_programs(ctx: Interpreter) -> None:
     """Run functions and make nodes that are there to be started from outside (entry points)."""
     for program in list(ctx.programs.values()):
+        if ctx.modules[program.path].installed:
+            continue
         module = ctx.module_objects[program.name]
         starting = STARTING.search(ctx.modules[program.path].text) is not None
         named = ctx.modules[program.path].started

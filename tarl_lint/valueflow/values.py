@@ -222,6 +222,13 @@ class ClassInfo:
         return inherited or any(not _plain(e) for e in self.external)
 
 
+def inherited_from(value: Value) -> set[str]:
+    """Return the classes that are not here and that objects of ours inherit from: a method may be theirs."""
+    classes = {o.info for o in value.pts if o.kind == "instance" and isinstance(o.info, Obj)}
+    infos = [c.info for cls in classes for c in lineage(cls)]
+    return {e for i in infos if isinstance(i, ClassInfo) for e in i.external if "." in e and not _plain(e)}
+
+
 def function_of(target: Obj) -> ir.Function | None:
     """Return the function of ours that a call of an object runs, None where nothing tells."""
     closure = target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
