@@ -34,6 +34,7 @@ from pytest_tarl.seeds import generator
 CONFIDENCE = 0.95
 GOAL = 0.94
 EPISODES = (8, 20, 50, 200)
+ONLINE = (8, 20, 50)  # for losses without a range, which take long
 OFFLINE = 200
 QUANTILE = 0.05
 TRUTH = 2_000_000  # draws that a mean or quantile is known from
@@ -138,17 +139,21 @@ class Row:
     def line(self) -> str:
         """Return the row of the table."""
         label = self.bound if self.exact else f"{self.bound} (approximate)"
-        return (
-            f"| {label} | {self.world} | {' | '.join(f'{low:.1%} / {high:.1%}' for low, high in self.held)} |"
-        )
+        shares = [f"{low:.1%} / {high:.1%}" for low, high in self.held]
+        return f"| {label} | {self.world} | {' | '.join([*shares, *[''] * (len(EPISODES) - len(shares))])} |"
 
 
 def measured(
-    bound: str, exact: bool, world: str, held: Callable[[Generator, int], Held], repetitions: int
+    bound: str,
+    exact: bool,
+    world: str,
+    held: Callable[[Generator, int], Held],
+    repetitions: int,
+    sizes: tuple[int, ...] = EPISODES,
 ) -> Row:
     """Draw over and over and count."""
     found = []
-    for n in EPISODES:
+    for n in sizes:
         seen = np.array([held(generator(seed, f"{bound}/{world}/{n}"), n) for seed in range(repetitions)])
         low, high = seen.mean(axis=0).tolist()
         found.append((low, high))
@@ -167,7 +172,7 @@ def of_rate(p: float, repetitions: int) -> list[Row]:
 def of_world(name: str, repetitions: int) -> list[Row]:
     """Return the rows of a distribution of totals."""
     world = World(name)
-    declared, fewer = world.declared, repetitions // 2
+    declared, fewer, few = world.declared, repetitions // 2, repetitions // 4
     exact: list[Row] = []
     if declared is not None:
         exact = [
@@ -181,8 +186,8 @@ def of_world(name: str, repetitions: int) -> list[Row]:
         *exact,
         measured("quantile, order statistics", True, name, world.quantile, repetitions),
         measured("mean, Student", False, name, lambda d, n: world.mean(d, n, None), repetitions),
-        measured("loss, permutation", False, name, lambda d, n: world.loss(d, n, None), fewer),
-        measured("loss, Welch: not used", False, name, world.welch, fewer),
+        measured("loss, used", False, name, lambda d, n: world.loss(d, n, None), few, ONLINE),
+        measured("loss, Welch alone: not used", False, name, world.welch, few, ONLINE),
     ]
 
 

@@ -51,6 +51,7 @@ class Account:
     properties: tuple[tuple[str, str], ...] = ()
     annotation: str = ""
     row: Row = ()
+    unrecorded: bool = False  # whether there is nothing to compare with
 
 
 @dataclass(frozen=True)

@@ -82,17 +82,21 @@ class Sensor:
             raise SettingsError(
                 f"Sensor {self.name!r} is either numeric (low, high, bins) or has categories."
             )
-        if self.tilings and (self.bins is None or self.tilings < 0):
+        if self.tilings and (not self.bins or self.tilings < 0):
             raise SettingsError(f"Sensor {self.name!r}: tilings are for a sensor with bins, and at least 1.")
 
     def _take_edges(self) -> None:
         edges = tuple(math.nan if (end := as_number(one)) is None else end for one in self.edges)
         rising = all(a < b for a, b in pairwise(edges)) and all(map(math.isfinite, edges))
         given = (self.low, self.high, self.bins)
-        if len(edges) < 2 or not rising or given not in ((None,) * 3, (edges[0], edges[-1], len(edges) - 1)):
+        if (
+            (self.angle and len(edges) < 2)
+            or not rising
+            or given not in ((None,) * 3, (edges[0], edges[-1], len(edges) - 1))
+        ):
             raise SettingsError(
-                f"Sensor {self.name!r}: edges must be at least two rising, finite numbers, and stand in place of low, "
-                f"high and bins, got {self.edges}."
+                f"Sensor {self.name!r}: edges must be rising, finite numbers (at least two for an angle), and stand in "
+                f"place of low, high and bins, got {self.edges}."
             )
         self._set(edges=edges, low=edges[0], high=edges[-1], bins=len(edges) - 1)
 
@@ -102,10 +106,16 @@ class Sensor:
             raise SettingsError(
                 f"Sensor {self.name!r} needs low, high and bins together; or bins alone, to learn the edges."
             )
-        whole = isinstance(self.bins, int) and not isinstance(self.bins, bool) and self.bins >= 1
+        least = (
+            0 if len(self.edges) == 1 else 1
+        )  # of a single edge there are the two bins beyond the ends alone
+        whole = isinstance(self.bins, int) and not isinstance(self.bins, bool) and self.bins >= least
         low, high = (as_number(end) for end in ends)
         finite = ends == (None, None) or (
-            low is not None and high is not None and -math.inf < low < high < math.inf
+            low is not None
+            and high is not None
+            and -math.inf < low <= high < math.inf
+            and (low < high or not least)
         )
         if self.bins is not None and not (whole and finite):
             raise SettingsError(
@@ -161,8 +171,9 @@ class Sensor:
 
     @property
     def resolution(self) -> float:
-        """Return the width of the narrowest bin of a numeric sensor."""
-        return min((b - a for a, b in pairwise(self.ends)), default=1.0)
+        """Return the width of the narrowest bin of a numeric sensor; of a single edge its last decimal."""
+        decimals = len(f"{abs(self.edges[0]):.6f}".rstrip("0").partition(".")[2]) if self.edges else 0
+        return min((b - a for a, b in pairwise(self.ends)), default=10.0**-decimals)
 
     def bin(self, value: Any) -> int | None:
         """Return the bin of `value`: 0 to bins-1, -1 and `bins` outside; None for NaN, which tells nothing."""
@@ -200,7 +211,7 @@ class Sensor:
             if math.isinf(number):
                 return None
             number = self.low + (number - self.low) % (self.high - self.low)
-        if number > self.high:
+        if number > self.high or (not self.bins and number == self.high):
             return self.bins
         if self.edges:
             index = bisect_right(self.edges, number) - 1

@@ -145,10 +145,14 @@ class TarlSession:
         self._summary.write(terminalreporter, self._width(), self._joined().lines)
 
     def pytest_unconfigure(self) -> None:
-        """Let the last lines of the output be the commands that apply what was found."""
-        if not self._summary.patches or not self._has_terminal():
+        """Let the last lines of the output be the commands that apply what was found, or that nothing was compared."""
+        if not self._has_terminal():
             return
         terminal = self.config.get_terminal_writer()
+        if warning := self._summary.warning():
+            terminal.line(warning, bold=True, red=True)
+        if not self._summary.patches:
+            return
         for command in self._joined().commands:
             terminal.line(command)
         self._summary.patches.clear()
@@ -279,7 +283,9 @@ class _Ended:
         elif isinstance(error, TarlError):
             report.longrepr = str(error)
         elif error is not None and isinstance(error.__context__, FixtureError):
-            attach(report, Account((str(error),)))  # skipped: pytest tells why only when asked
+            attach(
+                report, Account((str(error),), unrecorded=True)
+            )  # skipped: pytest tells why only when asked
         return report
 
 

@@ -24,6 +24,7 @@ def attach(report: pytest.TestReport, account: Account) -> None:
         "patch": str(account.patch or ""),
         "annotation": account.annotation,
         "row": list(account.row),
+        "unrecorded": account.unrecorded,
     }
     setattr(report, ACCOUNT, told)
 
@@ -41,6 +42,22 @@ class Summary:
         if told and told not in self._told:
             self._told.append(told)
             self.patches += [told["patch"]] if told["patch"] else []
+
+    def warning(self) -> str:
+        """Say loudly that tests were not compared, since nothing is recorded of them; empty where all were."""
+        missing = sum(bool(one["unrecorded"]) for one in self._told)
+        if not missing:
+            return ""
+        them = "it has" if missing == 1 else "they have"
+        what = (
+            f"NOTHING WAS COMPARED: {missing} of {missing}"
+            if missing == len(self._told)
+            else f"NOT COMPARED: {missing} of {len(self._told)}"
+        )
+        return (
+            f"{what} tests, since {them} no recorded utility. Run `pytest --tarl-record` once and commit .tarl/utility"
+            "; --tarl-strict lets such tests fail."
+        )
 
     def write(self, terminal: TerminalReporter, width: int, closing: Sequence[str]) -> None:
         """Write the section, which ends with `closing`; below it, on GitHub, the annotations."""

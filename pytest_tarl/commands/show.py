@@ -52,7 +52,11 @@ def described(sensor: Sensor, bins: Sequence[int]) -> str:
     """Describe a sensor and which of its bins were seen."""
     origin = f"{sensor.topic} {sensor.field}" if sensor.topic else "observed"
     origin += f", in the node {sensor.expr}" if sensor.expr else ""
-    if sensor.numeric:
+    if len(sensor.edges) == 1:
+        kind = (
+            f"below and above {sensor.edges[0]:g}{sensor.unit and ' ' + sensor.unit}, {len(set(bins))} seen"
+        )
+    elif sensor.numeric:
         unit = f" {sensor.unit}" if sensor.unit else ""
         kind = f"{sensor.low:g} to {sensor.high:g}{unit} in {sensor.bins} bins, {len(set(bins))} seen"
     else:

@@ -134,7 +134,7 @@ def _axis(sensor: Sensor, dimension: int, bins: Sequence[int], vocabulary: Vocab
 
 def _edges(sensor: Sensor, first: int, last: int) -> tuple[float, float]:
     """Return where bins begin and end on the axis; the open ones at either end are drawn one bin wide."""
-    if sensor.bins is None or sensor.low is None or sensor.high is None:
+    if not sensor.bins or sensor.low is None or sensor.high is None:
         return first - 0.5, last + 0.5
     width = (sensor.high - sensor.low) / sensor.bins
     return sensor.low + first * width, sensor.low + (last + 1) * width

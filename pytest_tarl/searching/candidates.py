@@ -207,7 +207,7 @@ def _widened(guard: Guard) -> Guard:
 
 def _wider(conjunct: Conjunct) -> Conjunct:
     sensor = conjunct.sensor
-    if sensor.bins is None or sensor.low is None or sensor.high is None:
+    if not sensor.bins or sensor.low is None or sensor.high is None:
         return conjunct
     if sensor.angle:
         return _wider_arc(conjunct, sensor.low, sensor.high - sensor.low)

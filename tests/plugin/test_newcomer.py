@@ -25,7 +25,22 @@ def test_the_folder_that_pytest_is_started_in_changes_nothing(
 def test_what_was_not_recorded_yet_is_told_without_asking(tank: pytest.Pytester) -> None:
     told = tank.runpytest(*ONLINE, "-q")
     told.assert_outcomes(skipped=1, deselected=1)
-    told.stdout.fnmatch_lines(["*run `pytest test_tank.py::test_fills --tarl-record` first*"])
+    told.stdout.fnmatch_lines(
+        [
+            "*run `pytest test_tank.py::test_fills --tarl-record` first*",
+            "*1 skipped*",
+            "NOTHING WAS COMPARED: 1 of 1 tests, since it has no recorded utility.*",
+        ]
+    )
+
+
+def test_tests_that_were_compared_are_told_from_those_that_were_not(tank: pytest.Pytester) -> None:
+    tank.runpytest(*RECORD)
+    tank.runpytest(*ONLINE).stdout.no_fnmatch_line("*NOT*COMPARED*")
+    source = (tank.path / "test_tank.py").read_text()
+    (tank.path / "test_other.py").write_text(source)
+    told = tank.runpytest(*ONLINE)
+    told.stdout.fnmatch_lines(["NOT COMPARED: 1 of 2 tests, since it has no recorded utility.*"])
 
 
 def test_a_folder_that_cannot_be_written_to_is_named_before_any_episode(tank: pytest.Pytester) -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from array import array
 from fractions import Fraction
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -191,3 +193,19 @@ def test_a_function_reads_a_sensor_and_is_stored_by_its_name_and_never_in_a_guar
     assert str(stored(sensor).field).endswith("nearest()")
     assert not sensor.guardable
     assert not stored(sensor).guardable
+
+
+def test_a_single_edge_is_a_threshold() -> None:
+    flag = Sensor("loaded", topic="/loaded", field="data", edges=(0.5,))
+    assert [flag.bin(value) for value in (-1e9, 0, 0.49, 0.5, 1.0, True)] == [-1, -1, -1, 0, 0, 0]
+    assert flag.interval(-1, -1) == (-math.inf, 0.5)
+    assert flag.interval(0, 0) == (0.5, math.inf)
+    assert Sensor(**dataclasses.asdict(flag)) == flag
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"edges": (0.5,), "angle": True}, {"edges": (0.5,), "tilings": 2}, {"edges": ("x",)}]
+)
+def test_what_a_single_edge_cannot_be_is_said(wrong: dict[str, Any]) -> None:
+    with pytest.raises(SettingsError, match=r"edges must be|tilings are for"):
+        Sensor("x", **wrong)

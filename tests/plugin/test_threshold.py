@@ -1,0 +1,18 @@
+"""A sensor with one edge, from recording to patch and page."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
+
+
+def test_a_threshold_serves_from_recording_to_patch(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "low=0, high=1, bins=10", "edges=(0.5,)")
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    told = tank.runpytest(*ONLINE, "--tarl-repair", "--tarl-seed=3")
+    told.stdout.fnmatch_lines(["*where*level below 0.5*"])
+    assert list((tank.path / ".tarl" / "report").glob("*.html"))
+    tank.run("tarl", "show", fixture_file(tank)).stdout.fnmatch_lines(
+        ["*level: /level data, below and above 0.5*"]
+    )
