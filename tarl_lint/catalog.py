@@ -77,6 +77,9 @@ METHODS: Final[Mapping[str, Fact]] = {
     "create_lifecycle_publisher": Fact(
         "publisher", "rclpy.create_lifecycle_publisher", (1, "topic"), (0, "msg_type")
     ),
+    "advertise": Fact(
+        "publisher", "jsk_topic_tools.ConnectionBasedTransport.advertise", (0, "name"), (1, "data_class")
+    ),
     "create_timer": Fact("timer", "rclpy.create_timer", callback=(1, "callback")),
     "create_service": Fact(
         "service", "rclpy.create_service", (1, "srv_name"), (0, "srv_type"), (2, "callback")
