@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from pytest_tarl import holding
 from pytest_tarl.flags import FLAGS
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Register the marker, and the session object when a mode is asked for."""
     config.addinivalue_line("markers", MARKER)
+    holding.prepare()
     if _asked(config):
         from pytest_tarl.session import TarlSession
 
@@ -77,9 +79,11 @@ def pytest_runtest_makereport(
     if call.excinfo is not None and (
         item.get_closest_marker("tarl") is not None or _ours(call.excinfo.value)
     ):
-        from pytest_tarl.repeating import keep_error
+        from pytest_tarl.repeating import in_the_node, keep_error
 
         keep_error(item, call.excinfo.value, report)
+        if item.config.getoption("usepdb", False):
+            call.excinfo = in_the_node(call.excinfo)
     return report
 
 

@@ -20,6 +20,7 @@ from _pytest.runner import runtestprotocol
 
 from pytest_tarl.designation import Designation, designation
 from pytest_tarl.errors import NodeError, RequirementError, SettingsError, StuckNodeError, TarlError
+from pytest_tarl.printable import printable
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 from pytest_tarl.scenarios import without_drift
 from pytest_tarl.seeds import episode_seed
@@ -153,7 +154,20 @@ def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestRepor
     if EPISODE in item.stash and item.stash[EPISODE].error is None:
         item.stash[EPISODE].error = error
     if isinstance(error, (TarlError, RequirementError)) and report.failed:
-        report.longrepr = str(error)
+        from pytest_tarl.ros.accounts import account
+
+        report.longrepr = printable(account(error, item.path))
+
+
+def in_the_node(excinfo: pytest.ExceptionInfo[BaseException]) -> pytest.ExceptionInfo[BaseException]:
+    """Return the exception of a node in place of what the test got, so that a debugger stops in the node."""
+    from pytest_tarl.ros.accounts import of_node
+
+    cause = excinfo.value.__cause__
+    if not isinstance(excinfo.value, NodeError) or cause is None or cause.__traceback__ is None:
+        return excinfo
+    cause.__traceback__ = of_node(cause.__traceback__)
+    return pytest.ExceptionInfo.from_exc_info((type(cause), cause, cause.__traceback__))
 
 
 def _episode(item: pytest.Item) -> Episode:

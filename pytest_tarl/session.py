@@ -13,6 +13,7 @@ import pytest
 from pytest_tarl.design import AS_WRITTEN
 from pytest_tarl.errors import FixtureError, SettingsError, TarlError
 from pytest_tarl.options import Options
+from pytest_tarl.printable import printable
 from pytest_tarl.repeating import (
     INTERRUPTS,
     NOTHING,
@@ -154,7 +155,7 @@ class TarlSession:
         if not self._summary.patches:
             return
         for command in self._joined().commands:
-            terminal.line(command)
+            terminal.line(printable(command))
         self._summary.patches.clear()
 
     def _joined(self) -> Joined:
@@ -230,7 +231,7 @@ class TarlSession:
         reporter = self.config.pluginmanager.get_plugin("terminalreporter")
         if reporter is not None:
             reporter.ensure_newline()
-            reporter.write_line(sentence)
+            reporter.write_line(printable(sentence))
 
     def _progress(self, item: pytest.Function) -> Progress:
         reporter = self.config.pluginmanager.get_plugin("terminalreporter")
@@ -279,9 +280,9 @@ class _Ended:
             for one in (report, self.teardown):  # JUnit reads the properties of the last report
                 one.user_properties.extend(account.properties)
             if account.problem:
-                report.outcome, report.longrepr = "failed", account.problem
+                report.outcome, report.longrepr = "failed", printable(account.problem)
         elif isinstance(error, TarlError):
-            report.longrepr = str(error)
+            report.longrepr = printable(str(error))
         elif error is not None and isinstance(error.__context__, FixtureError):
             attach(
                 report, Account((str(error),), unrecorded=True)

@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from pytest_tarl.printable import printable
 from pytest_tarl.report.table import side_by_side
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ ACCOUNT = "tarl_account"  # attribute of a report; plain values, so that xdist c
 def attach(report: pytest.TestReport, account: Account) -> None:
     """Send an account along with a test's report."""
     told = {
-        "lines": list(account.lines),
+        "lines": [printable(line) for line in account.lines],
         "patch": str(account.patch or ""),
         "annotation": account.annotation,
         "row": list(account.row),
@@ -67,10 +68,10 @@ class Summary:
         table = side_by_side([tuple(one["row"]) for one in self._told if one["row"]], width)
         blocks = [*(one["lines"] for one in self._told), *([table] if table else [])]
         for number, lines in enumerate(blocks):
-            terminal.write_line("\n".join(["", *lines] if number else lines))
+            terminal.write_line(printable("\n".join(["", *lines] if number else lines)))
         for line in closing:
-            terminal.write_line(f"\n{line}")
+            terminal.write_line(f"\n{printable(line)}")
         if os.environ.get("GITHUB_ACTIONS") == "true":
             for one in self._told:
                 if one["annotation"]:
-                    terminal.write_line(one["annotation"])
+                    terminal.write_line(printable(one["annotation"]))

@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
 from pytest_tarl.errors import RefusedError, TarlError
+from pytest_tarl.printable import printable, printable_line
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -18,10 +19,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return int(arguments.run(arguments))
     except RefusedError as refused:
-        print(f"tarl: {refused}", file=sys.stderr)
+        print(printable(f"tarl: {refused}"), file=sys.stderr)
         return 1
     except TarlError as problem:
-        print(f"tarl: {problem}", file=sys.stderr)
+        print(printable(f"tarl: {problem}"), file=sys.stderr)
         return 2
     except BrokenPipeError:
         sys.stdout = open(os.devnull, "w")  # noqa: PTH123, SIM115 - what is left to print goes nowhere
@@ -29,6 +30,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("tarl: interrupted.", file=sys.stderr)
         return 130
+
+
+def _print(lines: Iterable[str]) -> None:
+    """Print lines that hold texts of others: code, topics, headers of patches."""
+    print("\n".join(map(printable_line, lines)))
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -105,14 +111,14 @@ def _add_patches(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def _apply(arguments: argparse.Namespace) -> int:
     from pytest_tarl.commands import applying
 
-    print("\n".join(applying.apply(arguments.patch, arguments.directory, force=arguments.force)))
+    _print(applying.apply(arguments.patch, arguments.directory, force=arguments.force))
     return 0
 
 
 def _revert(arguments: argparse.Namespace) -> int:
     from pytest_tarl.commands import applying
 
-    print("\n".join(applying.revert(arguments.patch, arguments.directory)))
+    _print(applying.revert(arguments.patch, arguments.directory))
     return 0
 
 
@@ -121,7 +127,7 @@ def _suggest(arguments: argparse.Namespace) -> int:
     from pytest_tarl.patching.reading import read
 
     forms = {"markdown": suggesting.markdown, "github": suggesting.review, "sarif": suggesting.sarif}
-    sys.stdout.write(forms[arguments.format](read(arguments.patch)))
+    sys.stdout.write(printable(forms[arguments.format](read(arguments.patch))))
     return 0
 
 
@@ -171,7 +177,7 @@ def _observe(arguments: argparse.Namespace) -> int:
         idle=arguments.idle,
         step=arguments.step,
     )
-    print(observe(order), file=sys.stderr)
+    print(printable(observe(order)), file=sys.stderr)
     return 0
 
 
@@ -255,7 +261,7 @@ def _show(arguments: argparse.Namespace) -> int:
     path: Path = arguments.fixture
     fixture = load(path)
     own = sizes(path, len(fixture.lists))
-    print("\n".join(show.lines(fixture, path.stat().st_size, own, every=arguments.sites)))
+    _print(show.lines(fixture, path.stat().st_size, own, every=arguments.sites))
     return 0
 
 
@@ -265,7 +271,7 @@ def _diff(arguments: argparse.Namespace) -> int:
 
     first, second = load(arguments.first), load(arguments.second)
     found = diff.compared(first, second)
-    print("\n".join(diff.lines(first, second, found)))
+    _print(diff.lines(first, second, found))
     alpha = diff.SIGNIFICANT if arguments.alpha is None else arguments.alpha
     worse = arguments.fail_if_worse and found.worse(alpha, arguments.max_loss)
     return int(worse or (arguments.fail_if_changed and found.changed))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sysconfig
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import FrameType, TracebackType
 
@@ -42,6 +42,11 @@ def describe(place: Place | None) -> str:
     if path.is_absolute() and path.is_relative_to(Path.cwd()):
         path = path.relative_to(Path.cwd())
     return f"{path}, line {line}" + ("" if function == "<module>" else f", in {function}")
+
+
+def describe_first(places: Iterable[Place]) -> str:
+    """Say the first place that is the user's own."""
+    return describe(_innermost(iter(places)))
 
 
 def is_library(file: str) -> bool:

@@ -76,8 +76,8 @@ class Process:
         elif isinstance(error, SystemExit):
             if task is self.main and error.code not in (None, 0) and not self.ending:
                 self._fail(self._ended_in(error))
-        elif isinstance(error, TarlError) or not isinstance(error, Exception):
-            self._fail(error)  # for the user, or (KeyboardInterrupt, pytest.fail) for those outside
+        elif isinstance(error, TarlError | KeyboardInterrupt) or _of_pytest(error):
+            self._fail(error)  # for the user, or for those outside
         else:
             self._fail(self._ended_in(error))
 
@@ -145,6 +145,11 @@ class Process:
             self.errors.append(error)
         elif self.scheduler.failure is None:
             self.scheduler.failure = error
+
+
+def _of_pytest(error: BaseException) -> bool:
+    """Tell pytest.fail, skip and exit, which a node may call when it is a test's own; pytest is not imported for it."""
+    return any(kind.__module__ == "_pytest.outcomes" for kind in type(error).__mro__)
 
 
 def current_process(api: str) -> Process:

@@ -8,8 +8,11 @@ import threading
 import time
 from collections.abc import Callable
 
+from pytest_tarl.holding import allow
+
 DEFAULT_LIMIT = 10.0  # seconds of computing in which virtual time stands still
 _PATIENCE = 12  # how many times as long a node may hang in something that is neither computing nor ROS
+_HOLD = 12  # the same in CPU time, for one that lets no thread look
 _INTERVAL = 0.1  # seconds between two looks
 _IDLE_EXIT = 50  # looks after which an unused watching thread ends
 _DEBUGGERS = ("pdb", "bdb", "pydevd", "debugpy")
@@ -37,6 +40,7 @@ class Watchdog:
         self._target = 0
         self._clock = -1
         self._watching = False
+        self._allowed = False  # whether the system counts as well
         self.fired = False
         self.hung = False  # whether what fired was a wait for something outside, not computing
 
@@ -50,6 +54,7 @@ class Watchdog:
         self.fired = False
         self._moves += 1
         self._armed = True
+        self._allow(limit * _HOLD)
         if not self._watching:
             self._watching = True
             threading.Thread(target=self._watch, name="tarl-watchdog", daemon=True).start()
@@ -61,6 +66,8 @@ class Watchdog:
     def disarm(self) -> bool:
         """Stop watching; tell whether it fired. Takes back an exception that has not arrived yet."""
         self._armed = False
+        if self._allowed:
+            self._allow(0.0)
         if not self.fired:
             return False
         with self._lock:
@@ -85,6 +92,7 @@ class Watchdog:
                 if not self._armed:  # nobody armed it in between, trusting that we watch
                     return
                 self._watching = True
+            self._allow(self._limit * _HOLD if self._armed else 0.0)
             moves = self._moves
             if idle or moves != seen:
                 seen, looks, computed = moves, 0, self._computed()
@@ -94,6 +102,14 @@ class Watchdog:
             if worked or (looks * _INTERVAL >= self._limit * _PATIENCE and not _debugged(self._target)):
                 self._fire(moves, hung=not worked)
                 seen = -1  # again later, should a bare `except:` swallow it
+
+    def _allow(self, seconds: float) -> None:
+        """Let the system end a process whose interpreter is held for so long, or no longer mind it."""
+        if seconds or self._allowed:
+            self._allowed = bool(seconds)
+            allow(seconds)
+        if seconds and not self._armed:  # disarmed in between
+            self._allow(0.0)
 
     def _computed(self) -> float:
         """Return the CPU seconds of the watched thread, where there is no such clock those of the process."""

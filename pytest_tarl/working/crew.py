@@ -19,7 +19,7 @@ from pytest_tarl.repeating import Instruments
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun
 from pytest_tarl.sensors import Sensor
 from pytest_tarl.working import wire
-from pytest_tarl.working.pool import TRIES, Pool, Post, WorkerDiedError
+from pytest_tarl.working.pool import TRIES, Pool, Post, WorkerDiedError, WorkerHeldError
 
 Serve = Callable[[Post, bytes], bytes]
 
@@ -80,6 +80,12 @@ class Answer:
             raise RecordingError(
                 f"The worker process of the episode with seed {self.plan.seed} {died}, {TRIES} times in {TRIES}: run "
                 "it without --tarl-workers to see what its node does, or use fewer workers if memory is short."
+            ) from None
+        except WorkerHeldError as held:
+            raise RecordingError(
+                f"Stopped at an episode (seed {self.plan.seed}) that came to no end: a node held the interpreter, at "
+                f"{held}, in one call that never returns (a loop in C, a runaway regular expression). Its worker was "
+                "ended and replaced. Bound that call."
             ) from None
         except wire.SkippedError as skipped:
             pytest.skip(str(skipped))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import signal
 import subprocess
 import sys
 import threading
@@ -12,15 +14,23 @@ from tempfile import TemporaryFile
 from typing import BinaryIO
 
 from pytest_tarl.errors import TarlError
+from pytest_tarl.holding import SIGNAL
+from pytest_tarl.ros.blame import describe_first
 from pytest_tarl.working import wire
 
 TRIES = 3  # times that an episode is run whose worker dies
 PATIENCE = 5.0  # seconds in which a worker may finish its fixtures before it is ended
+SILENCE = 180  # looks, one a second, without a sign of life; one that is stopped does not look
+_FRAME = re.compile(r'^ *File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
 BOOT = Path(__file__).with_name("boot.py")
 
 
 class WorkerDiedError(TarlError):
     """A worker process ended in the middle of an episode."""
+
+
+class WorkerHeldError(TarlError):
+    """A node held the interpreter of a worker, which was ended; doing it again would take as long again."""
 
 
 @dataclass(frozen=True)
@@ -46,34 +56,60 @@ class Worker:
             stderr=None if post.loud else self._log,
         )
         self._post = post
+        self._asked = False
+        self._silent = 0
+        self._held = False
+        self._over = threading.Event()
 
     def greet(self) -> None:
         """Wait until it holds its test ready. Raises TarlError where it cannot, WorkerDiedError."""
         greeting = self.ask(self._post.first)
         if greeting != wire.READY:
             wire.refused(greeting)
+        threading.Thread(target=self._listen, name="tarl-listener", daemon=True).start()
 
     def ask(self, request: bytes) -> bytes:
-        """Send a request and return the answer. Raises WorkerDiedError."""
+        """Send a request and return the answer. Raises WorkerDiedError and WorkerHeldError."""
         asked, told = self._pipes()
+        self._silent, self._asked = 0, True
         try:
             wire.write(asked, request)
-            answer = wire.read(told)
+            while (answer := wire.read(told)) == wire.ALIVE:
+                self._silent = 0
         except (OSError, ValueError):  # the latter of a pipe that `end` has closed
             answer = None
+        finally:
+            self._asked = False
         if answer is None:
-            raise WorkerDiedError(self._last_words())
+            said = self._last_words()
+            if self._held or self._process.returncode == -(SIGNAL or 0):
+                raise WorkerHeldError(place_held(self._log_text()))
+            raise WorkerDiedError(said)
         return answer
+
+    def _listen(self) -> None:
+        """End it when it gives no sign of life: a worker that cannot end itself must not hold up the run."""
+        while not self._over.wait(1.0):
+            self._silent += self._asked
+            if self._silent > SILENCE:
+                self._held = True
+                with suppress(OSError, subprocess.TimeoutExpired):
+                    self._process.send_signal(signal.SIGABRT)  # for which pytest has faulthandler say where
+                    self._process.wait(PATIENCE)
+                self._process.kill()
+                return
 
     def _last_words(self) -> str:
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(PATIENCE)
+        said = self._log_text().strip().splitlines()
+        return f"ended with status {self._process.returncode}" + (f": {said[-1]}" if said else "")
+
+    def _log_text(self) -> str:
         with suppress(OSError, ValueError):
             self._log.seek(0)
-            said = self._log.read().decode(errors="replace").strip().splitlines()
-            if said:
-                return f"ended with status {self._process.returncode}: {said[-1]}"
-        return f"ended with status {self._process.returncode}"
+            return self._log.read().decode(errors="replace")
+        return ""
 
     def dismiss(self) -> None:
         """Let it tear down its fixtures and go; end it when that takes too long."""
@@ -85,6 +121,7 @@ class Worker:
 
     def end(self) -> None:
         """End it now, whatever it does."""
+        self._over.set()
         self._process.kill()
         self._process.wait()
         for pipe in (*self._pipes(), self._log):
@@ -96,6 +133,17 @@ class Worker:
         assert process.stdin is not None  # noqa: S101 - told to the type checker: both were asked for
         assert process.stdout is not None  # noqa: S101
         return process.stdin, process.stdout  # type: ignore[return-value]
+
+
+def place_held(log: str) -> str:
+    """Return the user's innermost line that faulthandler wrote down; empty where there is none."""
+    ours = str(BOOT.parent.parent)
+    frames = [
+        (file, int(line), function)
+        for file, line, function in _FRAME.findall(log)
+        if not file.startswith(ours)
+    ]
+    return describe_first(frames)
 
 
 class Pool:

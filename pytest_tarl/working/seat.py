@@ -6,7 +6,9 @@ import _thread
 import json
 import os
 import sys
+import threading
 import traceback
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -21,6 +23,7 @@ from pytest_tarl.sensors import with_edges
 from pytest_tarl.working import wire
 
 MEMORIES = ("lfplugin", "nfplugin", "stepwiseplugin")
+BEAT = 1.0  # seconds between two signs of life
 ENDED = 70  # exit status of a worker whose run is gone
 
 
@@ -54,6 +57,7 @@ class Server:
         self.answers = answers
         self.problems: list[str] = []
         self.serving = False
+        self.turn = threading.Lock()
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         """Keep why a test could not be collected."""
@@ -85,11 +89,23 @@ class Server:
         edges = {name: tuple(ends) for name, ends in self.post["edges"].items()}
         told = replace(marked, sensors=with_edges(marked.sensors, edges))
         rollout = ItemRollout(item, told, instruments(self.post["instruments"]))
-        wire.write(self.answers, wire.READY)
+        self._say(wire.READY)
+        _thread.start_new_thread(self._beat, ())
         while request := wire.read(self.requests):  # an empty one says that there are no more
-            wire.write(self.answers, answer(rollout, request))
+            self._say(answer(rollout, request))
         finish(item, None)
         return True
+
+    def _say(self, message: bytes) -> None:
+        with self.turn:
+            wire.write(self.answers, message)
+
+    def _beat(self) -> None:
+        """Tell again and again that threads run here; the process that asks gives up on one that falls silent."""
+        pause = threading.Event()
+        with suppress(OSError, ValueError):  # the run is gone
+            while not pause.wait(BEAT):
+                self._say(wire.ALIVE)
 
     def refuse(self, problem: str) -> None:
         """Say why there is nothing to serve."""

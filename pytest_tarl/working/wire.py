@@ -20,6 +20,7 @@ COLUMNS = ("site", "flow", "event_cell", "event_step", "step_cell", "reward")
 TOLD = ("passed", "failure", "broken", "topics", "crashed", "stuck", "values")
 LENGTH = struct.Struct("<Q")
 READY = b"ready"
+ALIVE = b""  # says nothing but that the worker's threads run
 
 
 def write(pipe: BinaryIO, message: bytes) -> None:

@@ -1,0 +1,39 @@
+"""What a node's exception looks like to its author: the sentence, the node's own traceback, the line of the test."""
+
+from __future__ import annotations
+
+import linecache
+import traceback
+from pathlib import Path
+from types import TracebackType
+
+_PACKAGE = str(Path(__file__).parent.parent)
+
+
+def account(error: BaseException, test: Path) -> str:
+    """Return what to show of an error that a test got; one that no node's exception caused is its sentence alone."""
+    cause = error.__cause__
+    if cause is None or cause.__traceback__ is None:
+        return str(error)
+    lines = traceback.format_exception(type(cause), cause, of_node(cause.__traceback__))
+    parts = [str(error), "".join(lines).rstrip(), _called(error.__traceback__, test)]
+    return "\n\n".join(part for part in parts if part)
+
+
+def of_node(frames: TracebackType) -> TracebackType:
+    """Return a traceback without the scheduler's frames that it begins with."""
+    here: TracebackType | None = frames
+    while here is not None and here.tb_frame.f_code.co_filename.startswith(_PACKAGE):
+        here = here.tb_next
+    return here or frames
+
+
+def _called(frames: TracebackType | None, test: Path) -> str:
+    """Return the test's own line that let the node run."""
+    line = 0
+    while frames is not None:
+        if frames.tb_frame.f_code.co_filename == str(test):
+            line = frames.tb_lineno
+        frames = frames.tb_next
+    code = linecache.getline(str(test), line).strip()
+    return f"The test was at {test.name}, line {line}: {code}" if code else ""
