@@ -76,7 +76,8 @@ def test_accounts_of_runs_and_what_nodes_end_in(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "            flow = GAIN * missing", "            flow = GAIN * missing / FACTOR")
     changed(tank, "keeper", "GAIN = 2.0", "GAIN = 2.0\nFACTOR = 1.0\n")
     assert tank.runpytest_subprocess(*RECORD).ret == 0
-    ending = f"            if missing:\n                raise ValueError({HOSTILE!a})\n            flow = GAIN * missing / FACTOR"
+    ending = f"            if missing:\n                raise ValueError({HOSTILE!a})\n"
+    ending += "            flow = GAIN * missing / FACTOR"
     changed(tank, "keeper", "            flow = GAIN * missing / FACTOR", ending)
     for flags in ((), RECORD, ("--tarl-online", "--tarl-episodes=6")):
         done = tank.runpytest_subprocess("test_tank.py", "--color=no", *flags)

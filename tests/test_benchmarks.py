@@ -1,0 +1,94 @@
+"""The extra `bench` is enough for every script of benchmarks/: what it imports is declared, and it starts."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from importlib.metadata import packages_distributions, requires
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parent.parent / "benchmarks"
+SCRIPTS = sorted(
+    path for path in [*FOLDER.glob("*.py"), *FOLDER.glob("drift/*.py")] if "__main__" in path.read_text()
+)
+ROS = {"rospy", "rclpy", "std_msgs", "nav_msgs", "turtlebot3_msgs"}  # the in-process ones, within a node
+SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
+# What makes each script do the least that it can; {tmp} is a folder of the test.
+SMALLEST = {
+    "bags": ["--seconds", "1"],
+    "episodes": ["--episodes", "2"],
+    "gate": ["--repetitions", "2", "--workers", "1", "--worlds", "corridor", "--sizes", "0"],
+    "lint_speed": ["--repetitions", "1", "--growth", "1", "--", "{tmp}"],
+    "observe": ["--cycles", "20"],
+    "recording": ["--quick"],
+    "ros": ["--seconds", "0.05"],
+    "same_world": ["--comparisons", "1", "--workers", "1", "--found", "{tmp}/found.json"],
+    "worlds": ["pipe_crawler", "--episodes", "2"],
+    "picture": ["--target", "{tmp}/picture.svg"],
+}
+
+
+def imported(path: Path) -> Iterator[str]:
+    """Yield the packages that a script imports, at the top and within functions."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.partition(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            yield (node.module or "").partition(".")[0]
+
+
+def declared() -> set[str]:
+    """Return the distributions that tarl and its extra `bench` name, by normalised name; not what those need."""
+    names, extras = set[str](), {"bench"}
+    for _ in range(3):  # an extra may name others
+        for line in requires("tarl") or ():
+            requirement, _, marker = line.partition(";")
+            extra = re.search(r"extra == ['\"](\w+)", marker)
+            if extra is None or extra[1] in extras:
+                name = re.split(r"[\[<>=!~ ]", requirement)[0]
+                names.add(re.sub(r"[-_.]+", "-", name).lower())
+                if name == "tarl" and "[" in requirement:
+                    extras |= {*requirement.partition("[")[2].partition("]")[0].split(",")}
+    return names
+
+
+def test_what_the_benchmarks_import_is_declared() -> None:
+    known, allowed = packages_distributions(), declared()
+    assert {"scipy", "pymunk", "numpy", "rosbags"} <= allowed
+    own = {path.stem for path in FOLDER.rglob("*.py")} | {"pytest_tarl", "tarl_lint"} | ROS
+    undeclared = {
+        (path.name, name)
+        for path in [*FOLDER.glob("*.py"), *FOLDER.glob("drift/*.py")]
+        for name in imported(path)
+        if name not in own | sys.stdlib_module_names
+        and not {re.sub(r"[-_.]+", "-", one).lower() for one in known.get(name, [name])} & allowed
+    }
+    assert not undeclared
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+def test_every_script_starts(script: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, script, "--help"], capture_output=True, text=True, cwd=FOLDER.parent
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("usage: ")
+
+
+@pytest.mark.skipif(not SLOW, reason="minutes: set TARL_SLOW=1")
+@pytest.mark.parametrize("name", SMALLEST)
+def test_the_smallest_run_ends_well(name: str, tmp_path: Path) -> None:
+    (script,) = (path for path in SCRIPTS if path.stem == name)
+    (tmp_path / "node.py").write_text("import rospy\n")
+    arguments = [argument.format(tmp=tmp_path) for argument in SMALLEST[name]]
+    done = subprocess.run(
+        [sys.executable, script, *arguments], capture_output=True, text=True, cwd=FOLDER.parent, timeout=900
+    )
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert done.stdout.strip() or list(tmp_path.iterdir())
