@@ -214,6 +214,24 @@ class Attempt:
 
 
 @dataclass(frozen=True, slots=True)
+class Partial:
+    """A change that helps and is no repair: rewards an episode over the program as it is, on fresh seeds.
+
+    `low` and `designed_low` are lower bounds; `patch` is a path below the root.
+    """
+
+    what: str
+    gain: float
+    low: float
+    lost: float
+    designed: float
+    designed_low: float
+    confidence: float
+    diff: str
+    patch: str
+
+
+@dataclass(frozen=True, slots=True)
 class Repair:
     """What the search ended with. `guard` is Python as written in the patch; `diff` is empty when not accepted.
 
@@ -229,6 +247,7 @@ class Repair:
     mean: float | None = None
     episodes: int = 0
     history: tuple[Attempt, ...] = ()
+    partial: Partial | None = None  # where none was accepted
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from pytest_tarl.commands.checks import clean, compiles, fixtures, sealed, tested
+from pytest_tarl.commands.checks import clean, compiles, fixtures, sealed, tested, whole
 from pytest_tarl.commands.replacing import Change, MovedError, replace_all
 from pytest_tarl.commands.targets import Target, shown
 from pytest_tarl.commands.targets import targets as found_targets
@@ -16,9 +16,11 @@ from pytest_tarl.patching.combining import combined, conflicts, separated
 from pytest_tarl.patching.reading import Patch, read
 
 
-def apply(paths: Sequence[Path], directory: Path | None, *, force: bool) -> list[str]:
+def apply(paths: Sequence[Path], directory: Path | None, *, force: bool, partial: bool = False) -> list[str]:
     """Apply patches and return what to tell. Raises RefusedError where one should not be, and changes nothing then."""
     patches = [read(path) for path in paths]
+    if not partial:
+        whole(patches)
     _together(patches)
     targets = found_targets(patches, directory)
     halfway = _halfway(targets)

@@ -73,6 +73,16 @@ def _there(path: Path, root: Path) -> bool:
         return False
 
 
+def whole(patches: Sequence[Patch]) -> None:
+    """Raise RefusedError where a patch is a partial repair."""
+    for patch in patches:
+        for told in patch.told("partial"):
+            raise RefusedError(
+                f"{patch.name} is a partial repair, which was not accepted: {told}. If that is what you want, apply it "
+                "with --partial."
+            )
+
+
 def compiles(target: Target, content: bytes) -> None:
     """Raise RefusedError where what a patch makes of a Python file is no program."""
     if target.path.suffix in (".yaml", ".yml", ".xml", ".launch"):

@@ -84,6 +84,7 @@ def _add_patches(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     apply.add_argument(
         "--force", action="store_true", help="where the file has changed, or has changes to lose"
     )
+    apply.add_argument("--partial", action="store_true", help="a partial repair, too, which was not accepted")
     revert = commands.add_parser("revert", help="undo patches of repairs, and nothing else")
     suggest = commands.add_parser(
         "suggest", help="print a patch as suggestions for a review, or as a SARIF fix"
@@ -111,7 +112,10 @@ def _add_patches(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def _apply(arguments: argparse.Namespace) -> int:
     from pytest_tarl.commands import applying
 
-    _print(applying.apply(arguments.patch, arguments.directory, force=arguments.force))
+    told = applying.apply(
+        arguments.patch, arguments.directory, force=arguments.force, partial=arguments.partial
+    )
+    _print(told)
     return 0
 
 
@@ -123,11 +127,14 @@ def _revert(arguments: argparse.Namespace) -> int:
 
 
 def _suggest(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.commands.checks import whole
     from pytest_tarl.patching import suggesting
     from pytest_tarl.patching.reading import read
 
     forms = {"markdown": suggesting.markdown, "github": suggesting.review, "sarif": suggesting.sarif}
-    sys.stdout.write(printable(forms[arguments.format](read(arguments.patch))))
+    patch = read(arguments.patch)
+    whole([patch])
+    sys.stdout.write(printable(forms[arguments.format](patch)))
     return 0
 
 

@@ -21,6 +21,8 @@ CONTEXT = 3  # unchanged lines around a change
 BASE = "paths are relative to"  # the fact of the header that says so
 SEAL = "digest of all other lines"  # the fact of the header by which an edited or damaged patch is known
 TITLE = "Repair by tarl "
+PARTIAL = ".partial"  # the ending of a file that holds what is no repair ...
+QUOTE = b"| "  # ... and what stands before each of its lines
 _NO_NEWLINE = "\\ No newline at end of file\n"
 
 
@@ -71,11 +73,30 @@ def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
         raise RepairError(
             f"The patch {path} cannot be written ({problem.strerror}): {advice_on(problem)}"
         ) from problem
+    (folder / f"{name}{PARTIAL}").unlink(missing_ok=True)
     for older in folder.glob(f"{name}-????????.patch"):
         if older != path:
             older.unlink()
             older.with_suffix(".sarif").unlink(missing_ok=True)
     return path
+
+
+def write_partial(diff: str, folder: Path, test: str, drift: str | None) -> Path:
+    """Write what is no repair so that neither git nor patch takes it: every line behind a mark. Raises RepairError."""
+    content = b"".join(QUOTE + line for line in split_lines(diff.encode("utf-8", "surrogateescape")))
+    path = folder / f"{slug(test)}-{slug(drift or 'online')}{PARTIAL}"
+    try:
+        write_atomically(path, content)
+    except OSError as problem:
+        raise RepairError(f"{path} cannot be written ({problem.strerror}): {advice_on(problem)}") from problem
+    return path
+
+
+def unquoted(content: bytes) -> bytes:
+    """Return a patch as it is without the marks that keep it from being applied."""
+    if not content.startswith(QUOTE):
+        return content
+    return b"".join(line.removeprefix(QUOTE) for line in split_lines(content))
 
 
 def apply_command(patch: Path, cwd: Path) -> str:

@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.patching.changes import FilePatch, Hunk
-from pytest_tarl.patching.patch import BASE, SEAL, TITLE, seal, split_lines
+from pytest_tarl.patching.patch import BASE, SEAL, TITLE, seal, split_lines, unquoted
 
 _FACT = re.compile(r"# +([a-z][a-z -]*): (.*)")
 _HUNK = re.compile(rb"@@ -(\d{1,9})(?:,(\d{1,9}))? \+(\d{1,9})(?:,(\d{1,9}))? @@.*\n")
@@ -62,7 +62,7 @@ class Patch:
 def read(path: Path) -> Patch:
     """Read a patch. Raises RepairError where there is none, it is not one of TARL's, or it was cut or edited."""
     try:
-        content = path.read_bytes()
+        content = unquoted(path.read_bytes())
     except OSError as problem:
         raise RepairError(
             f"{path} cannot be read ({problem.strerror}): patches of repairs are below .tarl/patches."

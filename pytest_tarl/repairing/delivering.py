@@ -12,7 +12,7 @@ from statistics import fmean
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.files import write_atomically
-from pytest_tarl.model import Attempt, Comparison, Edit, Guarantee, Repair
+from pytest_tarl.model import Attempt, Comparison, Edit, Guarantee, Partial, Repair
 from pytest_tarl.patching import patch
 from pytest_tarl.patching.dependencies import undeclared
 from pytest_tarl.patching.mutate import Mutation, guard_text
@@ -23,6 +23,7 @@ from pytest_tarl.repairing.accepting import Accepted, Refused
 from pytest_tarl.repairing.ledger import Tried
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.partial import Best
 from pytest_tarl.repairing.structural import form_words
 from pytest_tarl.report import guarantees, words
 from pytest_tarl.searching.plainness import edges
@@ -94,6 +95,44 @@ def withheld(order: Order, refused: Refused, history: tuple[Attempt, ...]) -> Re
         episodes=refused.episodes,
         history=history,
     )
+
+
+def partial(mutants: Mutants, found: Best) -> Partial | None:
+    """Write what helps and is no repair, in a file that nothing applies by itself; None where it cannot be written."""
+    order, candidate = mutants.order, found.candidate
+    what = words.repair_words(Repair(False, _guard(order, candidate), _edits(order, candidate)))
+    made = Partial(
+        what,
+        found.drifted.mean,
+        found.drifted.low,
+        order.comparison.verdict.loss,
+        found.designed.mean,
+        found.designed.low,
+        1.0 - order.options.alpha,
+        "",
+        "",
+    )
+    totals = order.comparison.totals
+    header = [
+        f"{patch.TITLE}{__version__}: partial, {words.one_line(what)}",
+        f"partial: {words.partial_words(made, order.comparison)}",
+        f"test: {order.fixture.test}",
+        f"drift: {words.one_line(order.drift or 'none, an on-line world without a name')}",
+        f"seed: {order.options.seed}",
+        f"designed: {words.average(totals['offline'])}",
+        f"drifted: {words.average(totals['online'])}",
+        *_recorded(order),
+        f"again: {_again(order)}",
+    ]
+    try:
+        changed = mutants.source(candidate)
+        _verify(order, candidate, changed)
+        originals = {path: path.read_bytes() for path in changed}
+        diff = patch.unified_diff(originals, changed, order.root, header)
+        path = patch.write_partial(diff, order.patches, order.fixture.test, order.drift)
+    except RepairError:
+        return None
+    return replace(made, diff=patch.readable(diff), patch=path.relative_to(order.root).as_posix())
 
 
 def attempts(order: Order, tried: Iterable[Tried]) -> tuple[Attempt, ...]:

@@ -12,10 +12,11 @@ from pytest_tarl.learning.judgements import with_worlds
 from pytest_tarl.model import Comparison, FormulaRow, Guarantee, Guard, OperandEffect, SearchTrace, SitePlace
 from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.accepting import Accepted, Examiner, Refused
-from pytest_tarl.repairing.delivering import attempts, delivered, remarks, withheld
+from pytest_tarl.repairing.delivering import attempts, delivered, partial, remarks, withheld
 from pytest_tarl.repairing.guaranteeing import guaranteed
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.partial import best
 from pytest_tarl.repairing.ranges import Ranged, bands_in_words, fits_a_part, repaired_sizes
 from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.repairing.sureness import sureness
@@ -162,6 +163,11 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         totals["nominal_repaired"] = nominal or totals["offline"]
         with suppress(KeyboardInterrupt):  # what was accepted counts without them
             bounds, spent = guaranteed(mutants, accepted)
+    part = None
+    if accepted is None and not found.interrupted:
+        with suppress(KeyboardInterrupt):
+            helping, spent = best(mutants, examiner, watch)
+            part = partial(mutants, helping) if helping is not None else None
     comparison = replace(
         order.comparison,
         formulas=_formulas(order, accepted),
@@ -178,7 +184,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         stated={**order.comparison.stated, **bounds},
         repair=delivered(mutants, accepted, found.episodes, examiner.spent, history, bounds)
         if accepted
-        else withheld(order, refused, history),
+        else replace(withheld(order, refused, history), partial=part),
         notes=(*order.comparison.notes, *_notes(mutants, examiner, found, watch)),
         ranking=sureness(order, found.effects or {}, accepted, found.ranking),
     )

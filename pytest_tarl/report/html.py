@@ -147,6 +147,9 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
         if comparison.repair
         else [],
         "refusal": words.refusal(comparison.repair) if comparison.repair else "",
+        "partial": words.partial_words(comparison.repair.partial, comparison)
+        if comparison.repair and comparison.repair.partial
+        else "",
         "ways_out": words.ways_out(comparison),
         "designed_world": words.designed_world(comparison),
         "command": words.repeat(comparison),

@@ -18,6 +18,7 @@ from pytest_tarl.model import (
     Culprit,
     FormulaRow,
     Guarantee,
+    Partial,
     Repair,
     SitePlace,
     Slice,
@@ -189,6 +190,18 @@ def _repair(repair: Repair) -> dict[str, Any]:
         "patch": repair.patch or None,
         "edits": edits,
         "tried": tried,
+        **({"partial": _partial(repair.partial)} if repair.partial else {}),
+    }
+
+
+def _partial(partial: Partial) -> dict[str, Any]:
+    return {
+        "what": partial.what,
+        "patch": partial.patch,
+        "gain": _finite(partial.gain),
+        "low": _finite(partial.low),
+        "designed": _finite(partial.designed),
+        "designed_low": _finite(partial.designed_low),
     }
 
 

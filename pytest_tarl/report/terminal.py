@@ -137,6 +137,9 @@ def _repair(comparison: Comparison) -> Iterator[str]:
         yield f"none accepted: {words.refusal(repair)}"
         if repair.edits:
             yield f"best so far: {words.best_words(repair)}"
+    if repair.partial is not None:
+        part = repair.partial
+        yield f"partial: {part.what}: {words.partial_words(part, comparison)}; tarl apply --partial {part.patch}"
     if ways_out := words.ways_out(comparison):
         yield ways_out
     dropped = [one for one in repair.history if one.reason]

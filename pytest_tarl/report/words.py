@@ -10,7 +10,7 @@ from pathlib import Path
 from statistics import fmean
 
 from pytest_tarl.learning.intervals import effect_size, mean_bounds
-from pytest_tarl.model import Attempt, Comparison, Edit, OperandEffect, Reason, Repair, Slice
+from pytest_tarl.model import Attempt, Comparison, Edit, OperandEffect, Partial, Reason, Repair, Slice
 from pytest_tarl.report.regions import Vocabulary
 
 SIGNIFICANT = 0.05  # p from which a loss is not spoken of
@@ -231,6 +231,16 @@ def repair_words(repair: Repair) -> str:
     """Say what the repair changes and when: `5 → 12 at traveller.py:30 where terrain`."""
     edits = ", ".join(f"{edit_words(edit)} at {edit.path}:{edit.line}" for edit in repair.edits)
     return f"{edits} {f'where {repair.guard}' if repair.guard else 'everywhere'}"
+
+
+def partial_words(partial: Partial, comparison: Comparison) -> str:
+    """Say what a partial repair gains, and what it does to the designed world."""
+    sure = f"{100 * partial.confidence:.3g}% confidence"
+    gained = f"{signed(partial.gain)} an episode, at least {signed(partial.low)} ({sure})"
+    return (
+        f"{gained}, of the {amount(partial.lost)} that are lost; {designed_world(comparison)} "
+        f"{signed(partial.designed)}, at least {signed(partial.designed_low)}"
+    )
 
 
 def refusal(repair: Repair) -> str:

@@ -1,0 +1,120 @@
+"""The best that is no repair: it gains something for certain, costs the designed world nothing, and is not enough."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from statistics import fmean
+
+from pytest_tarl import seeds
+from pytest_tarl.errors import RepairError
+from pytest_tarl.learning import bounds
+from pytest_tarl.model import Reason
+from pytest_tarl.repairing.accepting import Examiner
+from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
+from pytest_tarl.repairing.watching import Watch
+from pytest_tarl.searching.accept import PASS_RATE_LOSS, Outcome
+from pytest_tarl.searching.search import Candidate
+
+MOST = 2  # candidates that are tested
+EPISODES = 40  # of either world, each beside one of the program as it is
+SCREENED = 12  # candidates that are looked at ...
+KNOWN = 3  # ... in so many recorded episodes of the designed world
+LEAST = 0.1  # of what is lost, that a candidate has to have gained in the search
+HARMFUL: tuple[Reason, ...] = (
+    "nominal gets worse",
+    "another test gets worse",
+    "cannot be written",
+    "not at its definition",
+)
+
+
+@dataclass(frozen=True)
+class Gained:
+    """What a candidate gains an episode over the program as it is, on fresh seeds; `low` is a lower bound of it."""
+
+    mean: float
+    low: float
+    failures: int  # more than the program as it is has
+
+
+@dataclass(frozen=True)
+class Best:
+    """A candidate that helps: in the drifted world, and what it changes in the designed one."""
+
+    candidate: Candidate
+    drifted: Gained
+    designed: Gained
+
+
+def best(mutants: Mutants, examiner: Examiner, watch: Watch) -> tuple[Best | None, int]:
+    """Test the candidates that gained most; return the first that helps for certain, and the episodes that it took."""
+    spent, number = 0, -1
+    for candidate in islice(_promising(examiner, watch), SCREENED):
+        try:
+            spent += KNOWN
+            if not _mild(mutants, candidate):
+                continue
+            number += 1
+            if number == MOST:
+                break
+            drifted = _gained(mutants, candidate, mutants.order.drift, number)
+            spent += 2 * EPISODES
+            if drifted.low <= 0.0:
+                continue
+            designed = _gained(mutants, candidate, None, number)
+            spent += 2 * EPISODES
+        except RepairError:
+            continue
+        if mutants.order.permanent or _harmless(mutants, designed):
+            return Best(candidate, drifted, designed), spent
+    return None, spent
+
+
+def _mild(mutants: Mutants, candidate: Candidate) -> bool:
+    """Tell whether a candidate loses nothing in a few recorded episodes of the designed world."""
+    if mutants.order.permanent:
+        return True
+    sample, margin = mutants.order.fixture.sample, mutants.order.reference.margin
+    known = list(zip(sample.seeds, sample.total.tolist(), strict=True))[:KNOWN]
+    mutants.foresee([(candidate, seed) for seed, _ in known], None)
+    lost = [total - mutants.run(candidate, seed, None).total for seed, total in known]
+    return fmean(lost) <= margin
+
+
+def _harmless(mutants: Mutants, designed: Gained) -> bool:
+    margin = mutants.order.reference.margin
+    return designed.low >= -margin and designed.failures <= PASS_RATE_LOSS * EPISODES
+
+
+def _promising(examiner: Examiner, watch: Watch) -> Iterator[Candidate]:
+    """Yield what came furthest, then what gained most in the search, without what does harm."""
+    goal = watch.order.goal
+    harmful = [one.candidate.changes for one in examiner.tried if one.reason in HARMFUL]
+    furthest = [examiner.refused.candidate] if examiner.refused.candidate is not None else []
+    ranked = sorted(
+        watch.seen, key=lambda one: -watch.gain(one) * len(watch.seen[one]) / (1 + len(watch.seen[one]))
+    )
+    yielded: list[Candidate] = []
+    for candidate in (*furthest, *ranked):
+        seen = candidate in watch.seen
+        little = seen and watch.gain(candidate) < LEAST * (goal.enough - goal.online)
+        if candidate.changes not in harmful and not little and candidate not in yielded:
+            yielded.append(candidate)
+            yield candidate
+
+
+def _gained(mutants: Mutants, candidate: Candidate, drift: str | None, number: int) -> Gained:
+    order = mutants.order
+    fresh = seeds.episode_seeds(order.options.seed, f"partial {number} {drift or ''}", EPISODES)
+    with_it, without = (_run(mutants, one, fresh, drift) for one in (candidate, ORIGINAL))
+    gains = [one.total - other.total for one, other in zip(with_it, without, strict=True)]
+    low = bounds.mean_of(gains, 1.0 - order.options.alpha / MOST).low
+    failures = sum(not one.passed for one in with_it) - sum(not one.passed for one in without)
+    return Gained(fmean(gains), low, failures)
+
+
+def _run(mutants: Mutants, candidate: Candidate, fresh: Sequence[int], drift: str | None) -> list[Outcome]:
+    mutants.foresee([(candidate, seed) for seed in fresh], drift)
+    return [mutants.run(candidate, seed, drift) for seed in fresh]

@@ -1,0 +1,70 @@
+"""Partial repairs: the best that is none, shown with its bounds, and applied by nobody by accident."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.reading import read
+from tests.plugin.tank import ONLINE, RECORD, changed, result
+
+TARL = (sys.executable, "-m", "pytest_tarl")
+REPAIR = (*ONLINE, "--tarl-repair", "--tarl-constants", "--tarl-budget=60")
+
+
+@pytest.fixture
+def halfway(tank: pytest.Pytester) -> Path:
+    """The partial repair of a tank whose valve no longer opens far enough, and whose pump is clogged as well."""
+    changed(
+        tank, "test_tank", "(valve.data if valve", "(min(valve.data, 2.0 if tarl_drift else 9.0) if valve"
+    )
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    done = tank.runpytest(*REPAIR)
+    told = " ".join(done.stdout.str().split())
+    found = result(tank)["repair"]
+    assert not found["accepted"]
+    assert found["partial"]["low"] > 0
+    assert found["partial"]["designed_low"] <= found["partial"]["designed"]
+    assert re.search(r"partial: .* an episode, at least \+.* that are lost; designed world", told)
+    (page,) = tank.path.glob(".tarl/report/*.html")
+    assert "Partial, not accepted" in page.read_text()
+    assert not list(tank.path.glob(".tarl/patches/*.patch"))
+    return tank.path / str(found["partial"]["patch"])
+
+
+def test_a_partial_repair_is_applied_only_by_who_says_so(halfway: Path, tank: pytest.Pytester) -> None:
+    node = (tank.path / "keeper.py").read_text()
+    for tool in (("git", "apply", str(halfway)), ("patch", "-p1", "-i", str(halfway))):
+        subprocess.run(tool, cwd=tank.path, capture_output=True, check=False)
+        assert (tank.path / "keeper.py").read_text() == node
+    for refused in ("apply", "suggest"):
+        done = tank.run(*TARL, refused, str(halfway))
+        assert done.ret == 1
+        done.stderr.fnmatch_lines(["*is a partial repair, which was not accepted*--partial*"])
+    assert (tank.path / "keeper.py").read_text() == node
+    assert tank.run(*TARL, "apply", "--partial", str(halfway)).ret == 0
+    assert (tank.path / "keeper.py").read_text() != node
+    assert tank.run(*TARL, "revert", str(halfway)).ret == 0
+    assert (tank.path / "keeper.py").read_text() == node
+    content = halfway.read_bytes()
+    halfway.write_bytes(content.replace(b"| +", b"| + ", 1))
+    with pytest.raises(RepairError, match="damaged"):
+        read(halfway)
+
+
+def test_what_does_not_help_for_certain_is_no_partial_repair(tank: pytest.Pytester) -> None:
+    changed(
+        tank,
+        "test_tank",
+        "        level += 0.1 * pump *",
+        "        level += 0.0 if tarl_drift else 0.1 * pump *",
+    )
+    tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    tank.runpytest(*REPAIR)
+    assert "partial" not in result(tank)["repair"]
+    assert not list(tank.path.glob(".tarl/patches/*"))
