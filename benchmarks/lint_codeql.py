@@ -20,14 +20,14 @@ from pathlib import Path
 
 from tarl_lint import engine
 from tarl_lint.config import Config
+from tarl_lint.flows.reachability import Tracer
+from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir.nodes import Expr, Pos, Stmt
+from tarl_lint.memory import reachable_data
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import Value
 from tarl_lint.source import Module, parse
-from tarl_lint.taint import Tracer
-from tarl_lint.valueflow import contents
-from tarl_lint.valueflow.frames import Frame
-from tarl_lint.valueflow.interpreter import Interpreter
-from tarl_lint.valueflow.ir import Expr, Pos, Stmt
-from tarl_lint.valueflow.link import Linker
-from tarl_lint.valueflow.values import Value
 
 TESTS = Path("python/ql/test/library-tests/dataflow")
 QUERY = "NormalDataflowTest.ql"
@@ -170,7 +170,7 @@ def _bare(machine: Linker) -> set[Pair]:
         if not sinks:
             return
         loose = frozenset(o for o in value.pts if o.kind not in ("sequence", "mapping", "instance", "class"))
-        nodes = value.deps | contents.deep(machine, loose)
+        nodes = value.deps | reachable_data.deep(machine, loose)
         pairs.update((line, s.pos[0]) for s in sinks for line, reach in reached if nodes & reach)
 
     machine.probe = look

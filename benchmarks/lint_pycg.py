@@ -19,13 +19,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from tarl_lint.config import Config
+from tarl_lint.interpret import call_contexts, calls, worklist
+from tarl_lint.interpret.call_contexts import ROOT_CALL
+from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.memory import heap
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.store import Root
+from tarl_lint.memory.values import Obj, pointer
 from tarl_lint.source import Module, parse
-from tarl_lint.valueflow import activations, calls, heap, worklist
-from tarl_lint.valueflow.activations import ROOT_CALL
-from tarl_lint.valueflow.frames import Frame
-from tarl_lint.valueflow.link import Linker
-from tarl_lint.valueflow.store import Root
-from tarl_lint.valueflow.values import Obj, pointer
 
 SNIPPETS = Path("micro-benchmark/snippets")
 
@@ -80,7 +81,7 @@ class Calls(Linker):
             frame = worklist.root_frame(self, root)
             target = closure
             if isinstance(owner, Obj):
-                (made,) = activations.instantiate(self, owner, ([], {}), frame, ROOT_CALL).pts
+                (made,) = call_contexts.instantiate(self, owner, ([], {}), frame, ROOT_CALL).pts
                 (target,) = heap.bind(self, pointer(closure), made, owner).pts
             calls.call_object(self, target, ([], {}), frame, ROOT_CALL)
 

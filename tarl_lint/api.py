@@ -10,10 +10,10 @@ from pathlib import Path
 from tarl_lint import discover, engine
 from tarl_lint.config import Config
 from tarl_lint.discover import SourceFile
+from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.model import Flow, Operand, SiteId, Step
-from tarl_lint.probe import Prober
+from tarl_lint.queries.probe import Prober
 from tarl_lint.source import Module, SourceError, parse
-from tarl_lint.valueflow.link import Linker
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,9 +10,9 @@ from typing import Final
 
 from tarl_lint.cache import Cache, Report, digest
 from tarl_lint.config import Config
-from tarl_lint.memory import without_collection
+from tarl_lint.gc_paused import without_collection
+from tarl_lint.prefilter.by_words import groups
 from tarl_lint.progress import Tell, silent
-from tarl_lint.relevance import groups
 from tarl_lint.source import TOO_DEEP, Module, Script, SourceError, parsed
 
 MANY_LINES: Final = 30_000  # to analyse; with fewer, starting processes takes longer than they save

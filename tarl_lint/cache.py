@@ -30,6 +30,9 @@ T = TypeVar("T")
 
 FORMAT: Final = 1 + 4
 PLACE: Final = (".tarl", "cache", "lint")
+PACKAGES: Final = (
+    "flows", "interpret", "ir", "memory", "models", "models/ros", "prefilter", "rules", "rules/limits", "rules/races"
+)  # fmt: skip
 AFTERWARDS: Final = frozenset(
     ["root", "exclude", "baseline", "fail_on", "per_file_ignores", "file", "origins"]
 )  # settings that change nothing in what is found in given files
@@ -140,7 +143,7 @@ def _ourselves() -> list[str]:
     """Return what tells this copy of the linter from one with other rules, as while it is being developed."""
     home = Path(__file__).parent
     found = []
-    for place in (home, home / "valueflow", home / "rules"):
+    for place in (home, *(home / name for name in PACKAGES)):
         with os.scandir(place) as entries:
             files = [(e.name, e.stat()) for e in entries if e.name.endswith(".py")]
         found += [f"{name} {stat.st_mtime_ns} {stat.st_size}" for name, stat in sorted(files)]

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from tarl_lint.bounds import limits
+from tarl_lint.flows.reachability import Tracer
+from tarl_lint.ir.nodes import Pos
 from tarl_lint.model import Finding, Flow, Source, Span
-from tarl_lint.taint import Tracer
+from tarl_lint.rules.limits.range_checks import limits
 from tarl_lint.trees import children, walk
-from tarl_lint.valueflow.ir import Pos
 
 PROGRAM: Final = re.compile(r"__main__|\bdef main\(|\binit_node\(|\brclpy\.init\(")
 Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef

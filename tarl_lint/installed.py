@@ -18,7 +18,7 @@ from tarl_lint.config import Config
 from tarl_lint.errors import ConfigError
 from tarl_lint.files import shown
 from tarl_lint.model import Finding
-from tarl_lint.relevance import reached
+from tarl_lint.prefilter.by_words import reached
 from tarl_lint.source import Script
 
 MOST_FILES: Final = 5_000  # of one package

@@ -18,9 +18,9 @@ from collections.abc import Iterator, Sequence
 from typing import Final
 
 from tarl_lint.evidence import Evidence
-from tarl_lint.locking import MADE, Harm, Locking, Use, unguarded
 from tarl_lint.model import Finding
-from tarl_lint.onesided import Side
+from tarl_lint.prefilter.one_sided import Side
+from tarl_lint.rules.races.locksets import MADE, Harm, Locking, Use, unguarded
 
 CODE: Final = "TARL201"
 SUMMARY: Final = "state is shared between threads without the lock that guards it elsewhere"

@@ -20,10 +20,10 @@ from tarl_lint.catalog import on_topic
 from tarl_lint.evidence import Evidence
 from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Finding, Flow, Sink, Source, Span
-from tarl_lint.onesided import Side
+from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
+from tarl_lint.prefilter.one_sided import Side
+from tarl_lint.rules.limits.unbounded import Magnitudes
 from tarl_lint.rules.wording import end
-from tarl_lint.unbounded import Magnitudes
-from tarl_lint.valueflow.ends import SinkRecord, SourceRecord
 
 CODE: Final = "TARL202"
 SUMMARY: Final = "a command follows a sensor without limit"

@@ -14,12 +14,12 @@ from typing import Final
 
 from tarl_lint.evidence import Evidence
 from tarl_lint.fingerprints import topic_text
+from tarl_lint.ir.nodes import Function
 from tarl_lint.model import Finding
-from tarl_lint.onesided import Side
+from tarl_lint.models.ros.endpoints import SourceRecord
+from tarl_lint.prefilter.one_sided import Side
 from tarl_lint.rules.wording import end
 from tarl_lint.trees import walk
-from tarl_lint.valueflow.ends import SourceRecord
-from tarl_lint.valueflow.ir import Function
 
 CODE: Final = "TARL203"
 SUMMARY: Final = "what is subscribed to reaches nothing"

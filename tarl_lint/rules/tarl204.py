@@ -14,12 +14,12 @@ from typing import Final
 from tarl_lint import catalog
 from tarl_lint.evidence import Evidence, Read
 from tarl_lint.fingerprints import topic_text
+from tarl_lint.ir.nodes import Pos
 from tarl_lint.model import Finding
-from tarl_lint.onesided import Side
+from tarl_lint.models.ros.endpoints import Publisher
+from tarl_lint.prefilter.one_sided import Side
 from tarl_lint.source import Module
 from tarl_lint.trees import walk
-from tarl_lint.valueflow.ends import Publisher
-from tarl_lint.valueflow.ir import Pos
 
 FACTS: Final = {**catalog.FUNCTIONS, **catalog.METHODS}
 MAKERS: Final = frozenset(n.rpartition(".")[2] for n, f in FACTS.items() if f.kind == "publisher")

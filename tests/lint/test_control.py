@@ -4,9 +4,9 @@ from textwrap import dedent
 
 import pytest
 
+from tarl_lint.ir.control_dependence import NEAR, control_dependence
+from tarl_lint.ir.lower_statements import lower_module
 from tarl_lint.source import Module
-from tarl_lint.valueflow.control import NEAR, control_dependence
-from tarl_lint.valueflow.lower import lower_module
 from tests.lint.analysing import analysed, steps
 
 

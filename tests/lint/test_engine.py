@@ -3,7 +3,7 @@ from textwrap import dedent
 from tarl_lint.config import Config
 from tarl_lint.engine import analyse
 from tarl_lint.keys import Wrapper
-from tarl_lint.relevance import relevant
+from tarl_lint.prefilter.by_words import relevant
 from tarl_lint.source import Module, parse
 
 

@@ -10,11 +10,11 @@ import tarl_lint
 from tarl_lint.config import Config
 from tarl_lint.deep_stack import with_deep_stack
 from tarl_lint.engine import HAZARDS, findings, hazards
-from tarl_lint.onesided import one_sided
+from tarl_lint.flows.reachability import Tracer
+from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.prefilter.one_sided import one_sided
 from tarl_lint.rules import tarl101, tarl102
 from tarl_lint.source import Module, parse
-from tarl_lint.taint import Tracer
-from tarl_lint.valueflow.link import Linker
 
 CASES = Path(__file__).parents[1] / "cases"
 EXAMPLES = {
@@ -111,7 +111,7 @@ NEW_RULE = '''
 from collections.abc import Iterator
 from tarl_lint.evidence import Evidence
 from tarl_lint.model import Finding
-from tarl_lint.onesided import Side
+from tarl_lint.prefilter.one_sided import Side
 
 CODE = "TARL299"
 SUMMARY = "a source is subscribed to"

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tarl_lint.api import analyse
-from tarl_lint.shortest_path import shortest_path
+from tarl_lint.flows.shortest_path import shortest_path
 
 CASES = sorted((Path(__file__).parent.parent / "cases").glob("*.py"))
 

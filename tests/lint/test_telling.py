@@ -6,8 +6,8 @@ import pytest
 
 from tarl_lint.config import Config
 from tarl_lint.engine import analyse
+from tarl_lint.ir.effect_free import only_tells
 from tarl_lint.source import parse
-from tarl_lint.valueflow.telling import only_tells
 
 NODE = """
 import rospy

@@ -11,12 +11,12 @@ from tarl_lint import engine
 from tarl_lint.cli import main
 from tarl_lint.config import Config
 from tarl_lint.deep_stack import with_deep_stack
+from tarl_lint.flows.reachability import Tracer
+from tarl_lint.interpret.budget import LEISURE, MAX_GENERATIONS, PATIENCE
+from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.memory.value_flow_graph import MAX_EDGES
+from tarl_lint.memory.values import Obj
 from tarl_lint.source import Module
-from tarl_lint.taint import Tracer
-from tarl_lint.valueflow.bounds import LEISURE, MAX_GENERATIONS, PATIENCE
-from tarl_lint.valueflow.graph import MAX_EDGES
-from tarl_lint.valueflow.link import Linker
-from tarl_lint.valueflow.values import Obj
 
 MOST = 2.5 * PATIENCE  # statements that any program may take
 

@@ -1,0 +1,1 @@
+"""From the value-flow graph to flows as people see them."""

@@ -1,0 +1,45 @@
+"""Calls that a decision leads to: the statements between a condition and what a called function stores."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.value_flow_graph import Graph, Place
+from tarl_lint.memory.values import Branches
+
+Entrance = tuple[
+    int, list[Place], int
+]  # a decision, the calls that it leads to from outside in, what they made
+
+
+def entrances(graph: Graph, nodes: set[int]) -> Iterator[Entrance]:
+    """Yield the calls by which decisions among the nodes choose values that are made in other functions."""
+    for node in sorted(nodes):
+        if node in graph.gates:
+            made, choice = graph.gates[node]
+            yield from _between(graph, choice, nodes, made, node)
+        for former in sorted(graph.data[node] & graph.stands_for.keys()):
+            made = graph.stands_for[former]
+            if made in nodes:
+                yield from _between(graph, graph.branches[made] - graph.branches[node], nodes, made, made)
+
+
+def _between(graph: Graph, choice: Branches, nodes: set[int], made: int, shown: int) -> Iterator[Entrance]:
+    frame = graph.places[made].frame
+    for decision, _ in sorted(choice):
+        calls = _calls(frame, graph.places[decision].frame) if decision in nodes else []
+        if calls:
+            yield decision, calls, shown
+
+
+def _calls(frame: Frame, outer: Frame) -> list[Place]:
+    """Return the calls that lead from one activation to another, outermost first; none where they do not."""
+    found: list[Place] = []
+    current: Frame | None = frame
+    while current is not None and current is not outer:
+        if current.caller is None or current.call is None:
+            return []
+        found.append(Place(current.caller, current.call, "call", current.call.pos))
+        current = current.caller
+    return found[::-1]

@@ -1,0 +1,81 @@
+"""What is around the steps of a flow: the registration, the `__main__` guard, loops around steps and calls."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tarl_lint.flows.statement_text import Texts, Written
+from tarl_lint.memory.frames import Frame
+from tarl_lint.models.ros.endpoints import SourceRecord
+
+
+class Surroundings:
+    """Finds context steps."""
+
+    def __init__(self, texts: Texts) -> None:
+        self.texts = texts
+        self._above: dict[int, Written | None] = {}  # a statement → the nearest loop or guard around it
+
+    def registration(self, origin: SourceRecord) -> Written | None:
+        """Return the statement that subscribes."""
+        return self.texts[origin.path].statement(origin.statement.pos)
+
+    def context(
+        self, origin: SourceRecord, steps: Sequence[tuple[Frame, Written]]
+    ) -> tuple[list[Written], list[tuple[int, int]]]:
+        """Return the statements around the steps and the registration, and which step each comes before."""
+        found: dict[int, Written] = {}
+        edges: dict[tuple[int, int], None] = {}
+        registration = self.registration(origin)
+        if registration is not None:
+            found[id(registration)] = registration
+            self._around(registration, registration, registration, found, edges)
+            self._callers(origin.frame, registration, found, edges)
+        for frame, written in steps:
+            self._around(written, written, written, found, edges)
+            self._callers(frame, written, found, edges)
+        return list(found.values()), list(edges)
+
+    def _callers(
+        self, frame: Frame, step: Written, found: dict[int, Written], edges: dict[tuple[int, int], None]
+    ) -> None:
+        """Add what is around the calls that lead to a frame, from the inside out."""
+        current: Frame | None = frame
+        inner = step
+        while current is not None and current.caller is not None and current.call is not None:
+            call = self.texts[current.caller.program.path].statement(current.call.pos)
+            if call is not None:
+                inner = self._around(call, step, inner, found, edges)
+            current = current.caller
+
+    def _around(
+        self,
+        written: Written,
+        step: Written,
+        inner: Written,
+        found: dict[int, Written],
+        edges: dict[tuple[int, int], None],
+    ) -> Written:
+        """Add the loops and guards around a statement; return the outermost."""
+        around = self._shown(written)
+        while around is not None:
+            found[id(around)] = around
+            edges[id(around), id(step)] = None
+            if inner is not step:
+                edges[id(around), id(inner)] = None
+            inner = around
+            around = self._shown(around)
+        return inner
+
+    def _shown(self, written: Written) -> Written | None:
+        """Return the nearest loop or guard around a statement in its function."""
+        passed = [written]
+        while id(passed[-1]) not in self._above:
+            around = passed[-1].around
+            if around is None or around.defines or around.shown:
+                self._above[id(passed[-1])] = None if around is None or around.defines else around
+            else:
+                passed.append(around)
+        answer = self._above[id(passed[-1])]
+        self._above.update((id(w), answer) for w in passed)
+        return answer

@@ -1,0 +1,348 @@
+"""From sources to sinks: which pairs are flows, and through which statements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from tarl_lint.flows.call_chains import entrances
+from tarl_lint.flows.context_steps import Surroundings
+from tarl_lint.flows.shortest_path import shortest_path
+from tarl_lint.flows.statement_text import Texts, Written
+from tarl_lint.flows.topological_order import before_loops, in_order
+from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.memory.value_flow_graph import Place
+from tarl_lint.memory.values import Branches
+from tarl_lint.model import Dependence, Flow, Role, Sink, Source, Span, Step
+from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
+
+ROLES: Mapping[str, Role] = {
+    "Return": "return",
+    "If": "condition",
+    "While": "condition",
+    "Try": "condition",
+    "Match": "condition",
+    "match_case": "condition",
+    "Assert": "condition",
+    "Expr": "call",
+}
+
+
+@dataclass(slots=True)
+class Reach:
+    """What a source reaches: by data alone, and in any way."""
+
+    data: set[int]
+    any: set[int]
+    counted: Mapping[int, set[int]]  # counts of elements → what of its data it decided to put there
+
+
+class Tracer:
+    """Finds the flows of a linked set of modules."""
+
+    def __init__(self, machine: Linker) -> None:
+        self.machine = machine
+        self.graph = machine.graph
+        self.texts = Texts(machine.modules)
+        self.surroundings = Surroundings(self.texts)
+        self.forward_data = _reversed(self.graph.data)
+        self.forward_control = _reversed(self.graph.control)
+        self._statements: dict[int, Written | None] = {}
+        self._formers: dict[int, list[int]] = {}
+
+    def flows(self) -> tuple[Flow, ...]:
+        """Return every flow, sorted by sink and source."""
+        found: list[Flow] = []
+        sources = [(self.source(r), r, self.reach(r)) for r in self.machine.sources.values()]
+        for record in self.machine.sinks.values():
+            sink = self.sink(record)
+            for source, origin, reach in sources:
+                flow = self.flow(source, origin, reach, sink, record)
+                if flow is not None:
+                    found.append(flow)
+        return tuple(sorted(found, key=lambda f: (f.sink.span, f.source.span)))
+
+    def reach(self, record: SourceRecord) -> Reach:
+        """Return what the messages of a source reach."""
+        data = closure(record.nodes, [self.forward_data])
+        counted: dict[int, set[int]] = {}
+        while more := self.counts(data):
+            counted.update(more)
+            data |= closure(more, [self.forward_data])
+        return Reach(data, closure(record.nodes, [self.forward_data, self.forward_control]), counted)
+
+    def counts(self, data: set[int]) -> dict[int, set[int]]:
+        """Return the counts, not in `data` yet, of elements that are made from it and that it puts there."""
+        graph = self.graph
+        found: dict[int, set[int]] = {}
+        for node, elements in graph.counts.items():
+            if node not in data and not elements.isdisjoint(data):
+                gates = graph.control[node] & graph.gates.keys()
+                if any(not graph.control[gate].isdisjoint(data) for gate in gates):
+                    found[node] = elements & data
+        return found
+
+    def flow(
+        self, source: Source, origin: SourceRecord, reach: Reach, sink: Sink, record: SinkRecord
+    ) -> Flow | None:
+        """Return the flow of a pair, None when nothing of the source reaches the sink."""
+        ends = record.nodes & reach.any
+        if not ends:
+            return None
+        explicit = bool(record.nodes & reach.data)
+        graph = self.graph
+        on_data = self.made_from(record.nodes & reach.data, reach)
+        on_any = closure(ends, [graph.data, graph.control], reach.any)
+        on_any |= on_data | self.made_there(on_any)
+        steps, statement_of, keys = self.steps(origin, on_data, on_any, record)
+        formers = self.data_formers(reach) if explicit else self.formers
+        inside = reach.data if explicit else reach.any
+        path = shortest_path(
+            sorted(ends & inside),
+            origin.nodes,
+            lambda n: (f for f in formers(n) if f in inside),
+            statement_of,
+        )
+        chain = ending_in_publish_call([keys[key] for key in path], steps)
+        return Flow("explicit" if explicit else "implicit", source, sink, steps, chain)
+
+    def data_formers(self, reach: Reach) -> Callable[[int], list[int]]:
+        """Return what tells the data that a node is made from, the elements that a count is made from included."""
+        return lambda node: sorted(self.graph.data[node] | reach.counted.get(node, set()))
+
+    def made_from(self, ends: set[int], reach: Reach) -> set[int]:
+        """Return the data of a source that its ends are made from."""
+        found = closure(ends, [self.graph.data], reach.data)
+        while more := set().union(*(reach.counted[n] for n in found & reach.counted.keys())) - found:
+            found |= closure(more, [self.graph.data], reach.data)
+        return found
+
+    def made_there(self, nodes: set[int]) -> set[int]:
+        """Return the constants that conditions among the nodes choose, with the statements that make them."""
+        graph = self.graph
+        found: set[int] = set()
+        for node in nodes:
+            if node in graph.gates:
+                dep, choice = graph.gates[node]
+                self._makers(dep, frozenset(b for b in choice if b[0] in nodes), found)
+            for former in graph.data[node] & graph.stands_for.keys():
+                dep = graph.stands_for[former]
+                ways = frozenset(b for b in graph.branches[dep] - graph.branches[node] if b[0] in nodes)
+                if ways:
+                    found.add(dep)
+                    self._makers(dep, ways, found)
+        return found
+
+    def _makers(self, dep: int, ways: Branches, found: set[int]) -> None:
+        """Add what a value is made from, as far as it stands under the conditions that choose it."""
+        pending = [dep] if ways else []
+        while pending:
+            for near in self.graph.data[pending.pop()]:
+                former = self.graph.stands_for.get(near, near)
+                if former not in found and not ways.isdisjoint(self.graph.branches[former]):
+                    found.add(former)
+                    pending.append(former)
+
+    # --- steps --------------------------------------------------------------------------------------------
+
+    def steps(
+        self, origin: SourceRecord, on_data: set[int], on_any: set[int], record: SinkRecord
+    ) -> tuple[tuple[Step, ...], dict[int, int], dict[int, int]]:
+        """Return the taint list: data and control steps of the nodes, and what is around them.
+
+        With it come node → statement, and statement → place in the list.
+        """
+        dependence: dict[int, Dependence] = {}
+        written: dict[int, Written] = {}
+        statement_of: dict[int, int] = {}
+        for node in sorted(on_any):
+            found = self.statement(node)
+            if found is None:
+                continue
+            key = id(found)
+            written[key] = found
+            statement_of[node] = key
+            if node in on_data:
+                dependence[key] = "data"
+            else:
+                dependence.setdefault(key, "control")
+        edges = self.edges(on_any, statement_of, written)
+        edges += self.entered(on_any, statement_of, written, dependence)
+        inside = {(self.graph.places[n].frame, k): written[k] for n, k in statement_of.items()}
+        context, outer = self.surroundings.context(origin, [(f, w) for (f, _), w in inside.items()])
+        for item in context:
+            if id(item) not in written:
+                written[id(item)] = item
+                dependence[id(item)] = "context"
+        registration = self.surroundings.registration(origin)
+        arrivals = self.arrivals(origin)
+        edges += outer + [(id(registration), a) for a in arrivals]
+        spans = {key: w.text.span(w) for key, w in written.items()}
+        first = {*arrivals, *(key for key, kind in dependence.items() if kind == "context")}
+        order = in_order(spans, edges, first)
+        sinks = {id(w) for n in record.nodes if (w := self.statement(n)) is not None}
+        roles: dict[int, Role] = {**({id(registration): "register"} if registration is not None else {})}
+        roles |= dict.fromkeys(arrivals, "receive")
+        roles |= dict.fromkeys(sinks, "publish")
+        steps = tuple(self.step(written[k], spans[k], dependence[k], roles.get(k)) for k in order)
+        return steps, statement_of, {key: place for place, key in enumerate(order)}
+
+    def entered(
+        self,
+        nodes: set[int],
+        statement_of: Mapping[int, int],
+        written: dict[int, Written],
+        dependence: dict[int, Dependence],
+    ) -> list[tuple[int, int]]:
+        """Add the calls by which decisions lead to what functions store; return what comes before what."""
+        edges: dict[tuple[int, int], None] = {}
+        for decision, calls, made in entrances(self.graph, nodes):
+            chain = [statement_of.get(decision)]
+            for place in calls:
+                found = self._statement(place)
+                if found is not None:
+                    written.setdefault(id(found), found)
+                    dependence.setdefault(id(found), "control")
+                    chain.append(id(found))
+            chain.append(statement_of.get(made))
+            known = [key for key in chain if key is not None]
+            edges.update(dict.fromkeys((a, b) for a, b in pairwise(known) if a != b))
+        return list(edges)
+
+    def statement(self, node: int) -> Written | None:
+        """Return the statement that a node belongs to; of a message arriving, the callback's header."""
+        if node not in self._statements:
+            self._statements[node] = self._statement(self.graph.places[node])
+        return self._statements[node]
+
+    def _statement(self, place: Place) -> Written | None:
+        text = self.texts[place.frame.program.path]
+        if place.statement is not None:
+            return text.statement(place.statement.pos)
+        return text.function(place.pos) if place.role == "receive" else None
+
+    def arrivals(self, origin: SourceRecord) -> list[int]:
+        """Return the steps at which messages of a source arrive."""
+        found = (self.statement(n) for n in sorted(origin.nodes))
+        return [id(w) for w in found if w is not None]
+
+    def edges(
+        self, nodes: Iterable[int], statement_of: Mapping[int, int], written: Mapping[int, Written]
+    ) -> list[tuple[int, int]]:
+        """Return which statement comes before which; what a loop carries to its next turn says nothing."""
+        found: dict[tuple[int, int], None] = {}
+        turns: list[tuple[int, int]] = []
+        function: dict[int, object] = {}
+        for node in sorted(nodes):
+            after = statement_of.get(node)
+            if after is None:
+                continue
+            function[after] = self.graph.places[node].frame.function
+            for former in self.formers(node):
+                before = statement_of.get(former)
+                if before is None or before == after:
+                    continue
+                same = self.graph.places[former].frame.function is function[after]
+                if same and written[before].start > written[after].start:
+                    turns.append((before, after))
+                else:
+                    found[before, after] = None
+        return [*found, *before_loops(found, turns, function)]
+
+    def formers(self, node: int) -> list[int]:
+        """Return what a node is made from or depends on, in order."""
+        known = self._formers.get(node)
+        if known is None:
+            known = self._formers[node] = sorted(self.graph.data[node] | self.graph.control[node])
+        return known
+
+    def step(self, written: Written, span: Span, dependence: Dependence, known: Role | None) -> Step:
+        """Return a statement as a step; what is not known of its role its syntax tells."""
+        text = written.text
+        role = ROLES.get(type(written.node).__name__, "assign")
+        if known is not None:
+            role = known
+        elif written.qualname.endswith("<lambda>") and role == "assign":
+            role = "return"
+        elif type(written.node).__name__ in ("For", "AsyncFor") and dependence != "data":
+            role = "condition"
+        return Step(text.site(written), span, text.code(span), role, dependence)
+
+    # --- ends ---------------------------------------------------------------------------------------------
+
+    def source(self, record: SourceRecord) -> Source:
+        """Return a source as others see it."""
+        topics = tuple(sorted(record.topics))
+        callback = ", ".join(sorted(record.callbacks))
+        name = ", ".join(topics) or f"line {record.pos[0]}"
+        return Source(
+            id=f"{record.module}:{record.qualname or '<module>'}:{name}:{callback or record.api}",
+            span=self._span(record.path, record.pos),
+            topics=topics,
+            type=" | ".join(sorted(record.types)),
+            callback=callback,
+            api=record.api,
+            registered=self._spans(record.registered or {(record.path, record.pos)}),
+            via=self._spans(record.via),
+            module=record.module,
+            qualname=record.qualname,
+        )
+
+    def sink(self, record: SinkRecord) -> Sink:
+        """Return a sink as others see it."""
+        topics = tuple(sorted(record.topics))
+        name = ", ".join(topics) or f"line {record.pos[0]}"
+        same = sorted(
+            r.pos for r in self.machine.sinks.values() if (r.module, r.qualname, r.topics) == _kin(record)
+        )
+        ordinal = f"#{same.index(record.pos) + 1}" if len(same) > 1 else ""
+        return Sink(
+            id=f"{record.module}:{record.qualname or '<module>'}:{name}{ordinal}",
+            span=self._span(record.path, record.pos),
+            topics=topics,
+            type=" | ".join(sorted(record.types)),
+            api=record.api,
+            module=record.module,
+            qualname=record.qualname,
+        )
+
+    def _span(self, path: str, pos: tuple[int, int, int, int]) -> Span:
+        return self.texts[path].stretch(pos)
+
+    def _spans(self, places: set[tuple[str, tuple[int, int, int, int]]]) -> tuple[Span, ...]:
+        return tuple(sorted(self._span(*p) for p in places))
+
+
+def ending_in_publish_call(path: Sequence[int], steps: Sequence[Step]) -> tuple[int, ...]:
+    """Return a path with its publish call last: the call is on the way before what its arguments call."""
+    calls = [place for place in path if steps[place].role == "publish"]
+    return (*(place for place in path if place not in calls), *calls[-1:])
+
+
+def _kin(record: SinkRecord) -> tuple[str, str, set[str]]:
+    return record.module, record.qualname, record.topics
+
+
+def _reversed(edges: Sequence[set[int]]) -> list[list[int]]:
+    forward: list[list[int]] = [[] for _ in edges]
+    for node, formers in enumerate(edges):
+        for former in formers:
+            forward[former].append(node)
+    return forward
+
+
+def closure(
+    start: Iterable[int], tables: Sequence[Sequence[Iterable[int]]], within: set[int] | None = None
+) -> set[int]:
+    """Return all nodes reached from `start` along any of the tables, inside a set."""
+    found = set(start)
+    pending = list(found)
+    while pending:
+        node = pending.pop()
+        for table in tables:
+            for following in table[node]:
+                if following not in found and (within is None or following in within):
+                    found.add(following)
+                    pending.append(following)
+    return found

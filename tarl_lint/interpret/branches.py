@@ -1,0 +1,219 @@
+"""Branches, loops and handlers: several continuations of one state."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tarl_lint.interpret import dunder_methods, expressions, operators
+from tarl_lint.interpret.budget import MAX_STATEMENTS
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.control_dependence import taken
+from tarl_lint.memory import joins
+from tarl_lint.memory.frames import Attempt, Frame
+from tarl_lint.memory.store import Delta
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value
+from tarl_lint.models import sizes, unpacking
+
+MAX_TURNS = 4  # elements of a loop that are told apart
+MAX_PASSES = 12  # over a loop's body; a safety net, since the values that can arise are finite
+
+
+def decide(ctx: Interpreter, test: ir.Expr, s: ir.Stmt, frame: Frame) -> bool | None:
+    """Evaluate a condition; return which way it goes when a constant tells."""
+    node = ctx.condition(frame, s)
+    value = expressions.evaluate(ctx, test, frame)
+    frame.statement = s
+    ctx.graph.flow(operators.truth(ctx, value, frame, "test"), node)
+    known, constant = value.constant()
+    if value.consts and not value.pts and not known:
+        ways = {bool(c) for c in value.consts}
+        return ways.pop() if len(ways) == 1 else None
+    return bool(constant) if known else None
+
+
+def if_statement(ctx: Interpreter, s: ir.If, frame: Frame) -> bool:
+    """Execute an `if`; join what its ways leave."""
+    way = decide(ctx, s.test, s, frame)
+    if way is not None:
+        return ctx.ops.block(ctx, s.body if way else s.orelse, frame)
+    goes_on: list[Delta] = []
+    for body in (s.body, s.orelse):
+        ctx.store.push()
+        if ctx.ops.block(ctx, body, frame):
+            goes_on.append(ctx.store.pop())
+        else:
+            ctx.store.pop()
+    if goes_on:
+        joins.merge(ctx, goes_on)
+    return bool(goes_on)
+
+
+def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
+    """Repeat the body until the state at its head changes no more."""
+    source = expressions.evaluate(ctx, s.source, frame) if s.target is not None else BOTTOM
+    if s.target is not None and (elements := _told_apart(ctx, source)):
+        return _turns(ctx, s, s.target, source, elements, frame)
+    depth = len(ctx.store.layers)
+    head: Delta = {}
+    for _ in range(MAX_PASSES):
+        ctx.store.push(head)
+        table: dict[str, list[Delta]] = {"break": [], "continue": []}
+        frame.jumps.append((depth, table))
+        enters, leaves = _loop_head(ctx, s, source, frame)
+        done = [ctx.store.since(depth)] if leaves else []
+        backs: list[Delta] = []
+        if enters:
+            if ctx.ops.block(ctx, s.body, frame):
+                backs.append(ctx.store.since(depth))
+            backs += table["continue"]
+        frame.jumps.pop()
+        ctx.store.cut(depth)
+        again = joins.joined(ctx, [head, *backs]) if backs else head
+        if again == head:
+            break
+        if ctx.spent > MAX_STATEMENTS:
+            ctx.cut[ctx.program] = None
+            break  # loops in loops in loops take as many passes as all of theirs multiplied
+        head = again
+    return _loop_end(ctx, s, done, table["break"], frame)
+
+
+def _told_apart(ctx: Interpreter, source: Value) -> list[Value]:
+    """Return the elements that a loop goes over one by one: a few, known, with data in them."""
+    elements = sizes.unpacked(ctx, source) or []
+    if not 1 < len(elements) <= MAX_TURNS:
+        return []
+    laden = any(v.deps or any(o.laden or o.kind == "message" for o in v.pts) for v in elements)
+    return elements if laden else []
+
+
+def _turns(
+    ctx: Interpreter, s: ir.Loop, target: ir.Expr, source: Value, elements: Sequence[Value], frame: Frame
+) -> bool:
+    """Execute the body once for each element."""
+    depth, before = len(ctx.store.layers), frame.turn
+    broken: list[Delta] = []
+    _length(ctx, source, ctx.condition(frame, s))
+    done: Delta | None = {}
+    for number, element in enumerate(elements):
+        ctx.store.push(done)
+        table: dict[str, list[Delta]] = {"break": broken, "continue": []}
+        frame.jumps.append((depth, table))
+        frame.turn = (*before, -1 - s.id, number)
+        frame.statement = s
+        ctx.ops.bind_target(ctx, target, element, frame, "element", s.source)
+        ends = [ctx.store.since(depth)] if ctx.ops.block(ctx, s.body, frame) else []
+        ends += table["continue"]
+        frame.jumps.pop()
+        ctx.store.cut(depth)
+        done = joins.joined(ctx, ends) if ends else None
+        if done is None:
+            break
+    frame.turn = before
+    return _loop_end(ctx, s, [done] if done is not None else [], broken, frame)
+
+
+def _loop_head(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame) -> tuple[bool, bool]:
+    """Evaluate the condition or bind the next element; tell whether the body and the end are reached."""
+    frame.statement = s
+    if ctx.watch is not None:
+        ctx.watch(frame, s)
+    if frame.root_waits and s.target is None:
+        ctx.ops.wait(ctx, frame)
+    if s.target is None:
+        way = decide(ctx, s.source, s, frame)
+        return way is not False, way is not True and not s.endless
+    node = ctx.condition(frame, s)
+    _length(ctx, source, node)
+    element = unpacking.iterated(ctx, source, s.source, frame)
+    ctx.ops.bind_target(ctx, s.target, element, frame, "element", s.source)
+    return True, True
+
+
+def _length(ctx: Interpreter, source: Value, node: int) -> None:
+    """How often a loop runs depends on a container's length: on what chose to add elements, not on them."""
+    ours = frozenset(filter(sizes.sized, source.pts))
+    ctx.graph.flow(sizes.length(ctx, source), node)
+    ctx.graph.choice(sizes.placed(ctx, ours), node)
+
+
+def _loop_end(ctx: Interpreter, s: ir.Loop, done: list[Delta], broken: list[Delta], frame: Frame) -> bool:
+    if done and s.orelse:
+        ctx.store.push(done[0])
+        depth = len(ctx.store.layers) - 1
+        done = [ctx.store.since(depth)] if ctx.ops.block(ctx, s.orelse, frame) else []
+        ctx.store.cut(depth)
+    if not done and not broken:
+        return False
+    joins.merge(ctx, [*done, *broken])
+    return True
+
+
+def try_statement(ctx: Interpreter, s: ir.Try, frame: Frame) -> bool:
+    """A handler can be entered from before and after every statement of the body."""
+    depth = len(ctx.store.layers)
+    ctx.condition(frame, s)
+    ctx.store.push()
+    states: list[Delta] = [{}]
+    attempt = Attempt(depth, states, bool(s.handlers), BOTTOM, _taken(s))
+    frame.tries.append(attempt)
+    goes_on = True
+    for statement in s.body:
+        goes_on = ctx.ops.block(ctx, [statement], frame)
+        states.append(ctx.store.since(depth)) if s.handlers and goes_on else None
+        if not goes_on:
+            break
+    frame.tries.pop()
+    ends: list[Delta] = []
+    if goes_on and ctx.ops.block(ctx, s.orelse, frame):
+        ends.append(ctx.store.since(depth))
+    ctx.store.cut(depth)
+    if s.handlers:
+        ends += _handlers(ctx, s, states, attempt.raised, frame)
+    if not ends:
+        if s.final:
+            ctx.store.push(joins.joined(ctx, states))
+            ctx.ops.block(ctx, s.final, frame)
+            ctx.store.cut(depth)
+        return False
+    joins.merge(ctx, ends)
+    return ctx.ops.block(ctx, s.final, frame)
+
+
+def _handlers(ctx: Interpreter, s: ir.Try, states: list[Delta], raised: Value, frame: Frame) -> list[Delta]:
+    depth = len(ctx.store.layers)
+    start = joins.joined(ctx, states)
+    ends: list[Delta] = []
+    for _, name, body in s.handlers:
+        ctx.store.push(start)
+        if name is not None:
+            ctx.ops.assign(ctx, name, raised if raised.deps or raised.pts else UNKNOWN, frame)
+        if ctx.ops.block(ctx, body, frame):
+            ends.append(ctx.store.since(depth))
+        ctx.store.cut(depth)
+    return ends
+
+
+def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
+    """Execute a `with`: managers that are ours enter and exit."""
+    managers: list[Value] = []
+    for number, (context, target) in enumerate(s.items):
+        value = expressions.evaluate(ctx, context, frame)
+        managers.append(value)
+        frame.statement = s
+        entered = dunder_methods.special(ctx, value, "__enter__", (), frame, s.pos)
+        value = value if entered is None else entered
+        if target is not None:
+            ctx.ops.bind_target(ctx, target, value, frame, f"with{number}", context)
+    goes_on = ctx.ops.block(ctx, s.body, frame)
+    frame.statement = s
+    for manager in reversed(managers if goes_on else ()):
+        dunder_methods.special(ctx, manager, "__exit__", [UNKNOWN] * 3, frame, s.pos)
+    return goes_on
+
+
+def _taken(s: ir.Try) -> frozenset[str]:
+    """Return the names of the exceptions that a statement handles, none when it handles any."""
+    each = [taken(types) for types, _, _ in s.handlers]
+    return frozenset().union(*each) if all(each) else frozenset()

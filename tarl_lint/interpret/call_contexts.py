@@ -1,0 +1,270 @@
+"""Calls of analysed functions and classes: arguments go in, results and the changed state come out."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+
+from tarl_lint.interpret import displays, nullness
+from tarl_lint.interpret.budget import ALL_LEISURE, LEISURE, MANY, MAX_CALLS, MAX_FRAMES, OFTEN
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Arguments
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, joins, recency, updates
+from tarl_lint.memory.abstract_gc import lasting
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.heap import item_field
+from tarl_lint.memory.store import BORN
+from tarl_lint.memory.values import BOTTOM, NONE, UNKNOWN, Nodes, Obj, Value, join, lineage, pointer
+from tarl_lint.models import sizes
+
+CALLABLE = frozenset(["closure", "bound", "class", "ext", "partial", "method", "weak"])
+ROOT_CALL = ir.Call(ir.Const(None, (0, 0, 0, 0)), (), (), (0, 0, 0, 0), 0)
+
+
+def all_used(ctx: Interpreter, arguments: Arguments) -> Nodes:
+    """Return the nodes of all data among the arguments."""
+    plain, named = arguments
+    deps = NONE
+    for value in (*plain, *named.values()):
+        deps |= ctx.use(value)
+    return deps
+
+
+def make_frame(
+    ctx: Interpreter, closure: Obj, caller: Frame, call: ir.Call, receiver: Hashable, owner: Obj | None
+) -> Frame | None:
+    """Return the activation for this call, None when it would be one too many."""
+    if not isinstance(closure.info, tuple):
+        return None
+    function, outer, program, cls = closure.info
+    runs = ctx.activations[function] = ctx.activations.get(function, 0) + 1
+    if len(ctx.stack) > MAX_CALLS or [f.function for f in ctx.stack].count(function) > 1:
+        return None
+    if ctx.spent > ctx.limit or (ctx.spent > MANY and runs > OFTEN):
+        ctx.cut[ctx.program] = None
+        return None
+    statement = caller.statement.id if caller.statement is not None else -1
+    key = (caller.id, statement, call.slot, closure.key, receiver, *caller.turn)
+    frame = ctx.frames.get(key)
+    if frame is None:
+        made = ctx.frames_of[ctx.program] = ctx.frames_of.get(ctx.program, 0) + 1
+        if made > MAX_FRAMES:
+            ctx.cut[ctx.program] = None
+            return None
+        frame = Frame(key, len(ctx.frames) + 1, function, program, ctx.module_objects[program.name])
+        ctx.frames[key] = frame
+        frame.caller, frame.call, frame.slot, frame.outer = caller, caller.statement, call.slot, outer
+        frame.base = ctx.branches(caller, caller.statement) | frozenset(ctx.guards)
+        frame.call_pos = call.pos
+        frame.owner = owner or cls
+        frame.answer = caller.answer if caller.statement is None and caller.caller is None else None
+    return frame
+
+
+def invoke(
+    ctx: Interpreter,
+    closure: Obj,
+    arguments: Arguments,
+    caller: Frame,
+    call: ir.Call,
+    owner: Obj | None = None,
+) -> Value:
+    """Run a function on arguments; where no data goes in and nothing takes part, only so far."""
+    before, start = ctx.leisure, ctx.spent
+    matters = not isinstance(closure.info, tuple) or closure.info[2].takes_part or carries(arguments)
+    if not matters and before is not None and start > before:
+        return _again(ctx, closure, arguments)
+    if matters:
+        ctx.leisure = None
+    elif before is None:
+        ctx.leisure = start + max(0, min(LEISURE, ALL_LEISURE - ctx.idled))
+    result = _invoke(ctx, closure, arguments, caller, call, owner)
+    if not matters and before is None:
+        ctx.idled += ctx.spent - start
+    ctx.leisure = before + ctx.spent - start if matters and before is not None else before
+    return result
+
+
+def _invoke(
+    ctx: Interpreter, closure: Obj, arguments: Arguments, caller: Frame, call: ir.Call, owner: Obj | None
+) -> Value:
+    receiver = arguments[0][0].pts if owner is not None and arguments[0] else None
+    frame = make_frame(ctx, closure, caller, call, receiver, owner)
+    if frame is None:
+        return _again(ctx, closure, arguments)
+    ctx.called.add((frame.function.module, frame.function.pos[0]))
+    passed = pass_arguments(ctx, arguments, caller, call)
+    ctx.store.push()
+    depth = len(ctx.store.layers) - 1
+    frame.depth_of_layers = depth
+    frame.root_waits = caller.root_waits
+    frame.jumps, frame.tries, frame.escapes = [], [], []
+    bind_parameters(ctx, frame, closure, passed)
+    _note_arguments(ctx, frame, arguments, caller, call)
+    frame.guards |= frozenset(ctx.guards)
+    ctx.guards, guards = [], ctx.guards
+    ctx.stack.append(frame)
+    result = ctx.ops.run(ctx, frame)
+    ctx.stack.pop()
+    ctx.guards = guards
+    nullness.note_result(ctx, call, [v for _, v in frame.returns], frame)
+    if frame.escapes:
+        ctx.ops.escaped(ctx, frame, caller)
+    ctx.store.cut(depth)
+    joins.merge(ctx, [lasting(d, frame, _handed(frame, v), ctx.given) for d, v in frame.returns] or [{}])
+    if frame.function.generator:
+        collected = recency.allocate(ctx, "sequence", caller, ("generator", call.slot))
+        updates.add_element(ctx, pointer(collected), frame.yielded)
+        return pointer(collected)
+    return result
+
+
+def _again(ctx: Interpreter, closure: Obj, arguments: Arguments) -> Value:
+    """Return the result of a recursive call: what is known by now, and data of the arguments."""
+    known = BOTTOM
+    for frame in ctx.stack:
+        if frame.key[3] == closure.key if isinstance(frame.key, tuple) and len(frame.key) > 3 else False:
+            known = join(known, frame.result)
+    return join(known, Value(all_used(ctx, arguments)))
+
+
+def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: ir.Call) -> Arguments:
+    """Let each argument pass through the calling statement."""
+    plain, named = arguments
+    shift = len(plain) - len(call.arguments)
+    passed: list[Value] = []
+    for number, value in enumerate(plain):
+        if _receiver(value) or caller.statement is None:
+            passed.append(value)
+            continue
+        node = ctx.node(caller, ("argument", call.slot, number), "call")
+        if 0 <= number - shift < len(call.arguments):
+            displays.mark(ctx, node, call.arguments[number - shift], value, caller)
+        passed.append(ctx.carry(value, node))
+    keywords = dict(call.keywords)
+    renamed: dict[str, Value] = {}
+    for name, value in named.items():
+        if caller.statement is None:
+            renamed[name] = value
+            continue
+        node = ctx.node(caller, ("argument", call.slot, name), "call")
+        if name in keywords:
+            displays.mark(ctx, node, keywords[name], value, caller)
+        renamed[name] = ctx.carry(value, node)
+    return passed, renamed
+
+
+def _note_arguments(
+    ctx: Interpreter, frame: Frame, arguments: Arguments, caller: Frame, call: ir.Call
+) -> None:
+    """Remember which parameters hold what is None only as long as nothing has come."""
+    plain, named = arguments
+    if caller.statement is None or any(isinstance(a, ir.Starred) for a in call.arguments):
+        return
+    shift = len(plain) - len(call.arguments)
+    for parameter, value, expr in zip(
+        frame.function.parameters[shift:], plain[shift:], call.arguments, strict=False
+    ):
+        nullness.note_passed(ctx, (frame, parameter.name), expr, value, caller)
+    for name, expr in call.keywords:
+        if name is not None and name in named:
+            nullness.note_passed(ctx, (frame, name), expr, named[name], caller)
+
+
+def bind_parameters(ctx: Interpreter, frame: Frame, closure: Obj, arguments: Arguments) -> None:
+    """Store arguments under the parameters' names."""
+    plain, named = list(arguments[0]), dict(arguments[1])
+    rest, mapping = named.pop("*", None), named.pop("**", None)
+    frame.arguments = [*plain, *named.values()]
+    for parameter in frame.function.parameters:
+        if parameter.kind == "star":
+            obj = recency.allocate(ctx, "sequence", frame, ("rest", parameter.name))
+            for number, value in enumerate(plain):
+                ctx.store.put((obj, item_field(number)), value)
+            if rest is not None:
+                updates.add_element(ctx, pointer(obj), rest)
+            value, plain = pointer(obj), []
+        elif parameter.kind == "mapping":
+            obj = recency.allocate(ctx, "mapping", frame, ("rest", parameter.name))
+            for name, value in named.items():
+                ctx.store.put((obj, item_field(name)), value)
+            if mapping is not None:
+                sizes.absorb(ctx, obj, mapping)
+            value, named = pointer(obj), {}
+        elif parameter.kind == "plain" and plain:
+            value = plain.pop(0)
+        elif parameter.name in named:
+            value = named.pop(parameter.name)
+        else:
+            value = _missing(ctx, parameter, closure, rest, mapping)
+        ctx.store.put((frame, parameter.name), value)
+
+
+def _missing(
+    ctx: Interpreter, parameter: ir.Parameter, closure: Obj, rest: Value | None, mapping: Value | None
+) -> Value:
+    """Return what a parameter is that no argument names."""
+    value = ctx.store.get((closure, parameter.name)) if parameter.default is not None else None
+    result = BOTTOM if value is None else value
+    if rest is not None and parameter.kind == "plain":
+        result = join(result, rest)
+    if mapping is not None:
+        for obj in mapping.pts:
+            stored = ctx.store.get((obj, item_field(parameter.name)))
+            result = join(result, heap.arrive(ctx, stored or heap.content(ctx, obj), mapping.deps))
+    return result if result is not BOTTOM else UNKNOWN
+
+
+def instantiate(ctx: Interpreter, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+    """Make an instance, by its own `__new__` if it has one, and run its `__init__`."""
+    ctx.made.add(cls.key)
+    for owner in lineage(cls):
+        new = ctx.store.get((owner, "__new__"))
+        if new is not None:
+            plain, named = arguments
+            made = ctx.ops.call_value(ctx, new, ([pointer(cls), *plain], named), frame, call)
+            for obj in sorted(made.pts, key=lambda o: o.number):
+                if obj.kind == "instance" and obj.info is cls:
+                    _initialise(ctx, obj, cls, arguments, frame, call)
+            return made
+    obj = blank_instance(ctx, cls, frame, call)
+    _initialise(ctx, obj, cls, arguments, frame, call)
+    return pointer(obj)
+
+
+def blank_instance(ctx: Interpreter, cls: Obj, frame: Frame, call: ir.Call) -> Obj:
+    """Return an instance as `object.__new__` makes it."""
+    statement = frame.statement.id if frame.statement is not None else -1
+    obj = recency.intern(ctx, "instance", (frame.id, statement, call.slot, cls.key, *frame.turn), cls.name)
+    obj.info = cls
+    ctx.store.put((obj, BORN), BOTTOM)
+    return obj
+
+
+def _initialise(
+    ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call
+) -> None:
+    for owner in lineage(cls):
+        init = ctx.store.get((owner, "__init__"))
+        if init is not None:
+            ctx.ops.call_value(ctx, heap.bind(ctx, init, obj, owner), arguments, frame, call)
+            break
+    else:
+        ctx.ops.fill(ctx, obj, cls, arguments, frame, call)
+
+
+def _handed(frame: Frame, returned: Value) -> list[Obj]:
+    """Return the objects that a function hands out by other ways than by storing them."""
+    raised = (o for escape in frame.escapes for o in escape.value.pts)
+    return [*returned.pts, *frame.yielded.pts, *raised]
+
+
+def carries(arguments: Arguments) -> bool:
+    """Tell whether any data is in what is passed."""
+    plain, named = arguments
+    return any(v.deps or any(o.laden for o in v.pts) for v in (*plain, *named.values()))
+
+
+def _receiver(value: Value) -> bool:
+    """Tell whether an argument is an object of ours, which needs no node to be followed."""
+    return bool(value.pts) and not value.deps and all(o.kind in ("instance", "class") for o in value.pts)

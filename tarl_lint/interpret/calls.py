@@ -1,0 +1,191 @@
+"""Calls: which function is meant, what goes in and what comes out."""
+
+from __future__ import annotations
+
+from tarl_lint.interpret import call_contexts, expressions, operators
+from tarl_lint.interpret.call_contexts import CALLABLE
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Arguments
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, joins
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.reachable_data import in_order
+from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, join, join_all, pointer
+from tarl_lint.models import sizes
+
+MAX_ALIKE = 12  # objects of libraries whose methods are called one by one; of more, all at once
+
+
+def call(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Value:
+    """Evaluate a call expression."""
+    if isinstance(expr.function, ir.Attribute):
+        base = expressions.evaluate(ctx, expr.function.base, frame)
+        return _call_attribute(ctx, expr, expr.function, base, arguments(ctx, expr, frame), frame)
+    function = expressions.evaluate(ctx, expr.function, frame)
+    return call_value(ctx, function, arguments(ctx, expr, frame), frame, expr)
+
+
+def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Arguments:
+    """Evaluate arguments; `*` and `**` among the keywords hold what was unpacked but not told apart."""
+    plain: list[Value] = []
+    named: dict[str, Value] = {}
+    for argument in expr.arguments:
+        value = expressions.evaluate(ctx, argument, frame)
+        if isinstance(argument, ir.Starred):
+            known = one_by_one(ctx, value)
+            if known is None:
+                named["*"] = join(named.get("*", BOTTOM), heap.elements(ctx, value))
+            else:
+                plain.extend(known)
+        else:
+            plain.append(value)
+    for name, argument in expr.keywords:
+        value = expressions.evaluate(ctx, argument, frame)
+        if name is None:
+            named["**"] = join(named.get("**", BOTTOM), value)
+        else:
+            named[name] = value
+    return plain, named
+
+
+def one_by_one(ctx: Interpreter, value: Value) -> list[Value] | None:
+    """Return what `*value` passes, argument by argument; of several sequences those of one length are joined."""
+    ways = [sizes.unpacked(ctx, Value(value.deps, frozenset([o]))) for o in in_order(value.pts)]
+    lengths = {-1 if way is None else len(way) for way in ways}
+    if -1 in lengths or len(lengths) != 1:
+        return None
+    return [join_all(parts) for parts in zip(*(way for way in ways if way is not None), strict=True)]
+
+
+def _call_attribute(
+    ctx: Interpreter, expr: ir.Call, function: ir.Attribute, base: Value, arguments: Arguments, frame: Frame
+) -> Value:
+    """Call a method on everything the receiver may be."""
+    if ctx.nothing_yet(base):
+        return BOTTOM
+    if not base.pts:
+        return ctx.ops.call_method(ctx, base, None, function.name, arguments, frame, expr)
+    targets: list[tuple[Obj, Value]] = []
+    for obj in in_order(base.pts):
+        member = heap.read_field(ctx, obj, function.name) if obj.kind != "ext" else BOTTOM
+        targets.append((obj, member))
+    if len(targets) == 1:
+        return _call_member(ctx, base, *targets[0], function.name, arguments, frame, expr)
+    result, deltas = BOTTOM, []
+    guard = operators.guard(ctx, base.deps, frame, ("dispatch", expr.slot))
+    alike = frozenset(o for o, m in targets if o.kind == "lib" and not _held_by(ctx, o, m, function.name))
+    if len(alike) > MAX_ALIKE:
+        targets = [(o, m) for o, m in targets if o not in alike]
+    for number, (obj, member) in enumerate(targets):
+        ctx.store.push()
+        ctx.guards.append((guard, str(number)))
+        value = _call_member(ctx, base, obj, member, function.name, arguments, frame, expr)
+        ctx.guards.pop()
+        result = join(result, value)
+        deltas.append(ctx.store.pop())
+    if len(alike) > MAX_ALIKE:
+        ctx.store.push()
+        receivers = Value(base.deps, alike)
+        first = in_order(alike)[0]
+        result = join(
+            result, ctx.ops.call_method(ctx, receivers, first, function.name, arguments, frame, expr)
+        )
+        deltas.append(ctx.store.pop())
+    joins.merge(ctx, deltas)
+    return result
+
+
+def _call_member(
+    ctx: Interpreter,
+    base: Value,
+    obj: Obj,
+    member: Value,
+    name: str,
+    arguments: Arguments,
+    frame: Frame,
+    expr: ir.Call,
+) -> Value:
+    if obj.kind == "ext":
+        return ctx.ops.call_library(ctx, f"{obj.name}.{name}", arguments, frame, expr)
+    callables = _held_by(ctx, obj, member, name)
+    if len(callables) == 1 and (method := next(iter(callables))).kind == "bound":
+        return call_object(ctx, method, arguments, frame, expr, base.deps)
+    if callables:
+        return call_value(ctx, Value(member.deps, callables), arguments, frame, expr)
+    if obj.kind == "instance" and (made := made_by_library(ctx, obj, name)).pts:
+        return call_value(ctx, heap.arrive(ctx, made, base.deps), arguments, frame, expr)
+    return ctx.ops.call_method(ctx, Value(base.deps, frozenset([obj])), obj, name, arguments, frame, expr)
+
+
+def made_by_library(ctx: Interpreter, obj: Obj, name: str) -> Value:
+    """Return the objects of libraries that were stored in an attribute: to be called as functions are."""
+    stored = ctx.store.get((obj, name))
+    pts = frozenset(o for o in stored.pts if o.kind == "lib") if stored is not None else frozenset[Obj]()
+    return Value(stored.deps if stored is not None else NONE, pts)
+
+
+def _held_by(ctx: Interpreter, obj: Obj, member: Value, name: str) -> frozenset[Obj]:
+    """Return the functions that an object holds as an attribute, not methods of its own that are not ours."""
+    return frozenset(o for o in member.pts if callable_held(ctx, o) and o.info != (obj, name))
+
+
+def callable_held(ctx: Interpreter, obj: Obj) -> bool:
+    """Tell whether what an attribute holds can be called: a function, or an object whose class says how."""
+    if obj.kind == "instance":
+        return any(o.kind in CALLABLE for o in heap.read_field(ctx, obj, "__call__").pts)
+    return obj.kind in CALLABLE
+
+
+def call_value(ctx: Interpreter, function: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+    """Call whatever a value may be; what is not known passes its arguments on."""
+    targets = in_order(function.pts)
+    if ctx.nothing_yet(function):
+        return BOTTOM
+    if not targets:
+        return Value(function.deps | call_contexts.all_used(ctx, arguments))
+    if len(targets) == 1:
+        return call_object(ctx, targets[0], arguments, frame, call)
+    result, deltas = BOTTOM, []
+    guard = operators.guard(ctx, function.deps, frame, ("dispatch", call.slot))
+    for number, target in enumerate(targets):
+        ctx.store.push()
+        ctx.guards.append((guard, str(number)))
+        result = join(result, call_object(ctx, target, arguments, frame, call))
+        ctx.guards.pop()
+        deltas.append(ctx.store.pop())
+    joins.merge(ctx, deltas)
+    return result
+
+
+def call_object(
+    ctx: Interpreter, target: Obj, arguments: Arguments, frame: Frame, call: ir.Call, carriers: Nodes = NONE
+) -> Value:
+    """Call one object; a method's receiver is what `carriers` handed on, which may have been chosen by data."""
+    kind = target.kind
+    if qualified := ctx.ops.named_by_settings(ctx, target):
+        return ctx.ops.call_library(ctx, qualified, arguments, frame, call)
+    if kind == "closure":
+        return call_contexts.invoke(ctx, target, arguments, frame, call)
+    if kind == "bound" and isinstance(target.info, tuple):
+        closure, receiver, owner = target.info
+        plain, named = arguments
+        return call_contexts.invoke(
+            ctx, closure, ([Value(carriers, frozenset([receiver])), *plain], named), frame, call, owner
+        )
+    if kind == "class":
+        return call_contexts.instantiate(ctx, target, arguments, frame, call)
+    if kind == "ext":
+        return ctx.ops.call_library(ctx, target.name, arguments, frame, call)
+    if kind == "partial" and isinstance(target.info, tuple):
+        function, plain, named = target.info
+        return call_value(ctx, function, ([*plain, *arguments[0]], {**named, **arguments[1]}), frame, call)
+    if kind == "method" and isinstance(target.info, tuple):
+        owner, name = target.info
+        return ctx.ops.call_method(ctx, pointer(owner), owner, name, arguments, frame, call)
+    if kind == "weak" and isinstance(target.info, Value):
+        return target.info
+    if kind == "instance":
+        member = heap.read_field(ctx, target, "__call__")
+        if any(o.kind in CALLABLE for o in member.pts):
+            return call_value(ctx, member, arguments, frame, call)
+    return ctx.ops.call_method(ctx, pointer(target), target, "__call__", arguments, frame, call)

@@ -1,0 +1,122 @@
+"""Functions, classes and imports: statements that define names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tarl_lint.interpret import calls, expressions
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.control_dependence import control_dependence
+from tarl_lint.memory import recency
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import ClassInfo, Obj, Value, lineage, pointer
+from tarl_lint.models.ros import subscriptions
+from tarl_lint.models.smach import LATER
+
+
+def define(ctx: Interpreter, s: ir.Define, frame: Frame) -> bool:
+    """Execute a `def`; a property's setter is kept beside the property."""
+    value = expressions.closure(ctx, s.function, frame, "def")
+    for decorator in s.function.decorators:
+        if (
+            isinstance(decorator, ir.Attribute)
+            and decorator.name == "setter"
+            and isinstance(s.target, ir.Name)
+        ):
+            ctx.setters.add(s.target.name)
+            ctx.store.put((expressions.holder(s.target, frame), f"{s.target.name}.setter"), value)
+            return True
+    ctx.ops.assign(ctx, s.target, decorated(ctx, value, s.function.decorators, s, frame), frame)
+    return True
+
+
+def decorated(
+    ctx: Interpreter, value: Value, decorators: Sequence[ir.Expr], s: ir.Stmt, frame: Frame
+) -> Value:
+    """Return what decorators of ours make of a function or class; those of libraries leave it as it is.
+
+    One that is a method of a library's object, as `@server.route("/")`, hands it to that object, to be called.
+    """
+    for decorator in reversed(decorators):
+        wrapper = expressions.evaluate(ctx, decorator, frame)
+        maker = decorator.function if isinstance(decorator, ir.Call) else decorator
+        if isinstance(maker, ir.Attribute) and _of_library(expressions.evaluate(ctx, maker.base, frame)):
+            for target in sorted((o for o in value.pts if o.kind in LATER), key=lambda o: o.number):
+                subscriptions.call_later(ctx, target, ())
+        if any(wraps(ctx, o) for o in wrapper.pts):
+            call = ir.Call(decorator, (), (), s.pos, -1)
+            value = calls.call_value(ctx, wrapper, ([value], {}), frame, call)
+    frame.statement = s
+    return value
+
+
+def _of_library(value: Value) -> bool:
+    return bool(value.pts) and all(o.kind == "lib" for o in value.pts)
+
+
+def wraps(ctx: Interpreter, obj: Obj) -> bool:
+    """Tell whether a decorator is one of ours; of classes those whose instances can be called."""
+    if obj.kind == "class":
+        return any(ctx.store.get((owner, "__call__")) is not None for owner in lineage(obj))
+    return obj.kind in ("closure", "bound", "partial") or (
+        obj.kind == "instance" and calls.callable_held(ctx, obj)
+    )
+
+
+def define_class(ctx: Interpreter, s: ir.Class, frame: Frame) -> bool:
+    """Execute a class statement; tell that execution goes on."""
+    run_class(ctx, s, frame)
+    return True
+
+
+def run_class(ctx: Interpreter, statement: ir.Class, frame: Frame) -> None:
+    """Execute a class statement: its body stores into the class."""
+    cls = recency.intern(ctx, "class", (frame.id, statement.id), statement.name)
+    info = ClassInfo(statement.name, statement.qualname, statement=statement, module=frame.program.name)
+    info.fields = statement.fields
+    for expr in statement.bases:
+        value = expressions.evaluate(ctx, expr, frame)
+        info.bases += sorted(
+            (o for o in value.pts if o.kind == "class" and o is not cls), key=lambda o: str(o.key)
+        )
+        info.external += [
+            o.name for o in value.pts if o.kind not in ("class",) and o.name != "builtins.object"
+        ]
+        if not value.pts:
+            info.external.append("?")
+    cls.info = info
+    body = Frame(
+        ("class", cls.key),
+        frame_number(ctx, ("class", cls.key)),
+        frame.function,
+        frame.program,
+        frame.module,
+    )
+    body.cls, body.outer, body.base = cls, frame, ctx.branches(frame, statement)
+    body.control = statement.control = statement.control or control_dependence(statement.body)
+    body.caller, body.call = frame, statement
+    body.depth_of_layers = frame.depth_of_layers
+    ctx.ops.block(ctx, statement.body, body)
+    frame.statement = statement
+    made = decorated(ctx, pointer(cls), statement.decorators, statement, frame)
+    ctx.ops.assign(ctx, statement.target, made if made.pts else pointer(cls), frame)
+
+
+def frame_number(ctx: Interpreter, key: object) -> int:
+    """Return a frame's number, the same at every run."""
+    return ctx.frame_numbers.setdefault(key, -2 - len(ctx.frame_numbers))
+
+
+def import_names(ctx: Interpreter, s: ir.Import, frame: Frame) -> bool:
+    """Bind what is imported."""
+    importer = ctx.modules[frame.program.path]
+    for target, module, member in s.bindings:
+        if member == "*":
+            found = ctx.index.find(module, importer)
+            star = found.name if found is not None else module
+            if star not in frame.program.stars:
+                frame.program.stars.append(star)
+        elif target is not None:
+            ctx.ops.assign(ctx, target, ctx.ops.imported(ctx, module, member, importer), frame)
+    return True

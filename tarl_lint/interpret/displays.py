@@ -1,0 +1,120 @@
+"""Displays of sequences and mappings, comprehensions, and taking elements out."""
+
+from __future__ import annotations
+
+from tarl_lint.interpret import nullness
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, recency, updates
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.heap import LENGTH, item_field
+from tarl_lint.memory.values import NONE, Value, pointer
+from tarl_lint.models import sizes
+
+MAX_EACH = 4  # elements that a comprehension takes one by one
+
+
+def sequence_display(ctx: Interpreter, expr: ir.SequenceDisplay, frame: Frame) -> Value:
+    """Return a list, tuple or set as written."""
+    obj = recency.allocate(ctx, "sequence", frame, ("display", expr.slot))
+    items = [
+        (i, ctx.ops.evaluate(ctx, i.value if isinstance(i, ir.Starred) else i, frame)) for i in expr.items
+    ]
+    where = pointer(obj)
+    exact = True
+    for number, (item, value) in enumerate(items):
+        value = entry(ctx, item, value, frame, (expr.slot, number))
+        nullness.note_passed(ctx, (obj, item_field(number)), item, value, frame)
+        if isinstance(item, ir.Starred):
+            exact = False
+            updates.add_element(ctx, where, heap.elements(ctx, value))
+            sizes.lengthen(ctx, obj, value)
+        elif exact:
+            ctx.store.put((obj, item_field(number)), value)
+        else:
+            updates.add_element(ctx, where, value)
+    return where
+
+
+def mapping_display(ctx: Interpreter, expr: ir.MappingDisplay, frame: Frame) -> Value:
+    """Return a dictionary as written."""
+    obj = recency.allocate(ctx, "mapping", frame, ("display", expr.slot))
+    where = pointer(obj)
+    for key, item in expr.items:
+        value = entry(ctx, item, ctx.ops.evaluate(ctx, item, frame), frame, (expr.slot, item.pos))
+        if key is None:
+            sizes.absorb(ctx, obj, value)
+        else:
+            updates.write_item(ctx, where, ctx.ops.evaluate(ctx, key, frame), value)
+    return where
+
+
+def entry(ctx: Interpreter, expr: ir.Expr, value: Value, frame: Frame, slot: object) -> Value:
+    """Return an element of a display; numbers get a node of their own, so that they are found again."""
+    if not isinstance(expr, ir.Const) or not isinstance(expr.value, (int, float)):
+        return value
+    node = ctx.node(frame, ("entry", slot), "assign")
+    mark(ctx, node, expr, value, frame)
+    return ctx.carry(value, node)
+
+
+def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Value:
+    """Return the container that a comprehension makes."""
+    kind = "mapping" if expr.key is not None else "sequence"
+    first = ctx.ops.evaluate(ctx, expr.loops[0][1], frame)
+    known = sizes.unpacked(ctx, first)
+    plain = expr.key is None and len(expr.loops) == 1 and not expr.loops[0][2]
+    if plain and known and len(known) <= MAX_EACH:
+        return _one_by_one_of(ctx, expr, known, frame)
+    obj = recency.allocate(ctx, kind, frame, ("display", expr.slot))
+    deps, lengths = NONE, NONE
+    for number, (target, source, conditions) in enumerate(expr.loops):
+        several = ctx.ops.evaluate(ctx, source, frame) if number else first
+        lengths |= sizes.length(ctx, several)
+        ctx.ops.assign(ctx, target, heap.elements(ctx, several), frame)
+        for condition in conditions:
+            deps |= ctx.use(ctx.ops.evaluate(ctx, condition, frame))
+    element = ctx.ops.evaluate(ctx, expr.element, frame)
+    gate = ctx.ops.gate(ctx, deps, frame, expr.slot)
+    element = Value(element.deps | gate, element.pts, element.consts)
+    ctx.store.put((obj, LENGTH), Value(lengths | gate))
+    if expr.key is not None:
+        updates.write_item(ctx, pointer(obj), ctx.ops.evaluate(ctx, expr.key, frame), element)
+    else:
+        updates.add_element(ctx, pointer(obj), element)
+    return pointer(obj)
+
+
+def _one_by_one_of(ctx: Interpreter, expr: ir.Comprehension, known: list[Value], frame: Frame) -> Value:
+    """Return a sequence of what a comprehension makes of elements that are told apart."""
+    obj = recency.allocate(ctx, "sequence", frame, ("display", expr.slot))
+    turn = frame.turn
+    for number, value in enumerate(known):
+        frame.turn = (*turn, expr.slot, number)
+        ctx.ops.assign(ctx, expr.loops[0][0], value, frame)
+        ctx.store.put((obj, item_field(number)), ctx.ops.evaluate(ctx, expr.element, frame))
+    frame.turn = turn
+    return pointer(obj)
+
+
+def mark(ctx: Interpreter, node: int, expr: ir.Expr, value: Value, frame: Frame) -> None:
+    """Note that a node is a constant, or passes on another unchanged."""
+    known, constant = value.constant()
+    if (
+        isinstance(expr, (ir.Name, ir.Attribute, ir.Item))
+        or _conversion(expr)
+        or _parameter_call(ctx, expr, value)
+    ):
+        ctx.graph.copies.add(node)
+    elif known and isinstance(constant, (bool, int, float)):
+        ctx.graph.literals[node] = (constant, expr.pos, frame.program.path)
+
+
+def _parameter_call(ctx: Interpreter, expr: ir.Expr, value: Value) -> bool:
+    """Tell whether an expression is a call that gives a ROS parameter."""
+    return isinstance(expr, ir.Call) and bool(value.deps) and value.deps <= ctx.graph.parameters
+
+
+def _conversion(expr: ir.Expr) -> bool:
+    """Tell whether an expression is `float(x)`, which leaves the number what it is."""
+    return isinstance(expr, ir.Call) and isinstance(expr.function, ir.Name) and expr.function.name == "float"

@@ -1,0 +1,76 @@
+"""Special methods: what operators, subscripts and built-in functions ask of objects of ours."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import BOTTOM, Obj, Value, join, lineage
+
+METHOD_OF: Final[Mapping[str, str]] = {
+    "+": "add", "-": "sub", "*": "mul", "/": "truediv", "//": "floordiv", "%": "mod", "**": "pow", "@": "matmul",
+    "&": "and", "|": "or", "^": "xor", "<<": "lshift", ">>": "rshift", "neg": "neg", "pos": "pos",
+    "invert": "invert", "==": "eq", "!=": "ne", "<": "lt", "<=": "le", ">": "gt", ">=": "ge", "in": "contains",
+    "not in": "contains",
+}  # fmt: skip
+FUNCTIONS: Final = frozenset(
+    ["abs", "bool", "float", "int", "len", "next", "reversed", "round", "str", "format", "bytes", "hash"]
+)  # those that ask their first argument for a special method of the same name
+
+
+def special(
+    ctx: Interpreter, value: Value, name: str, given: Sequence[Value], frame: Frame, pos: ir.Pos
+) -> Value | None:
+    """Return what a special method gives, None unless everything that a value may be has it."""
+    methods: list[Value] = []
+    for obj in value.pts:
+        method = _special_method(ctx, obj, name) if obj.kind == "instance" else None
+        if method is None:
+            return None
+        methods.append(method)
+    result = BOTTOM
+    for method in methods:
+        result = join(result, method)
+    if not methods:
+        return None
+    call = ir.Call(ir.Const(None, pos), (), (), pos, _slot(name, pos))
+    made = ctx.ops.call_value(ctx, result, (list(given), {}), frame, call)
+    return Value(made.deps | value.deps, made.pts, made.consts)
+
+
+def _special_method(ctx: Interpreter, obj: Obj, name: str) -> Value | None:
+    for owner in lineage(obj.info) if isinstance(obj.info, Obj) else ():
+        method = ctx.store.get((owner, name))
+        if method is not None:
+            return heap.bind(ctx, method, obj, owner) if method.pts else None
+    return None
+
+
+def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], frame: Frame) -> Value | None:
+    """Return what an operator gives when one side is an object of ours that says so."""
+    if len(values) > 2 or not any(o.kind == "instance" for v in values for o in v.pts):
+        return None
+    operator = expr.operator
+    name = METHOD_OF.get(operator.removesuffix("=") if operator not in METHOD_OF else operator)
+    if name is None:
+        return None
+    first, rest = values[0], list(values[1:])
+    if name == "contains":
+        return special(ctx, rest[0], "__contains__", [first], frame, expr.pos)
+    made = None
+    if operator not in METHOD_OF:
+        made = special(ctx, first, f"__i{name}__", rest, frame, expr.pos)
+    if made is None:
+        made = special(ctx, first, f"__{name}__", rest, frame, expr.pos)
+    if made is None and rest:
+        made = special(ctx, rest[0], f"__r{name}__", [first], frame, expr.pos)
+    return made
+
+
+def _slot(name: str, pos: ir.Pos) -> int:
+    """Return a number for the call that an operator makes, apart from those of calls that are written."""
+    return -(1_000_000 + pos[0] * 100_000 + pos[1] * 100 + len(name))

@@ -1,0 +1,144 @@
+"""What nothing in the files calls, and others do: entry points, nodes to be made, methods that a framework runs."""
+
+from __future__ import annotations
+
+from tarl_lint import catalog
+from tarl_lint.interpret import calls
+from tarl_lint.interpret.call_contexts import ROOT_CALL
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.node_starts import STARTING, definitions, registers, starts, starts_node
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import recency, userdata
+from tarl_lint.memory.store import Root
+from tarl_lint.memory.values import ClassInfo, Obj, Value, lineage
+from tarl_lint.models.ros import subscriptions
+
+
+def start_programs(ctx: Interpreter) -> None:
+    """Run functions and make nodes that are there to be started from outside (entry points)."""
+    for program in list(ctx.programs.values()):
+        if ctx.modules[program.path].installed:
+            continue
+        module = ctx.module_objects[program.name]
+        starting = STARTING.search(ctx.modules[program.path].text) is not None
+        named = ctx.modules[program.path].started
+        for statement in definitions(program.body):
+            if isinstance(statement, ir.Define):
+                function = statement.function
+                if function.name in named or (
+                    (starting or function.name == "main") and starts_node(function)
+                ):
+                    _main_function(ctx, statement, module)
+            elif statement.name in named:
+                _plugin(ctx, statement, module)
+            else:
+                _node_class(ctx, statement, program, starting)
+
+
+def _main_function(ctx: Interpreter, statement: ir.Define, module: Obj) -> None:
+    function = statement.function
+    if (function.module, function.pos[0]) in ctx.called:
+        return
+    for obj in _values(ctx, module, function.name):
+        if obj.kind == "closure":
+            _start(ctx, obj, "main", ctx.programs[module.name].path)
+
+
+def _values(ctx: Interpreter, holder: Obj, name: str) -> list[Obj]:
+    owners = ctx.shared.ends.get((holder, name), {})
+    return sorted({o for v in owners.values() for o in v.pts}, key=lambda o: str(o.key))
+
+
+def _start(ctx: Interpreter, target: Obj, kind: str, path: str) -> None:
+    root = Root((kind, target.kind, target.key), kind, target.name, once=True, program=path)
+
+    def run(root: Root) -> None:
+        calls.call_object(ctx, target, ([], {}), ctx.ops.root_frame(ctx, root), ROOT_CALL)
+
+    ctx.ops.add_root(ctx, root, run)
+
+
+def _plugin(ctx: Interpreter, statement: ir.Class, module: Obj) -> None:
+    """Make an instance of a class that a package names for others to make."""
+    for cls in _values(ctx, module, statement.name):
+        if cls.kind == "class" and (cls in ctx.plugins or cls.key not in ctx.made):
+            _start(ctx, cls, "node", ctx.programs[module.name].path)
+            ctx.plugins.add(cls)
+
+
+def _node_class(ctx: Interpreter, statement: ir.Class, program: ir.Program, starting: bool) -> None:
+    """Make an instance of a class that registers something, or is a node, and that nothing instantiates."""
+    for cls in _values(ctx, ctx.module_objects[program.name], statement.name):
+        if cls.kind != "class" or cls.key in ctx.made:
+            continue
+        wanted = not _has_made_heir(ctx, cls) if starting and registers(statement) else _last_node(ctx, cls)
+        if wanted:
+            _start(ctx, cls, "node", program.path)
+            ctx.guests.add(cls)
+
+
+def _last_node(ctx: Interpreter, cls: Obj) -> bool:
+    """Tell whether a class is a node by what it inherits, and nothing inherits from it."""
+    if not isinstance(cls.info, ClassInfo) or _external(cls.info).isdisjoint(catalog.NODES):
+        return False
+    return not any(o.kind == "class" and o is not cls and cls in lineage(o) for o in ctx.objects.values())
+
+
+def _has_made_heir(ctx: Interpreter, cls: Obj) -> bool:
+    return any(cls in lineage(ctx.objects["class", key]) for key in ctx.made)
+
+
+def start_hooks(ctx: Interpreter) -> None:
+    """Run methods that a base class of a library may call: nothing in the files tells when."""
+    for obj in list(ctx.objects.values()):
+        if obj.kind != "instance" or not isinstance(obj.info, Obj):
+            continue
+        for owner in lineage(obj.info):
+            if isinstance(owner.info, ClassInfo) and owner.info.statement is not None:
+                _framework_methods(ctx, obj, owner, owner.info)
+
+
+def _framework_methods(ctx: Interpreter, obj: Obj, owner: Obj, info: ClassInfo) -> None:
+    cls = obj.info.info if isinstance(obj.info, Obj) else None
+    external = _external(cls) if isinstance(cls, ClassInfo) else set()
+    unknown = external - catalog.NODE_BASES or _called_by_others(ctx, obj, info)
+    for statement in info.statement.body if info.statement is not None else ():
+        if not isinstance(statement, ir.Define):
+            continue
+        name, function = statement.function.name, statement.function
+        hooked = (unknown and not name.startswith("_")) or (external and name.startswith("on_"))
+        hooked = hooked or (name == "run" and any("Thread" in e for e in external))
+        if not hooked or (function.module, function.pos[0]) in ctx.called:
+            continue
+        for closure in _values(ctx, owner, name):
+            if closure.kind == "closure":
+                state = name == catalog.RUNS_STATE and any(e.startswith(catalog.STATES) for e in external)
+                _start_method(ctx, closure, obj, owner, [userdata.userdata(ctx, obj)] if state else [])
+
+
+def _called_by_others(ctx: Interpreter, obj: Obj, info: ClassInfo) -> bool:
+    """Tell whether whoever made an object calls its methods: of plugins, and where nothing else registers."""
+    return obj.info in ctx.plugins or (obj.info in ctx.guests and not _registers_itself(info))
+
+
+def _start_method(ctx: Interpreter, closure: Obj, obj: Obj, owner: Obj, given: list[Value]) -> None:
+    method = recency.intern(ctx, "bound", (closure.key, obj), closure.name)
+    method.info = (closure, obj, owner)
+    program = closure.info[2].path if isinstance(closure.info, tuple) else ""
+    subscriptions.call_when(ctx, "framework", method, given, "callback", program=program)
+
+
+def _registers_itself(info: ClassInfo) -> bool:
+    """Tell whether a class registers all it needs when it is made; else somebody calls a method for that."""
+    body = info.statement.body if info.statement is not None else ()
+    return any(
+        isinstance(s, ir.Define) and s.function.name == "__init__" and starts(s.function) for s in body
+    )
+
+
+def _external(info: ClassInfo) -> set[str]:
+    found = set(info.external)
+    for base in info.bases:
+        if isinstance(base.info, ClassInfo):
+            found |= _external(base.info)
+    return found

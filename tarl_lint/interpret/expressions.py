@@ -1,0 +1,282 @@
+"""Expressions: what each may be."""
+
+from __future__ import annotations
+
+import builtins
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from tarl_lint.catalog import fact
+from tarl_lint.interpret import displays, dunder_methods, operators
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, recency
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.heap import ANY
+from tarl_lint.memory.values import (
+    BOTTOM,
+    NONE,
+    UNKNOWN,
+    Obj,
+    Value,
+    const,
+    function_of,
+    join,
+    join_all,
+    pointer,
+)
+from tarl_lint.models import sizes
+
+BUILTINS = frozenset(dir(builtins))
+DEFINITIONS = frozenset(["msg", "srv", "action"])  # modules of classes that definition files make
+
+
+LOOKUP_ERRORS = ("KeyError", "IndexError", "LookupError")  # of an element that is not there
+
+
+def evaluate(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Value:
+    """Return what an expression may be."""
+    value = EVALUATE[type(expr)](ctx, expr, frame)
+    if ctx.probe is not None and frame.statement is not None:
+        ctx.probe(ctx, frame, frame.statement, expr, value)
+    return value
+
+
+def _constant(ctx: Interpreter, expr: ir.Const, frame: Frame) -> Value:  # noqa: ARG001 - one signature for all
+    known: Value | None = expr.known
+    if known is None:
+        known = expr.known = const(expr.value)
+    return known
+
+
+def _name(ctx: Interpreter, expr: ir.Name, frame: Frame) -> Value:
+    value = ctx.store.get((holder(expr, frame), expr.name))
+    if value is not None:
+        return value
+    if expr.scope == "local" and not frame.owner_class():
+        return BOTTOM
+    return global_name(ctx, expr.name, frame)
+
+
+def holder(expr: ir.Name, frame: Frame) -> Obj:
+    """Return the object that holds a variable: an activation, a class being made, a module."""
+    if expr.scope == "global":
+        return frame.module
+    if expr.scope == "local":
+        return frame.owner_class() or frame
+    holder: Frame | None = frame
+    for _ in range(expr.level + (1 if frame.owner_class() else 0)):
+        holder = holder.outer if holder is not None else None
+    return holder or frame.module
+
+
+def global_name(ctx: Interpreter, name: str, frame: Frame) -> Value:
+    """Return a name that the module itself does not bind: from `import *`, else a builtin."""
+    value = ctx.store.get((frame.module, name))
+    if value is None:
+        value = heap.opened(ctx, frame.module, name)
+    if value is not BOTTOM:
+        return value
+    stars = [s for s in heap.opened_by(ctx, frame.module) if s not in ctx.module_objects]
+    for star in stars:
+        if fact(f"{star}.{name}") is not None:
+            return external(ctx, f"{star}.{name}")
+    if name in BUILTINS:
+        return external(ctx, f"builtins.{name}")
+    return external(ctx, f"{_likely(stars, name)}.{name}") if stars else BOTTOM
+
+
+def external(ctx: Interpreter, qualified: str) -> Value:
+    """Return a library's function, class or module."""
+    return pointer(recency.intern(ctx, "ext", qualified, qualified))
+
+
+def _attribute(ctx: Interpreter, expr: ir.Attribute, frame: Frame) -> Value:
+    base = evaluate(ctx, expr.base, frame)
+    value = heap.read(ctx, base, expr.name)
+    for obj in value.pts:
+        if obj.kind == "bound" and is_property(obj):
+            call = ir.Call(expr, (), (), expr.pos, -expr.slot)
+            if len(value.pts) == 1:
+                return ctx.ops.call_object(ctx, obj, ([], {}), frame, call, base.deps)
+            return ctx.ops.call_value(ctx, value, ([], {}), frame, call)
+    if value.consts == BOTTOM.consts and not value.pts:
+        said = dunder_methods.special(ctx, base, "__getattr__", [const(expr.name)], frame, expr.pos)
+        return value if said is None else said
+    return value
+
+
+def is_property(method: Obj) -> bool:
+    """Tell whether a bound method is a property's getter."""
+    function = function_of(method)
+    return function is not None and any(
+        (isinstance(d, ir.Name) and d.name in ("property", "cached_property"))
+        or (isinstance(d, ir.Attribute) and d.name in ("cached_property", "getter"))
+        for d in function.decorators
+    )
+
+
+def _item(ctx: Interpreter, expr: ir.Item, frame: Frame) -> Value:
+    base = evaluate(ctx, expr.base, frame)
+    if isinstance(expr.index, ir.Slice):
+        return sizes.sliced(ctx, base, expr.index, expr.pos, frame)
+    index = evaluate(ctx, expr.index, frame)
+    if (frame.tries or len(ctx.stack) > 1) and (decides := ctx.use(index)):
+        for raises in LOOKUP_ERRORS:
+            ctx.ops.may_fail(ctx, decides, raises, frame, named=True)
+    said = dunder_methods.special(ctx, base, "__getitem__", [index], frame, expr.pos)
+    return said if said is not None else read_item(ctx, base, index)
+
+
+def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
+    """Return an element; a tainted index taints it."""
+    extra = base.deps | ctx.use(index)
+    if not base.pts:
+        return Value(extra)
+    result = Value(extra, consts=frozenset())
+    for obj in base.pts:
+        if obj.kind == "class":
+            result = join(result, heap.arrive(ctx, member(ctx, obj, index), base.deps))
+        elif index.consts and not index.pts:
+            for key in index.consts:
+                result = join(result, heap.arrive(ctx, element(ctx, obj, key), base.deps))
+        else:
+            found = heap.read_any(ctx, obj)
+            if found is BOTTOM and obj.kind == "mapping" and obj.info is not None:
+                found = ctx.ops.missing(ctx, obj, ANY)
+            result = join(result, heap.arrive(ctx, found, base.deps))
+    return Value(result.deps | extra, result.pts, result.consts)
+
+
+def member(ctx: Interpreter, cls: Obj, name: Value) -> Value:
+    """Return what `Class[name]` may be: a member of an enumeration, any of them when the name is not known."""
+    names = name.texts() or tuple(n for n in cls.fields if not n.startswith("_"))
+    return join_all(v for n in names if not (v := heap.read_field(ctx, cls, n)).pts & functions(ctx, cls))
+
+
+def functions(ctx: Interpreter, cls: Obj) -> frozenset[Obj]:
+    """Return the functions that a class holds."""
+    held = (ctx.store.get((cls, n)) for n in list(cls.fields))
+    return frozenset(o for v in held if v is not None for o in v.pts if o.kind in ("closure", "bound"))
+
+
+def element(ctx: Interpreter, obj: Obj, key: object) -> Value:
+    """Return one element by a constant index or key."""
+    name = heap.attribute_of_item(obj, key)
+    if obj.kind == "sequence" and isinstance(key, int) and key < 0:
+        known = sizes.unpacked(ctx, pointer(obj))
+        return known[key] if known and -key <= len(known) else heap.read_any(ctx, obj)
+    if obj.kind == "sequence" and ctx.store.get((obj, name)) is None and heap.content(ctx, obj) is BOTTOM:
+        return BOTTOM
+    value = heap.read_field(ctx, obj, name)
+    if value is BOTTOM and obj.kind == "mapping" and obj.info is not None:
+        return ctx.ops.missing(ctx, obj, name)
+    return value
+
+
+def _slice(ctx: Interpreter, expr: ir.Slice, frame: Frame) -> Value:
+    deps = NONE
+    for part in expr.parts:
+        deps |= ctx.use(evaluate(ctx, part, frame))
+    return Value(deps)
+
+
+def _choice(ctx: Interpreter, expr: ir.Choice, frame: Frame) -> Value:
+    test = evaluate(ctx, expr.test, frame)
+    known, constant = test.constant()
+    if known:
+        return evaluate(ctx, expr.then if constant else expr.other, frame)
+    guard = operators.guard(ctx, operators.truth(ctx, test, frame, expr.slot), frame, expr.slot)
+    then = under_guard(ctx, expr.then, (guard, "then"), frame)
+    other = under_guard(ctx, expr.other, (guard, "other"), frame)
+    node = ctx.node(frame, ("choice", expr.slot), "condition")
+    if ctx.kept(guard):
+        ctx.graph.depend(node, (guard,))
+    both = join(then, other)
+    return Value(both.deps | ctx.kept(node), both.pts, both.consts)
+
+
+def under_guard(ctx: Interpreter, expr: ir.Expr, guard: tuple[int, str], frame: Frame) -> Value:
+    """Evaluate an expression to which a decision leads."""
+    ctx.guards.append(guard)
+    value = evaluate(ctx, expr, frame)
+    ctx.guards.pop()
+    return value
+
+
+def _starred(ctx: Interpreter, expr: ir.Starred, frame: Frame) -> Value:
+    return evaluate(ctx, expr.value, frame)
+
+
+def _walrus(ctx: Interpreter, expr: ir.Walrus, frame: Frame) -> Value:
+    node = ctx.node(frame, ("walrus", expr.slot), "assign")
+    value = ctx.carry(evaluate(ctx, expr.value, frame), node)
+    ctx.ops.assign(ctx, expr.target, value, frame)
+    return value
+
+
+def _yield(ctx: Interpreter, expr: ir.Yield, frame: Frame) -> Value:
+    value = evaluate(ctx, expr.value, frame)
+    if expr.kind == "await":
+        ctx.ops.wait(ctx, frame)
+        return value
+    value = heap.elements(ctx, value) if expr.kind == "from" else value
+    value = ctx.carry(value, ctx.node(frame, ("yield", expr.pos), "return"))
+    frame.yielded = join(frame.yielded, value)
+    return UNKNOWN
+
+
+def _lambda(ctx: Interpreter, expr: ir.Lambda, frame: Frame) -> Value:
+    return closure(ctx, expr.function, frame, expr.slot)
+
+
+def closure(ctx: Interpreter, function: ir.Function, frame: Frame, slot: object) -> Value:
+    """Return a function object that remembers where it was made."""
+    outer = frame.outer if frame.owner_class() else frame
+    key = (function.module, frame.id, function.pos, slot, *frame.turn)
+    obj = recency.intern(ctx, "closure", key, function.name)
+    obj.info = (function, outer, frame.program, frame.owner_class())
+    if outer is not None:
+        around: Frame | None = outer
+        while around is not None:
+            around.captured = True
+            around = around.outer
+    for parameter in function.parameters:
+        if parameter.default is not None:
+            ctx.store.put((obj, parameter.name), default_value(ctx, parameter, obj, frame))
+    return pointer(obj)
+
+
+def default_value(ctx: Interpreter, parameter: ir.Parameter, closure: Obj, frame: Frame) -> Value:
+    """Return a parameter's default as a value made by the `def`."""
+    assert parameter.default is not None  # noqa: S101 - asked before
+    value = evaluate(ctx, parameter.default, frame)
+    node = ctx.node(frame, ("default", closure.key, parameter.name), "assign")
+    displays.mark(ctx, node, parameter.default, value, frame)
+    return ctx.carry(value, node)
+
+
+def _likely(stars: list[str], name: str) -> str:
+    """Return the module that a name most likely comes from: capitalised ones from messages, others not."""
+    message = name[:1].isupper() and not name.isupper()
+    likely = [s for s in stars if (s.rpartition(".")[2] in DEFINITIONS) is message]
+    return (likely or stars)[-1]
+
+
+EVALUATE: Mapping[type, Callable[[Any, Any, Frame], Value]] = {
+    ir.Const: _constant,
+    ir.Name: _name,
+    ir.Attribute: _attribute,
+    ir.Item: _item,
+    ir.Slice: _slice,
+    ir.Call: lambda ctx, expr, frame: ctx.ops.call(ctx, expr, frame),
+    ir.Operation: operators.operation,
+    ir.Choice: _choice,
+    ir.SequenceDisplay: displays.sequence_display,
+    ir.MappingDisplay: displays.mapping_display,
+    ir.Comprehension: displays.comprehension,
+    ir.Starred: _starred,
+    ir.Walrus: _walrus,
+    ir.Yield: _yield,
+    ir.Lambda: _lambda,
+}

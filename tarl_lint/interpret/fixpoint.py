@@ -1,0 +1,166 @@
+"""The whole set of modules: imports, and everything that runs on its own until nothing new is stored."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from tarl_lint.config import Config
+from tarl_lint.interpret import entry_points, statements, wiring
+from tarl_lint.interpret.budget import HASTE, LARGE, LEISURE, MAX_ROUNDS, MAX_STATEMENTS, PATIENCE
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.lower_statements import lower_module
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.store import Root, Store
+from tarl_lint.memory.value_flow_graph import MAX_EDGES
+from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value
+from tarl_lint.prefilter.by_words import mentioning
+from tarl_lint.source import Module
+
+
+class Linker(Interpreter):
+    """Runs modules, then callbacks, timers, threads and main functions, until the shared memory is stable."""
+
+    def __init__(
+        self,
+        modules: Sequence[Module],
+        config: Config,
+        failures: dict[str, Exception] | None = None,
+        *,
+        thorough: bool = True,
+    ) -> None:
+        """With `failures`, what goes wrong is noted there by file, and the rest goes on.
+
+        Unless `thorough`, values that come from no source are not followed: flows need no more.
+        """
+        super().__init__(modules, config, wiring)
+        self.thorough = thorough
+        self.took: dict[Root, int] = {}  # statements of the last run of what has run
+        self.failures = failures
+        part = {m.path for m in mentioning(modules, config)} if len(modules) > 1 else self.modules.keys()
+        for module in modules:
+            program = self._lowered(module)
+            if program is None:
+                continue
+            program.takes_part = module.path in part
+            key = module.name if module.name not in self.programs else module.path
+            program.name = key
+            self.programs[key] = self.by_path[program.path] = program
+            self.module_objects[key] = Obj("module", key, key)
+
+    def _lowered(self, module: Module) -> ir.Program | None:
+        try:
+            return lower_module(module)
+        except Exception as error:
+            self._failed(module.path, error)
+            return None
+
+    def _failed(self, path: str, error: Exception) -> None:
+        if self.failures is None:
+            raise error
+        self.failures.setdefault(path, error)
+
+    def link(self) -> None:
+        """Run everything to the fixed point."""
+        for program in self.programs.values():
+            self._module_root(program)
+        self._settle()
+        for _ in range(3):
+            before = len(self.roots)
+            entry_points.start_programs(self)
+            self._settle()
+            entry_points.start_hooks(self)
+            self._settle()
+            if len(self.roots) == before:
+                break
+        if self.waiting:  # all is stored by now: what is still unknown stays so
+            self.patient = False
+            self.pending.update(self.waiting)
+            self._settle()
+        self.graph.settle()
+
+    def replay(self) -> None:
+        """Run every root once more, for a probe that looks on."""
+        for root, run in list(self.roots.values()):
+            self._run(root, run)
+
+    # --- roots --------------------------------------------------------------------------------------------
+
+    def _settle(self) -> None:
+        for _ in range(MAX_ROUNDS):
+            self._reconsider()
+            batch = sorted(self.pending, key=self._turn)
+            if not batch:
+                return
+            small = [root for root in batch if self.took.get(root, 0) < LARGE]
+            for root in small or batch:
+                self.pending.pop(root, None)
+                late = self.hurried(root.program)
+                if late and (self.took.get(root, 0) > HASTE or self.totals[root.program] > 2 * PATIENCE):
+                    continue
+                self._run(root, self.roots[root.key][1])
+                for news in self.shared.dirty:
+                    self.pending[news] = None
+                self.shared.dirty.clear()
+
+    def _turn(self, root: Root) -> tuple[int, int, int]:
+        """Modules run first, but again only last, since what they wait for comes from the rest; small ones first."""
+        took = self.took.get(root)
+        return 1 if root.kind != "module" else 0 if took is None else 2, took or 0, root.number
+
+    def _reconsider(self) -> None:
+        """Have those run again who went by a decision to which a source leads by now."""
+        for node in [n for n in self.doubts if n in self.graph.live]:
+            self.pending.update(self.doubts.pop(node))
+
+    def _run(self, root: Root, run: Callable[[Root], None]) -> None:
+        self.store = Store(self.shared, root)
+        self.stack = []
+        self.spent = 0
+        self.limit = HASTE if self.hurried(root.program) else MAX_STATEMENTS
+        self.graph.edges = self.edges_of.get(root.program, 0)
+        self.activations.clear()
+        self.leisure, self.idled = None, 0
+        self.delivered = frozenset()
+        try:
+            run(root)
+        except Exception as error:
+            where = self.stack[-1].program if self.stack else next(iter(self.programs.values()))
+            self._failed(where.path, error)
+            return
+        finally:
+            self.totals[root.program] = self.totals.get(root.program, 0) + self.spent
+            self.edges_of[root.program] = self.graph.edges
+            if self.graph.edges >= MAX_EDGES:
+                self.cut[root.program] = None
+            self.took[root] = self.spent
+        for key in self.store.own():
+            value = self._at_end(key)
+            value = self.store.mine(key, value) if value is not None else None
+            if value is not None:
+                self.shared.leave(self.shared.ends, root, key, value)
+
+    def _at_end(self, key: tuple[Obj, str]) -> Value | None:
+        value = self.store.now.get(key)
+        if value is ABSENT:
+            value = BOTTOM if key[1] == "*" else self.ops.default(self, *key)
+            return None if value is BOTTOM else value
+        return value
+
+    def _module_root(self, program: ir.Program) -> None:
+        root = Root(("module", program.path), "module", program.name, once=True, program=program.path)
+
+        def run(root: Root) -> None:  # noqa: ARG001 - one signature for all
+            key = ("module", program.path)
+            frame = self.frames.get(key)
+            if frame is None:
+                module = self.module_objects[program.name]
+                frame = Frame(key, len(self.frames) + 1, program.function, program, module)
+                self.frames[key] = frame
+            frame.root_waits = True
+            self.stack.append(frame)
+            if not program.takes_part:
+                self.leisure = LEISURE + len(program.body)
+            statements.run(self, frame)
+
+        self.ops.add_root(self, root, run)

@@ -1,0 +1,46 @@
+"""Imports: modules of ours and names in them, else something of a library."""
+
+from __future__ import annotations
+
+from tarl_lint.interpret import expressions
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.memory import heap
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, pointer
+from tarl_lint.models import library
+from tarl_lint.source import Module
+
+
+def imported(ctx: Interpreter, module: str, member: str | None, importer: object) -> Value:
+    """Return what an import binds: a module of ours, a name in one, or something of a library."""
+    assert isinstance(importer, Module)  # noqa: S101 - what execute passes
+    found = _module(ctx, module, importer)
+    if member is None:
+        return found if found is not None else expressions.external(ctx, module)
+    if found is not None:
+        for obj in found.pts:
+            value = ctx.store.get((obj, member))
+            if value is None:
+                value = heap.opened(ctx, obj, member)
+            if value is not BOTTOM:
+                return value
+    inner = _module(ctx, f"{module}.{member}" if module else member, importer)
+    if inner is not None:
+        return inner
+    return BOTTOM if found is not None else expressions.external(ctx, f"{module}.{member}")
+
+
+def _module(ctx: Interpreter, name: str, importer: Module) -> Value | None:
+    found = ctx.index.find(name, importer)
+    if found is None:
+        return None
+    program = ctx.by_path.get(found.path)
+    return pointer(ctx.module_objects[program.name]) if program is not None else None
+
+
+def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
+    """Return a field to which nothing was stored; of a package, its modules."""
+    value = library.default(ctx, obj, name)
+    if value is BOTTOM and obj.kind == "module":
+        inner = ctx.module_objects.get(f"{obj.name}.{name}")
+        return pointer(inner) if inner is not None else UNKNOWN
+    return value

@@ -1,0 +1,227 @@
+"""The state of the abstract interpretation, which every part of it works on.
+
+The parts are modules of functions that take the interpreter as `ctx`. They call functions of lower parts directly, and
+those of higher ones through `ctx.ops` (`operations.py` declares them, `wiring.py` says which they are).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Sequence
+
+from tarl_lint.config import Config
+from tarl_lint.interpret.budget import LOOKS, MAX_STATEMENTS, PATIENCE
+from tarl_lint.interpret.operations import Operations
+from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.control_dependence import Branch, Control, control_dependence
+from tarl_lint.ir.lower_statements import lower_body
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.store import Root, Shared, Store
+from tarl_lint.memory.value_flow_graph import MAX_EDGES, Graph, Place
+from tarl_lint.memory.values import NONE, Branches, Key, Nodes, Obj, Value
+from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
+from tarl_lint.names import Index
+from tarl_lint.source import Module
+
+NONE_ONLY = frozenset([None])
+
+
+Probe = Callable[["Interpreter", Frame, ir.Stmt, ir.Expr, Value], None]
+
+
+class Interpreter:
+    """State of the interpretation of a whole set of modules."""
+
+    def __init__(self, modules: Sequence[Module], config: Config, ops: Operations[Interpreter]) -> None:
+        self.ops = ops
+        self.config = config
+        self.thorough = True  # follow every value, not only what comes from a source
+        self.modules = {m.path: m for m in modules}
+        self.index = Index(modules)
+        self.programs: dict[str, ir.Program] = {}
+        self.module_objects: dict[str, Obj] = {}
+        self.by_path: dict[str, ir.Program] = {}
+        self.pending: dict[Root, None] = {}  # roots that are to run
+        self.graph = Graph()
+        self.shared = Shared()
+        self.store = Store(self.shared, Root("none", "none"))
+        self.objects: dict[Hashable, Obj] = {}
+        self.frames: dict[Hashable, Frame] = {}
+        self.frame_numbers: dict[Hashable, int] = {}
+        self.stack: list[Frame] = []
+        self.delivered: frozenset[Obj] = frozenset()  # messages that ROS hands over in this run
+        self.vacant: set[Key] = set()  # variables and fields that None is stored in
+        self.optional: set[Key] = set()  # those that get what may be None or not
+        self.setters: set[str] = set()  # names of attributes that some class sets by a method
+        self.doubtful: set[ir.Call] = set()  # calls that give such
+        self.came: dict[Key, set[int]] = {}  # what decides whether a copy of what is vacant at first is there
+        self.came_out: dict[ir.Call, set[int]] = {}  # the same of calls that give such a copy
+        self.patient = True  # what is not known yet may be stored by a root that runs later
+        self.waiting: dict[Root, None] = {}  # roots that met such a thing
+        self.doubts: dict[
+            int, dict[Root, None]
+        ] = {}  # decision or node that no source led to → roots that went by that
+        self.guards: list[tuple[int, str]] = []  # decisions inside the expression that is being evaluated
+        self.spent = 0  # statements executed in this run of a root, and looks and edges for so many
+        self.totals: dict[str, int] = {}  # the same in all runs before, of each program
+        self.edges_of: dict[str, int] = {}  # edges that the runs of each program made
+        self.frames_of: dict[str, int] = {}  # activations of each program
+        self.cut: dict[str, None] = {}  # programs of which not everything was followed
+        self.limit = MAX_STATEMENTS
+        self.idled = 0  # of it in calls that can matter little
+        self.leisure: int | None = None  # what may be spent until a call ends that can matter little
+        self.activations: dict[ir.Function, int] = {}  # how often each function ran in this run of a root
+        self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
+        self.given: set[Obj] = set()  # objects that roots are run with
+        self.passed: dict[Hashable, list[Value]] = {}  # what each root is called with
+        self.sources: dict[tuple[str, ir.Pos], SourceRecord] = {}
+        self.sinks: dict[tuple[str, ir.Pos], SinkRecord] = {}
+        self.called: set[tuple[str, int]] = set()  # functions that something calls: module, line
+        self.made: set[Hashable] = set()  # classes that something instantiates
+        self.guests: set[object] = set()  # classes that only others instantiate
+        self.plugins: set[object] = set()  # those that a package names for others
+        self.ended: set[str] = (
+            set()
+        )  # classes that are not here and whose methods data or callbacks are passed to
+        self.probe: Probe | None = None
+        self.watch: Callable[[Frame, ir.Stmt], None] | None = None
+
+    @property
+    def total(self) -> int:
+        """Return how much work was done in all runs before."""
+        return sum(self.totals.values())
+
+    @property
+    def program(self) -> str:
+        """Return the program whose budget is being spent."""
+        return self.store.root.program
+
+    def hurried(self, program: str) -> bool:
+        """Tell whether there is too much in a program to follow everything to its end."""
+        spent = self.totals.get(program, 0) > PATIENCE or self.edges_of.get(program, 0) >= MAX_EDGES
+        if spent:
+            self.cut[program] = None
+        return spent
+
+    def count(self, looks: int = 0) -> None:
+        """Count looks into objects, and what was asked of the graph and added to it meanwhile, as work."""
+        self.spent += (looks + self.graph.asked) // LOOKS
+        self.graph.asked %= LOOKS
+
+    # --- places -----------------------------------------------------------------------------------------
+
+    def branches(self, frame: Frame, statement: ir.Stmt | None) -> Branches:
+        """Return every condition that a statement is under, callers' conditions included."""
+        if statement is None:
+            return frame.base
+        known = frame.closures.get(statement.id)
+        if known is None:
+            local = self.control(frame).closure.get(statement.id, frozenset())
+            known = frame.base | {self.branch(frame, b) for b in local}
+            frame.closures[statement.id] = known
+        return known
+
+    def branch(self, frame: Frame, branch: Branch) -> tuple[int, str]:
+        """Return a branch of a function as a branch of one of its activations."""
+        number, way = branch
+        key = (frame.id, number, "condition")
+        node = self.graph.numbers.get(key)
+        if node is None:
+            place = Place(frame, None, "condition", (0, 0, 0, 0))
+            node = self.graph.node(key, place, NONE)  # type: ignore[arg-type]
+        return node, way
+
+    def condition(self, frame: Frame, statement: ir.Stmt) -> int:
+        """Return the node of a statement's decision."""
+        node, _ = self.branch(frame, (statement.id, ""))
+        place = self.graph.places[node]
+        if place.statement is None:
+            self.graph.places[node] = Place(frame, statement, "condition", statement.pos)
+            self.graph.branches[node] = self.branches(frame, statement)
+            if statement.id in self.control(frame).far:
+                self.graph.control[node].update(b for b, _ in self.graph.branches[node])
+        return node
+
+    def control(self, frame: Frame) -> Control:
+        """Return the control dependence of a frame's function."""
+        function = frame.function
+        if frame.cls is None and (frame.control is None or frame.control is not function.control):
+            if function.control is None:
+                body = lower_body(function, frame.program.package)
+                function.control = control_dependence(body, function.raising)
+            frame.control = function.control
+            frame.closures = {}
+        assert isinstance(frame.control, Control)  # noqa: S101 - set above, for classes when they are made
+        return frame.control
+
+    def node(self, frame: Frame, slot: Hashable, role: str, pos: ir.Pos | None = None) -> int:
+        """Return the node of a value that the frame's current statement makes."""
+        statement = frame.statement
+        key = (frame.id, statement.id if statement is not None else -1, slot, *frame.turn)
+        known = self.graph.numbers.get(key)
+        if known is not None:
+            return known
+        where = pos or (statement.pos if statement is not None else frame.function.pos)
+        return self.graph.node(key, Place(frame, statement, role, where), self.branches(frame, statement))
+
+    def carry(self, value: Value, node: int) -> Value:
+        """Return the value as passed on by a statement's node."""
+        content = self.ops.deep(self, value.pts) if value.pts else NONE
+        if value.deps:
+            self.graph.flow(self.settled(value), node)
+        elif not content and not self.kept(node):
+            return value
+        if content:
+            self.graph.hold(node, content)
+        return Value(frozenset([node]), value.pts, value.consts)
+
+    def kept(self, node: int) -> Nodes:
+        """Return a node as what a value is made from: unless thorough, only if a source or its decisions led here."""
+        graph = self.graph
+        live = graph.live
+        if self.thorough or node in live:
+            return frozenset([node])
+        branches = graph.branches[node]
+        for branch, _ in branches:
+            if branch in live:
+                return frozenset([node])
+        for branch, _ in branches:
+            self.doubts.setdefault(branch, {})[self.store.root] = None
+        if graph.data[node] or graph.control[node]:
+            self.doubts.setdefault(node, {})[self.store.root] = None
+        return NONE
+
+    def use(self, value: Value) -> Nodes:
+        """Return the nodes whose data is used when the whole value is."""
+        if not value.pts:
+            return self.settled(value)
+        content = self.ops.deep(self, value.pts)
+        if not content:
+            return value.deps
+        return value.deps | self.graph.through(content, value.deps)
+
+    def settled(self, value: Value) -> Nodes:
+        """Return what a value is made from. What is the same constant on every way was chosen by nothing."""
+        if not value.deps or not value.fixed():
+            return value.deps
+        return frozenset(self.graph.unchosen(d) for d in value.deps if not self.graph.control[d])
+
+    def nothing_yet(self, value: Value) -> bool:
+        """Tell whether nothing was stored so far where a value was looked for, or only None."""
+        if value.pts or (value.deps and value.consts != NONE_ONLY):
+            return False
+        if value.consts == NONE_ONLY:
+            return True
+        if value.consts is None or value.consts or not self.patient:
+            return False
+        self.waiting[self.store.root] = None
+        return True
+
+    def release(self) -> None:
+        """Let go of everything, so that nothing is left that holds itself. Nothing can be asked afterwards."""
+        for obj in (*self.objects.values(), *self.module_objects.values(), *self.frames.values()):
+            obj.release()
+        for record in self.sources.values():
+            for message in record.messages.values():
+                message.release()
+        for table in (self.objects, self.module_objects, self.frames, self.roots, self.sources):
+            table.clear()

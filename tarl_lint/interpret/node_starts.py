@@ -1,0 +1,52 @@
+"""What starts a node, read off the syntax: without any of it a file only defines things."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Sequence
+
+from tarl_lint import catalog
+from tarl_lint.ir import nodes as ir
+from tarl_lint.trees import walk
+
+KINDS = frozenset(
+    ["subscribe", "receive", "filter", "service", "action"]
+)  # of calls that something comes in by
+FACTS = {**catalog.FUNCTIONS, **catalog.METHODS}
+REGISTERING = frozenset(name.rpartition(".")[2] for name, fact in FACTS.items() if fact.kind in KINDS)
+STARTS = REGISTERING | {"init_node", "init", "create_node", "spin"}
+STARTING = re.compile(
+    rf"\.\s*(?:{'|'.join(sorted(STARTS))})\s*\(|\b(?:{'|'.join(sorted(REGISTERING))})\s*\("
+)  # without it a file starts nothing
+
+
+def definitions(body: Sequence[ir.Stmt]) -> Iterator[ir.Define | ir.Class]:
+    """Yield the functions and classes that a body defines itself."""
+    for statement in body:
+        if isinstance(statement, (ir.Define, ir.Class)):
+            yield statement
+
+
+def starts_node(function: ir.Function) -> bool:
+    """Tell whether a function is there to be started: it is called main, or it starts a node."""
+    return function.name == "main" or starts(function)
+
+
+def registers(statement: ir.Class) -> bool:
+    """Tell whether a method of a class registers something or starts a node."""
+    return any(isinstance(s, ir.Define) and starts(s.function) for s in statement.body)
+
+
+def starts(function: ir.Function) -> bool:
+    """Tell whether a function calls something that registers or starts a node."""
+    if function.starts is None:
+        function.starts = any(isinstance(n, ast.Call) and _starts(n.func) for n in walk(function.node))
+    return function.starts
+
+
+def _starts(called: ast.expr) -> bool:
+    """Tell it of what is called: a method, or what was imported by its own name."""
+    if isinstance(called, ast.Name):
+        return called.id in REGISTERING
+    return isinstance(called, ast.Attribute) and called.attr in STARTS

@@ -1,0 +1,150 @@
+"""Whether anything is there: variables and fields that hold None until something is stored."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tarl_lint import catalog
+from tarl_lint.interpret.interpreter import NONE_ONLY, Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.heap import ANY, item_field
+from tarl_lint.memory.values import Key, Nodes, Obj, Value, lineage
+
+RETURNED = "<return>"  # stands for what a function gives back
+COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)  # expressions that may be another's value
+
+
+def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes | None:
+    """Return what decides on `x is None` where it asks if anything was stored, None where it asks for data.
+
+    That a message has come is no data of it; what decided whether to store is.
+    """
+    first, second = expr.parts
+    if not isinstance(second, ir.Const) or second.value is not None:
+        return None
+    return _absence(ctx, first, frame)
+
+
+def _absence(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Nodes | None:
+    """Return what decided whether anything is there, None where that may be data."""
+    if isinstance(expr, ir.Call) and expr in ctx.came_out:
+        return None if expr in ctx.doubtful else frozenset(ctx.came_out[expr])
+    keys = list(_keys(ctx, expr, frame))
+    if any(k in ctx.optional for k in keys):
+        return None
+    if isinstance(expr, (ir.Item, ir.Call)):
+        known = bool(keys) and not _index_chosen(ctx, expr, frame)
+    else:
+        known = any(k in ctx.vacant for k in keys)
+    return frozenset(n for k in keys for n in ctx.came.get(k, ())) if known else None
+
+
+def note_absence(ctx: Interpreter, target: ir.Expr, source: ir.Expr, value: Value, frame: Frame) -> None:
+    """Remember that a target gets None, or what may be None as well as something else."""
+    if value.consts == NONE_ONLY and not value.pts:
+        ctx.vacant.update(_keys(ctx, target, frame))
+    elif _holds_data(value) and (decides := _absence(ctx, source, frame)) is not None:
+        _note_copy(ctx, list(_keys(ctx, target, frame)), value, decides, frame, target.pos)
+    elif _may_be_none(ctx, source, frame):
+        ctx.optional.update(_keys(ctx, target, frame))
+
+
+def note_passed(ctx: Interpreter, key: Key, source: ir.Expr, value: Value, frame: Frame) -> None:
+    """Remember where a value is held that is None only as long as nothing has come."""
+    if isinstance(source, COPIED) and _holds_data(value):
+        decides = _absence(ctx, source, frame)
+        if decides is not None:
+            _note_copy(ctx, [key], value, decides, frame, source.pos)
+
+
+def note_taken(
+    ctx: Interpreter, target: ir.Expr, held: Value, number: int, value: Value, frame: Frame
+) -> None:
+    """Remember the same of a target that gets an element of a sequence."""
+    keys = [(o, item_field(number)) for o in held.pts if o.kind == "sequence"]
+    if any(k in ctx.vacant for k in keys):
+        decides = frozenset(n for k in keys for n in ctx.came.get(k, ()))
+        _note_copy(ctx, list(_keys(ctx, target, frame)), value, decides, frame, target.pos)
+
+
+def _note_copy(
+    ctx: Interpreter, keys: list[Key], value: Value, decides: Nodes, frame: Frame, pos: ir.Pos
+) -> None:
+    there = ctx.node(frame, ("came", pos), "condition")
+    ctx.graph.choice(value.deps, there)
+    ctx.graph.flow(decides, there)
+    for key in keys:
+        ctx.vacant.add(key)
+        ctx.came.setdefault(key, set()).add(there)
+
+
+def _holds_data(value: Value) -> bool:
+    return bool(value.deps) or any(o.laden for o in value.pts)
+
+
+def note_result(ctx: Interpreter, call: ir.Call, returned: list[Value], frame: Frame) -> None:
+    """Remember a call of a function that gives None beside other things, or only as long as nothing has come."""
+    without = [v.consts == NONE_ONLY and not v.pts for v in returned]
+    if any(without) and not all(without):
+        ctx.doubtful.add(call)
+    elif (frame, RETURNED) in ctx.vacant:
+        ctx.came_out.setdefault(call, set()).update(ctx.came.get((frame, RETURNED), ()))
+
+
+def _may_be_none(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> bool:
+    if isinstance(expr, ir.Call):
+        name = expr.function.name if isinstance(expr.function, (ir.Attribute, ir.Name)) else ""
+        return expr in ctx.doubtful or name in catalog.MAY_BE_NONE
+    if isinstance(expr, ir.Choice):
+        return any(_none(arm) or _may_be_none(ctx, arm, frame) for arm in (expr.then, expr.other))
+    if isinstance(expr, (ir.Name, ir.Attribute)) and ctx.optional:
+        return any(k in ctx.optional for k in _keys(ctx, expr, frame))
+    return False
+
+
+def _keys(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Iterator[Key]:
+    """Yield where a variable or a field of a variable is stored; a class stands for its instances too."""
+    if isinstance(expr, ir.Name):
+        yield ctx.ops.holder(expr, frame), expr.name
+    elif isinstance(expr, ir.Attribute) and isinstance(expr.base, (ir.Name, ir.Attribute, ir.Item)):
+        for base in ctx.ops.evaluate(ctx, expr.base, frame).pts:
+            for owner in (base, *_classes(base)):
+                yield owner, expr.name
+    elif isinstance(expr, ir.Item):
+        yield from _elements(ctx, expr.base, frame)
+    elif isinstance(expr, ir.Call) and isinstance(expr.function, ir.Attribute) and _gets(expr):
+        yield from _elements(ctx, expr.function.base, frame)
+
+
+def _elements(ctx: Interpreter, container: ir.Expr, frame: Frame) -> Iterator[Key]:
+    """Yield where the elements of a container of ours are stored: None in one of them may be in any."""
+    held = (
+        ctx.ops.evaluate(ctx, container, frame).pts if isinstance(container, (ir.Name, ir.Attribute)) else ()
+    )
+    if all(o.kind in ("sequence", "mapping") for o in held):
+        for obj in held:
+            yield obj, ANY
+
+
+def _index_chosen(ctx: Interpreter, expr: ir.Item | ir.Call, frame: Frame) -> bool:
+    """Tell whether data chooses the element that is asked for."""
+    index = expr.index if isinstance(expr, ir.Item) else expr.arguments[0]
+    if not isinstance(index, (ir.Const, ir.Name, ir.Attribute)):
+        return True
+    key = ctx.ops.evaluate(ctx, index, frame)
+    return bool(key.deps or key.pts)
+
+
+def _classes(obj: Obj) -> list[Obj]:
+    return lineage(obj.info) if obj.kind == "instance" and isinstance(obj.info, Obj) else []
+
+
+def _gets(expr: ir.Call) -> bool:
+    return (
+        isinstance(expr.function, ir.Attribute) and expr.function.name == "get" and len(expr.arguments) == 1
+    )
+
+
+def _none(expr: ir.Expr) -> bool:
+    return isinstance(expr, ir.Const) and expr.value is None

@@ -1,0 +1,205 @@
+"""Operators: what data they use, and constants that are folded."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import operator
+from collections.abc import Callable, Hashable, Mapping
+
+from tarl_lint.interpret import dunder_methods, nullness
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import BOTTOM, BY_CLASS, MAX_CONSTS, MAX_TEXTS, NONE, Nodes, Obj, Value, join
+from tarl_lint.models import sizes
+from tarl_lint.models.sizes import COMBINING
+
+FOLDED: Mapping[str, Callable[..., object]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+    "%": operator.mod,
+    "neg": operator.neg,
+    "not": operator.not_,
+    "==": operator.eq,
+    "!=": operator.ne,
+    "is": lambda a, b: a is b or a == b,
+    "is not": lambda a, b: not (a is b or a == b),
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+MEMBER = frozenset(["in", "not in"])
+PRESENT = frozenset(["is", "is not", "==", "!="])  # operators that may ask whether a value is None
+CALLING = (ir.Call, ir.Choice, ir.Operation)  # parts in which calls may depend on those before
+OURS = frozenset(["instance", "sequence", "mapping"])  # whose type is in the files, whatever is in them
+MESSAGES = frozenset(["message", "goal"])
+THERE = frozenset([*MESSAGES, *OURS])  # never None themselves, whatever is in them
+MAX_TEXT = 300
+
+
+def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
+    """Return the result of an operator."""
+    if expr.operator in ("or", "and"):
+        return boolean(ctx, expr, frame)
+    values = [ctx.ops.evaluate(ctx, p, frame) for p in expr.parts]
+    said = dunder_methods.operated(ctx, expr, values, frame)
+    if said is not None:
+        return said
+    if expr.operator in ("+=", "|=") and values[0].pts:
+        return sizes.grown(ctx, expr.operator, values)
+    if expr.operator in COMBINING and any(v.pts for v in values):
+        made = sizes.combined(ctx, expr, values, frame)
+        if made is not None:
+            return made
+    if expr.operator in PRESENT and (decides := nullness.only_presence(ctx, expr, frame)) is not None:
+        there = ctx.node(frame, ("there", expr.pos), "condition")
+        ctx.graph.choice(values[0].deps, there)
+        ctx.graph.flow(decides, there)
+        return Value(ctx.kept(there), consts=fold(ctx, expr.operator, values))
+    deps, name = NONE, _asked(expr)
+    for number, value in enumerate(values):
+        deps |= tested(ctx, name, value, frame, (expr.pos, number))
+    return Value(deps, consts=fold(ctx, expr.operator, values))
+
+
+def tested(ctx: Interpreter, name: str, value: Value, frame: Frame, slot: tuple[ir.Pos, int]) -> Nodes:
+    """Return the nodes whose data an operator uses. Whether a message is there at all is not data of it."""
+    if name == "shape":
+        return sizes.length(ctx, value)
+    if name == "type":
+        return ctx.use(Value(value.deps, frozenset(o for o in value.pts if o.kind not in OURS)))
+    if name == "none in":
+        parts = sizes.unpacked(ctx, value) or [heap.elements(ctx, value)]
+        return frozenset().union(*(tested(ctx, "is none", p, frame, slot) for p in parts))
+    if name in MEMBER and slot[1] == 1:
+        return membership(ctx, value, frame, slot)
+    if name in ("is", "is none"):
+        hollow = _there if name == "is none" else _whole
+        return ctx.use(Value(value.deps, frozenset(o for o in value.pts if not hollow(o))))
+    return truth(ctx, value, frame, slot) if name == "not" else ctx.use(value)
+
+
+def membership(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes:
+    """Return the nodes that decide what is in a container: of a mapping its keys, whatever they stand for."""
+    mappings = frozenset(o for o in value.pts if o.kind == "mapping")
+    deps = ctx.use(Value(value.deps, value.pts - mappings))
+    for obj in sorted(mappings, key=lambda o: o.number):
+        deps |= heap.keys(ctx, obj, value.deps).deps
+    return deps | chosen(ctx, mappings, frame, ("member", slot)) if mappings else deps
+
+
+def chosen(ctx: Interpreter, objects: frozenset[Obj], frame: Frame, slot: Hashable) -> Nodes:
+    """Return a node that what decided to put something into containers decides, and no data of theirs."""
+    node = ctx.node(frame, slot, "condition")
+    ctx.graph.choice(sizes.placed(ctx, objects), node)
+    return ctx.kept(node)
+
+
+def truth(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes:
+    """Return the nodes that decide whether a value counts as true.
+
+    A whole message always does, and so does an object that says nothing else; of a container it is the length.
+    """
+    if not value.pts:
+        return value.deps
+    said = dunder_methods.special(ctx, value, "__bool__", (), frame, frame.function.pos)
+    if said is not None:
+        return ctx.use(said)
+    ours = frozenset(filter(sizes.sized, value.pts))
+    kept = frozenset(o for o in value.pts - ours if not _always_true(ctx, o))
+    deps = ctx.use(Value(value.deps, kept)) | sizes.length(ctx, Value(pts=ours))
+    if ours:
+        deps |= chosen(ctx, ours, frame, ("truth", slot))
+    return deps
+
+
+def _always_true(ctx: Interpreter, obj: Obj) -> bool:
+    if obj.kind == "instance":
+        return not any(heap.read_field(ctx, obj, name).pts for name in ("__bool__", "__len__"))
+    return obj.info is BY_CLASS or (obj.kind in MESSAGES and obj.parent is None)
+
+
+def boolean(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
+    """Return what `a or b` may be: one of them, decided by the former, on which the rest depends."""
+    result, deps, guards = BOTTOM, NONE, len(ctx.guards)
+    for number, part in enumerate(expr.parts):
+        value = ctx.ops.evaluate(ctx, part, frame)
+        last = number + 1 == len(expr.parts)
+        known, constant = value.constant()
+        decided = known and bool(constant) is (expr.operator == "or")
+        decides = truth(ctx, value, frame, (expr.pos, number))
+        deps |= decides
+        if last or decided or not known:
+            result = join(result, value)
+        if decided:
+            break
+        if not last and not known and isinstance(expr.parts[number + 1], CALLING):
+            ctx.guards.append((guard(ctx, decides, frame, (expr.pos, number)), "rest"))
+    del ctx.guards[guards:]
+    return Value(result.deps | deps, result.pts, result.consts)
+
+
+def guard(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> int:
+    """Return the node of a decision inside an expression."""
+    node = ctx.node(frame, ("guard", slot), "condition")
+    ctx.graph.flow(decides, node)
+    return node
+
+
+def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] | None:
+    """Return the constants that an operator makes of constants."""
+    if name == "text":
+        return _fold_text(values)
+    if name == "%" and len(values) == 2 and values[1].pts:
+        return ctx.ops.remainder(ctx, values)
+    function = FOLDED.get(name)
+    if function is None or any(v.pts for v in values):
+        return None if any(v.pts or v.consts is None for v in values) or function is None else frozenset()
+    if not all(v.consts for v in values):
+        return None
+    known = [sorted(v.consts, key=str) for v in values if v.consts]
+    if math.prod(map(len, known)) > MAX_TEXTS:
+        return None
+    try:
+        results = frozenset(function(*constants) for constants in itertools.product(*known))
+    except Exception:  # whatever the program itself would fail with
+        return None
+    if len(results) > MAX_CONSTS and not all(isinstance(r, str) for r in results):
+        return None
+    return None if any(isinstance(r, (str, bytes)) and len(r) > MAX_TEXT for r in results) else results
+
+
+def _fold_text(values: list[Value]) -> frozenset[object] | None:
+    texts = [""]
+    for value in values:
+        if not value.consts or value.pts:
+            return None
+        texts = [t + str(c) for t in texts for c in sorted(value.consts, key=str)]
+        if len(texts) > MAX_TEXTS or len(texts[0]) > MAX_TEXT:
+            return None
+    return frozenset(texts)
+
+
+def _asked(expr: ir.Operation) -> str:
+    """Return an operator's name, of `is` whether it asks for None: a field of a message may be True or a number."""
+    first = expr.parts[0]
+    if expr.operator in MEMBER and isinstance(first, ir.Const) and first.value is None:
+        return "none in"
+    if expr.operator not in ("is", "is not"):
+        return expr.operator
+    return "is none" if any(isinstance(p, ir.Const) and p.value is None for p in expr.parts) else "is"
+
+
+def _whole(obj: Obj) -> bool:
+    """Tell whether an object is a thing of its own, so that which one it is says nothing of what is in it."""
+    return _there(obj) and obj.parent is None
+
+
+def _there(obj: Obj) -> bool:
+    """Tell whether an object is never None itself, whatever is in it: one that a class made."""
+    return obj.kind in THERE or obj.info is BY_CLASS

@@ -1,0 +1,258 @@
+"""Statements: what each does to the state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from tarl_lint.interpret import (
+    branches,
+    calls,
+    definitions,
+    displays,
+    dunder_methods,
+    exceptions,
+    expressions,
+    nullness,
+)
+from tarl_lint.interpret.budget import LOOKS
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.interpret.nullness import RETURNED
+from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.control_dependence import raised
+from tarl_lint.ir.lower_statements import lower_body
+from tarl_lint.memory import heap, updates
+from tarl_lint.memory.frames import Escape, Frame
+from tarl_lint.memory.heap import item_field
+from tarl_lint.memory.values import ABSENT, BOTTOM, UNKNOWN, Obj, Value, const, join, lineage
+from tarl_lint.models import sizes, unpacking
+from tarl_lint.models.ros import publications
+from tarl_lint.models.ros.endpoints import Publisher
+
+
+def run(ctx: Interpreter, frame: Frame) -> Value:
+    """Execute a frame's body and return its result."""
+    frame.returns = []
+    depth = len(ctx.store.layers) - 1
+    if block(ctx, lower_body(frame.function, frame.program.package), frame):
+        frame.returns.append((ctx.store.since(depth), const(None)))
+    result = BOTTOM
+    for _, value in frame.returns:
+        result = join(result, value)
+    frame.result = join(frame.result, result)
+    return result
+
+
+def block(ctx: Interpreter, body: Sequence[ir.Stmt], frame: Frame) -> bool:
+    """Execute statements in order."""
+    for statement in body:
+        frame.statement = statement
+        ctx.spent += 1
+        if ctx.graph.asked > LOOKS:
+            ctx.count()
+        if ctx.watch is not None:
+            ctx.watch(frame, statement)
+        if not EXECUTE[type(statement)](ctx, statement, frame):
+            return False
+    return True
+
+
+# --- simple statements --------------------------------------------------------------------------------
+
+
+def _assignment(ctx: Interpreter, s: ir.Assign, frame: Frame) -> bool:
+    value = expressions.evaluate(ctx, s.value, frame)
+    frame.statement = s
+    for number, target in enumerate(s.targets):
+        bind_target(ctx, target, value, frame, str(number), s.value)
+    return True
+
+
+def bind_target(
+    ctx: Interpreter, target: ir.Expr, value: Value, frame: Frame, slot: str, source: ir.Expr
+) -> None:
+    """Let a value pass through the statement into a target, element by element."""
+    if isinstance(target, ir.SequenceDisplay):
+        unpack(ctx, target, value, frame, slot, source)
+        return
+    if isinstance(target, ir.Starred):
+        target = target.value
+    nullness.note_absence(ctx, target, source, value, frame)
+    node = ctx.node(frame, ("target", slot), "assign")
+    displays.mark(ctx, node, source, value, frame)
+    assign(ctx, target, ctx.carry(value, node), frame)
+
+
+def unpack(
+    ctx: Interpreter, target: ir.SequenceDisplay, value: Value, frame: Frame, slot: str, source: ir.Expr
+) -> None:
+    """Take a value apart."""
+    starred = next((n for n, t in enumerate(target.items) if isinstance(t, ir.Starred)), None)
+    parts = unpacking.parts(ctx, value, len(target.items), starred, frame, slot)
+    for number, (item, part) in enumerate(zip(target.items, parts, strict=True)):
+        expr = source
+        if isinstance(source, ir.SequenceDisplay) and number < len(source.items) and starred is None:
+            expr = source.items[number]
+        bind_target(ctx, item, part, frame, f"{slot}.{number}", expr)
+        if starred is None:
+            nullness.note_taken(ctx, item, value, number, part, frame)
+
+
+def assign(ctx: Interpreter, target: ir.Expr, value: Value, frame: Frame) -> None:
+    """Store into a target."""
+    if isinstance(target, ir.Name):
+        ctx.store.put((expressions.holder(target, frame), target.name), value)
+    elif isinstance(target, ir.Attribute):
+        base = expressions.evaluate(ctx, target.base, frame)
+        if not base.pts:
+            assign_fallback(ctx, target.base, value, frame)
+        elif not set_property(ctx, base, target, value, frame):
+            updates.write_field(ctx, base, target.name, value)
+    elif isinstance(target, ir.Item):
+        _assign_item(ctx, target, value, frame)
+    elif isinstance(target, ir.SequenceDisplay):
+        for number, item in enumerate(target.items):
+            assign(ctx, item, expressions.read_item(ctx, value, const(number)), frame)
+    elif isinstance(target, ir.Starred):
+        assign(ctx, target.value, value, frame)
+
+
+def _assign_item(ctx: Interpreter, target: ir.Item, value: Value, frame: Frame) -> None:
+    base, index = (
+        expressions.evaluate(ctx, target.base, frame),
+        expressions.evaluate(ctx, target.index, frame),
+    )
+    if dunder_methods.special(ctx, base, "__setitem__", [index, value], frame, target.pos) is not None:
+        return
+    if (index.deps or index.pts) and any(o.kind == "mapping" for o in base.pts):
+        index = ctx.carry(index, ctx.node(frame, ("key", target.pos), "assign"))
+    if isinstance(target.index, ir.Slice):
+        remove(ctx, base, target.index, frame)
+        value = heap.elements(ctx, value)
+    if where := ctx.use(index):
+        chosen = Value(value.deps | where, value.pts)
+        value = ctx.carry(chosen, ctx.node(frame, ("at", target.pos), "assign"))
+    if base.pts:
+        updates.write_item(ctx, base, index, value)
+    else:
+        assign_fallback(ctx, target.base, value, frame)
+
+
+def set_property(ctx: Interpreter, base: Value, target: ir.Attribute, value: Value, frame: Frame) -> bool:
+    """Call the setter where the attribute is a property."""
+    done = False
+    if target.name not in ctx.setters:
+        return done
+    for obj in base.pts:
+        cls = obj.info if obj.kind == "instance" else None
+        for owner in lineage(cls) if isinstance(cls, Obj) else ():
+            setter = ctx.store.get((owner, f"{target.name}.setter"))
+            if setter is not None:
+                call = ir.Call(target, (), (), target.pos, -target.slot)
+                calls.call_value(ctx, heap.bind(ctx, setter, obj, owner), ([value], {}), frame, call)
+                done = True
+                break
+    return done
+
+
+def assign_fallback(ctx: Interpreter, expr: ir.Expr, value: Value, frame: Frame) -> None:
+    """Add data to the variable that holds an object of which nothing is known."""
+    if ctx.nothing_yet(expressions.evaluate(ctx, expr, frame)):
+        return
+    while isinstance(expr, (ir.Item, ir.Attribute)):
+        if isinstance(expr, ir.Attribute) and expressions.evaluate(ctx, expr.base, frame).pts:
+            break
+        expr = expr.base
+    if isinstance(expr, (ir.Name, ir.Attribute)):
+        before = expressions.evaluate(ctx, expr, frame)
+        assign(ctx, expr, Value(before.deps | ctx.use(value), before.pts), frame)
+
+
+def _expression(ctx: Interpreter, s: ir.Evaluate, frame: Frame) -> bool:
+    expressions.evaluate(ctx, s.value, frame)
+    return True
+
+
+def _returned(ctx: Interpreter, s: ir.Return, frame: Frame) -> bool:
+    value = expressions.evaluate(ctx, s.value, frame) if s.value is not None else const(None)
+    frame.statement = s
+    if s.value is not None:
+        node = ctx.node(frame, ("return",), "return")
+        displays.mark(ctx, node, s.value, value, frame)
+        nullness.note_passed(ctx, (frame, RETURNED), s.value, value, frame)
+        value = ctx.carry(value, node)
+        if isinstance(frame.answer, Publisher):
+            publications.send(
+                ctx, Invocation("response", BOTTOM, ([value], {}), frame, _answer(s)), frame.answer
+            )
+    frame.returns.append((ctx.store.since(base_layer(frame)), value))
+    return False
+
+
+def base_layer(frame: Frame) -> int:
+    """Return the number of layers below a frame's own."""
+    return frame.depth_of_layers
+
+
+def _raised(ctx: Interpreter, s: ir.Raise, frame: Frame) -> bool:
+    value = UNKNOWN
+    if s.value is not None:
+        value = expressions.evaluate(ctx, s.value, frame)
+        frame.statement = s
+        if any(o.kind == "class" for o in value.pts):
+            value = calls.call_value(ctx, value, ([], {}), frame, ir.Call(s.value, (), (), s.pos, -1))
+        whole = Value(ctx.use(value), value.pts)  # what is inside is forgotten with the function's state
+        value = ctx.carry(whole, ctx.node(frame, ("raise",), "call"))
+    if frame.tries:
+        attempt = frame.tries[-1]
+        attempt.states.append(ctx.store.since(attempt.depth))
+    exceptions.leave(ctx, Escape(frame, s, raised(s.value), value), frame)
+    return False
+
+
+def _jump(ctx: Interpreter, s: ir.Jump, frame: Frame) -> bool:
+    if frame.jumps:
+        depth, table = frame.jumps[-1]
+        table[s.kind].append(ctx.store.since(depth))
+    return False
+
+
+def _delete(ctx: Interpreter, s: ir.Delete, frame: Frame) -> bool:
+    for target in s.targets:
+        if isinstance(target, ir.Name):
+            ctx.store.put((expressions.holder(target, frame), target.name), UNKNOWN)
+        elif isinstance(target, ir.Item):
+            remove(ctx, expressions.evaluate(ctx, target.base, frame), target.index, frame)
+    return True
+
+
+def remove(ctx: Interpreter, base: Value, index: ir.Expr, frame: Frame) -> None:
+    """Take an element out of a mapping, or all elements out of a sequence."""
+    known, key = expressions.evaluate(ctx, index, frame).constant()
+    for obj in base.pts if len(base.pts) == 1 else ():
+        if isinstance(index, ir.Slice) and not index.parts:
+            sizes.empty(ctx, obj)
+        elif known and obj.kind == "mapping" and heap.content(ctx, obj) is BOTTOM:
+            ctx.store.put((obj, item_field(key)), ABSENT)
+
+
+def _answer(s: ir.Return) -> ir.Call:
+    """Return the call that ROS makes of what a handler returns."""
+    return ir.Call(ir.Const(None, s.pos), (), (), s.pos, 0)
+
+
+EXECUTE: Mapping[type, Callable[..., bool]] = {
+    ir.Assign: _assignment,
+    ir.Evaluate: _expression,
+    ir.If: branches.if_statement,
+    ir.Loop: branches.loop,
+    ir.Try: branches.try_statement,
+    ir.With: branches.with_statement,
+    ir.Return: _returned,
+    ir.Raise: _raised,
+    ir.Jump: _jump,
+    ir.Define: definitions.define,
+    ir.Class: definitions.define_class,
+    ir.Import: definitions.import_names,
+    ir.Delete: _delete,
+}

@@ -1,0 +1,245 @@
+"""Control dependence inside one function, after Ferrante, Ottenstein and Warren (TOPLAS 1987).
+
+Termination-insensitive: what follows a loop does not depend on the loop's condition. Exceptions come only
+from `raise`.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Final
+
+from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.postdominance import EXIT, passed, postdominators
+
+Branch = tuple[int, str]  # number of the deciding statement, the way it went
+
+Raising = Mapping[int, Iterable[str]]
+
+NEAR: Final = 100  # branches that a statement is told of; those tell of the ones before them
+NOTHING_RAISES: Raising = {}
+ALL: Final = frozenset(["Exception", "BaseException"])
+
+
+@dataclass(slots=True)
+class Control:
+    """For each statement: the branches it directly depends on, and all that those depend on in turn.
+
+    Of very many branches only the nearest are there; `far` are the statements of which that is so.
+    """
+
+    direct: Mapping[int, frozenset[Branch]]
+    closure: Mapping[int, frozenset[Branch]]
+    far: frozenset[int]
+    always: frozenset[int]  # statements that run whenever the function is entered
+
+
+@dataclass(slots=True)
+class _Graph:
+    """Control-flow edges: statement → its successors by the way that leads there."""
+
+    edges: dict[int, dict[str, int]] = field(default_factory=dict)
+    raising: Raising = field(default_factory=dict)
+    finals: list[tuple[ir.Try, int]] = field(
+        default_factory=list
+    )  # inner ones first; where each `finally` begins
+
+    def link(self, source: int, way: str, target: int) -> None:
+        self.edges.setdefault(source, {})[way] = target
+
+
+@dataclass(frozen=True, slots=True)
+class _Exits:
+    """Where jumps lead from here."""
+
+    on_break: int = EXIT
+    on_continue: int = EXIT
+    on_raise: int = EXIT  # where no handler is
+    handlers: tuple[tuple[frozenset[str], int], ...] = ()  # names of what each takes, none for all
+
+    def of(self, name: str) -> int:
+        """Return where an exception leads: the handler that names it, else one for all, else the first."""
+        if not self.handlers:
+            return self.on_raise
+        named = [entry for names, entry in self.handlers if name and name in names]
+        general = [entry for names, entry in self.handlers if not names]
+        return next(iter([*named, *general]), self.handlers[0][1])
+
+
+def control_dependence(body: Sequence[ir.Stmt], raising: Raising = NOTHING_RAISES) -> Control:
+    """Return the control dependence of a function's statements. `raising` names what calls in a statement raise."""
+    graph = _Graph(raising=raising)
+    entry = _block(graph, body, EXIT, _Exits())
+    order = _reachable(graph, [entry, *(begin for _, begin in graph.finals)])
+    if not graph.finals and all(len(graph.edges[n]) < 2 for n in order):
+        nothing = dict.fromkeys(order, frozenset[Branch]())
+        return Control(nothing, nothing, frozenset(), frozenset(order))
+    nearest = postdominators(graph.edges, order)
+    direct = _direct(graph, order, nearest)
+    for attempt, _ in reversed(graph.finals):
+        _run_anyway(attempt, direct)
+    always = frozenset(passed(entry, EXIT, nearest))
+    closed = _closure(direct)
+    far = frozenset(n for n, branches in closed.items() if len(branches) >= NEAR)
+    return Control(direct, closed, far, always)
+
+
+def _block(graph: _Graph, body: Sequence[ir.Stmt], follow: int, exits: _Exits) -> int:
+    """Enter statements, last first; return the number of the first."""
+    for statement in reversed(body):
+        follow = _statement(graph, statement, follow, exits)
+    return follow
+
+
+def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
+    if isinstance(s, ir.If):
+        graph.link(s.id, "then", _block(graph, s.body, follow, exits))
+        graph.link(s.id, "else", _block(graph, s.orelse, follow, exits))
+    elif isinstance(s, ir.Loop):
+        inner = _Exits(follow, s.id, exits.on_raise, exits.handlers)
+        graph.link(s.id, "body", _block(graph, s.body, s.id, inner))
+        if not s.endless:
+            graph.link(s.id, "done", _block(graph, s.orelse, follow, exits))
+        elif not _breaks(s.body):
+            graph.link(s.id, "never", EXIT)  # so that every statement reaches the exit
+    elif isinstance(s, ir.Try):
+        return _try(graph, s, follow, exits)
+    elif isinstance(s, ir.With):
+        graph.link(s.id, "", _block(graph, s.body, follow, exits))
+    elif isinstance(s, ir.Return):
+        graph.link(s.id, "", EXIT)
+    elif isinstance(s, ir.Raise):
+        graph.link(s.id, "", exits.of(raised(s.value)))
+    elif isinstance(s, ir.Jump):
+        graph.link(s.id, "", exits.on_break if s.kind == "break" else exits.on_continue)
+    else:
+        graph.link(s.id, "", follow)
+    for name in graph.raising.get(s.id, ()):
+        graph.link(s.id, f"raises {name}", exits.of(name))
+    return s.id
+
+
+def raised(expr: ir.Expr | None) -> str:
+    """Return the name of the class that is raised, "" when nothing tells."""
+    if isinstance(expr, ir.Call):
+        expr = expr.function
+    return expr.name if isinstance(expr, (ir.Name, ir.Attribute)) else ""
+
+
+def taken(types: ir.Expr | None) -> frozenset[str]:
+    """Return the names of the classes that a handler takes, none for all."""
+    parts = types.items if isinstance(types, ir.SequenceDisplay) else [types]
+    names = frozenset(raised(part) for part in parts)
+    return frozenset() if names & (ALL | {""}) else names
+
+
+def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
+    """The statement itself chooses a handler: which one, nothing tells."""
+    after = _block(graph, s.final, follow, exits)
+    handlers = [_block(graph, body, after, exits) for _, _, body in s.handlers]
+    takes = tuple((taken(types), entry) for (types, _, _), entry in zip(s.handlers, handlers, strict=True))
+    inner = _Exits(exits.on_break, exits.on_continue, after, takes)
+    orelse = _block(graph, s.orelse, after, exits)
+    graph.link(s.id, "body", _block(graph, s.body, orelse, inner))
+    if s.final:
+        graph.finals.append((s, after))
+    for number, handler in enumerate(handlers):
+        graph.link(s.id, f"except {number}", handler)
+    return s.id
+
+
+def _run_anyway(attempt: ir.Try, direct: dict[int, frozenset[Branch]]) -> None:
+    """Let no branch inside a `try` decide on its `finally`, which runs however the rest is left."""
+    blocks = [attempt.body, attempt.orelse, *(body for _, _, body in attempt.handlers)]
+    inside = {s.id for block in blocks for s in _all(block)}
+    inside.add(attempt.id)
+    around = direct.get(attempt.id, frozenset())
+    for statement in _all(attempt.final):
+        branches = direct.get(statement.id, frozenset())
+        kept = frozenset(branch for branch in branches if branch[0] not in inside)
+        direct[statement.id] = kept | around if statement in attempt.final or kept != branches else kept
+
+
+def _all(body: Sequence[ir.Stmt]) -> Iterator[ir.Stmt]:
+    """Yield statements and those inside them."""
+    for s in body:
+        yield s
+        for inner in (*_bodies(s), *_loop_bodies(s)):
+            yield from _all(inner)
+
+
+def _breaks(body: Sequence[ir.Stmt]) -> bool:
+    """Tell whether a loop's body can leave the loop."""
+    for s in body:
+        if isinstance(s, (ir.Return, ir.Raise)) or (isinstance(s, ir.Jump) and s.kind == "break"):
+            return True
+        if isinstance(s, ir.Loop):
+            if _returns(s.body):
+                return True
+        elif any(_breaks(b) for b in _bodies(s)):
+            return True
+    return False
+
+
+def _returns(body: Sequence[ir.Stmt]) -> bool:
+    return any(
+        isinstance(s, (ir.Return, ir.Raise)) or any(_returns(b) for b in (*_bodies(s), *_loop_bodies(s)))
+        for s in body
+    )
+
+
+def _loop_bodies(s: ir.Stmt) -> tuple[Sequence[ir.Stmt], ...]:
+    return (s.body, s.orelse) if isinstance(s, ir.Loop) else ()
+
+
+def _bodies(s: ir.Stmt) -> tuple[Sequence[ir.Stmt], ...]:
+    """Return the blocks inside a statement that is not a loop."""
+    if isinstance(s, ir.If):
+        return (s.body, s.orelse)
+    if isinstance(s, ir.With):
+        return (s.body,)
+    if isinstance(s, ir.Try):
+        return (s.body, s.orelse, s.final, *(body for _, _, body in s.handlers))
+    return ()
+
+
+def _reachable(graph: _Graph, entries: Sequence[int]) -> list[int]:
+    """Return the statements in depth-first order from where ways begin, the last one first."""
+    seen: dict[int, None] = {}
+    pending = [*reversed(entries)]
+    while pending:
+        node = pending.pop()
+        if node != EXIT and node not in seen:
+            seen[node] = None
+            pending.extend(graph.edges.get(node, {}).values())
+    return list(seen)
+
+
+def _direct(graph: _Graph, order: Sequence[int], nearest: Mapping[int, int]) -> dict[int, frozenset[Branch]]:
+    """Statement n depends on branch (a, b) when n follows every way from b but not every way from a."""
+    found: dict[int, set[Branch]] = {n: set() for n in order}
+    for node in order:
+        ways = graph.edges[node]
+        if len(ways) < 2:
+            continue
+        for way, target in ways.items():
+            for dependent in passed(target, nearest[node], nearest):
+                found[dependent].add((node, way))
+    return {n: frozenset(branches) for n, branches in found.items()}
+
+
+def _closure(direct: Mapping[int, frozenset[Branch]]) -> dict[int, frozenset[Branch]]:
+    """Return for each statement the branches that it depends on in any way, the nearest of very many."""
+    closed: dict[int, frozenset[Branch]] = {}
+    for node, branches in direct.items():
+        found = dict.fromkeys(sorted(branches))
+        pending = deque(found)
+        while pending and len(found) < NEAR:
+            for branch in sorted(direct.get(pending.popleft()[0], ())):
+                if branch not in found:
+                    found[branch] = None
+                    pending.append(branch)
+        closed[node] = frozenset(found)
+    return closed

@@ -1,0 +1,83 @@
+"""Patterns of `match`: which part of the subject each captured name takes."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator
+
+from tarl_lint.ir import nodes as ir
+
+Lower = Callable[[ast.expr], ir.Expr]
+
+
+def captures(
+    pattern: ast.pattern, subject: ir.Expr, where: ir.Pos, lower: Lower
+) -> Iterator[tuple[str, ir.Expr]]:
+    """Yield each captured name with the expression of its part, from the outside in."""
+    if isinstance(pattern, ast.MatchAs):
+        if pattern.name:
+            yield pattern.name, subject
+        if pattern.pattern is not None:
+            yield from captures(pattern.pattern, subject, where, lower)
+    elif isinstance(pattern, ast.MatchStar):
+        if pattern.name:
+            yield pattern.name, subject
+    elif isinstance(pattern, ast.MatchOr):
+        for alternative in pattern.patterns:
+            yield from captures(alternative, subject, where, lower)
+    else:
+        for inner, part in _parts(pattern, subject, where, lower):
+            yield from captures(inner, part, where, lower)
+        if isinstance(pattern, ast.MatchMapping) and pattern.rest:
+            yield pattern.rest, subject
+
+
+def conditions(pattern: ast.pattern, subject: ir.Expr, where: ir.Pos, lower: Lower) -> Iterator[ir.Expr]:
+    """Yield what must hold for a pattern to match; nothing for one that always does."""
+    if isinstance(pattern, ast.MatchValue):
+        yield ir.Operation("==", [subject, lower(pattern.value)], where)
+    elif isinstance(pattern, ast.MatchSingleton):
+        yield ir.Operation("is", [subject, ir.Const(pattern.value, where)], where)
+    elif isinstance(pattern, ast.MatchOr):
+        ways = [list(conditions(p, subject, where, lower)) for p in pattern.patterns]
+        if all(ways):
+            yield ir.Operation("or", [ir.Operation("and", way, where) for way in ways], where)
+    elif isinstance(pattern, ast.MatchAs):
+        if pattern.pattern is not None:
+            yield from conditions(pattern.pattern, subject, where, lower)
+    elif not isinstance(pattern, ast.MatchStar):
+        yield ir.Operation("type" if isinstance(pattern, ast.MatchClass) else "shape", [subject], where)
+        for inner, part in _parts(pattern, subject, where, lower):
+            yield from conditions(inner, part, where, lower)
+
+
+def _parts(
+    pattern: ast.pattern, subject: ir.Expr, where: ir.Pos, lower: Lower
+) -> Iterator[tuple[ast.pattern, ir.Expr]]:
+    """Yield the patterns inside a pattern with what they are matched against."""
+    if isinstance(pattern, ast.MatchSequence):
+        yield from _elements(pattern, subject, where)
+    elif isinstance(pattern, ast.MatchMapping):
+        for key, inner in zip(pattern.keys, pattern.patterns, strict=True):
+            yield inner, ir.Item(subject, lower(key), where)
+    elif isinstance(pattern, ast.MatchClass):
+        for name, inner in zip(pattern.kwd_attrs, pattern.kwd_patterns, strict=True):
+            yield inner, ir.Attribute(subject, name, where)
+        whole = ir.Operation("", [subject], where)
+        yield from ((inner, whole) for inner in pattern.patterns)
+
+
+def _elements(
+    pattern: ast.MatchSequence, subject: ir.Expr, where: ir.Pos
+) -> Iterator[tuple[ast.pattern, ir.Expr]]:
+    starred = False
+    for number, inner in enumerate(pattern.patterns):
+        if isinstance(inner, ast.MatchStar):
+            starred = True
+            after = len(pattern.patterns) - number - 1
+            bounds: list[ir.Expr] = [ir.Const(number, where)]
+            bounds += [ir.Const(-after, where)] if after else []
+            yield inner, ir.Item(subject, ir.Slice(bounds, where), where)
+        else:
+            index = number - len(pattern.patterns) if starred else number
+            yield inner, ir.Item(subject, ir.Const(index, where), where)

@@ -1,0 +1,83 @@
+"""What is left of a function's changes when it returns: not its variables, nor objects that nothing leads to any more.
+
+Abstract garbage collection, after Might and Shivers (ICFP 2006): states stay small, and what no one can reach takes
+part in no join.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Set
+from typing import Final
+
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.store import BORN, Delta
+from tarl_lint.memory.values import Obj, Value
+
+TEMPORARY: Final = frozenset(["lib", "sequence", "mapping"])  # objects that a function makes by the way
+
+
+def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]) -> Delta:
+    """Return what others can see of an activation's changes.
+
+    `returned` are objects that it hands out by other ways than by storing them, `given` those that anything on its
+    own is run with.
+    """
+    local = {owner for owner, name in delta if name == BORN and owner.kind in TEMPORARY}
+    if not local:
+        return delta if frame.captured else {k: v for k, v in delta.items() if k[0] is not frame}
+    kept: Delta = {}
+    inside: dict[Obj, list[tuple[str, Value]]] = {}
+    pending = [*returned, *(local & given)]
+    followed: set[frozenset[Obj]] = set()  # many values point to the same objects
+    for key, value in delta.items():
+        owner = key[0]
+        if owner is frame and not frame.captured:
+            continue
+        kept[key] = value
+        root = owner.whole
+        if root in local:
+            inside.setdefault(root, []).append((key[1], value))
+        elif value.pts and value.pts not in followed:
+            followed.add(value.pts)
+            pending += value.pts
+    seen: set[Obj] = set()
+    while pending:
+        root = pending.pop().whole
+        if root not in seen:
+            seen.add(root)
+            for _, value in inside.get(root, ()):
+                if value.pts not in followed:
+                    followed.add(value.pts)
+                    pending += value.pts
+            if root.info is not None:
+                pending += _about(root.info)
+    gone = local - seen
+    if not gone:
+        return kept
+    return {k: v for k, v in kept.items() if k[0].whole not in gone}
+
+
+def together(objects: Iterable[Obj]) -> Set[Obj]:
+    """Return objects and what is part of what makes them, outermost ones."""
+    found: set[Obj] = set()
+    pending = [*objects]
+    while pending:
+        obj = pending.pop().whole
+        if obj not in found:
+            found.add(obj)
+            pending += _about(obj.info)
+    return found
+
+
+def _about(info: object) -> Iterator[Obj]:
+    """Yield the objects that are part of what makes another one, such as a bound method's receiver."""
+    if isinstance(info, Obj):
+        yield info
+    elif isinstance(info, Value):
+        yield from info.pts
+    elif isinstance(info, (tuple, list)):
+        for part in info:
+            yield from _about(part)
+    elif isinstance(info, dict):
+        for part in info.values():
+            yield from _about(part)

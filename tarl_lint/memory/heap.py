@@ -1,0 +1,289 @@
+"""Objects: their fields, what is inside them, and new ones."""
+
+from __future__ import annotations
+
+from tarl_lint.catalog import MEASURES, METHODS
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import recency, userdata
+from tarl_lint.memory.userdata import VIEW
+from tarl_lint.memory.values import (
+    BOTTOM,
+    BY_CLASS,
+    NONE,
+    UNKNOWN,
+    ClassInfo,
+    Nodes,
+    Obj,
+    Value,
+    join,
+    lineage,
+    pointer,
+)
+
+ANY = "*"  # the field that stands for all elements
+KEYS = "<keys>"  # of a mapping: what its keys are made of
+LENGTH = "<length>"  # of a container: what its length is made of
+HELD = "<callables>"  # of an object of a library: the callables that it was given
+SENT = "<sent>"  # the field of a port, file or socket that holds what was written to it
+METHODS_OF = {
+    "publisher": frozenset(["publish"]),
+    "sequence": frozenset(
+        ["append", "appendleft", "extend", "insert", "add", "put", "put_nowait", "pop", "popleft", "get"]
+    ),
+    "mapping": frozenset(["update", "get", "pop", "setdefault", "__getitem__", "__setitem__"]),
+    "lib": frozenset(["put", "put_nowait", "set_result"]),
+    "goal": frozenset(["publish_feedback"]),
+    "server": frozenset(["publish_feedback", "set_succeeded", "set_aborted"]),
+}
+DICTIONARIES = frozenset(["dict", "OrderedDict", "defaultdict", "UserDict", "Counter", "TypedDict", "?"])
+HOLLOW = frozenset(
+    ["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super", VIEW]
+)
+RENAMING = frozenset(["closure", VIEW])  # objects whose attributes are kept elsewhere or under other names
+
+
+def item_field(constant: object) -> str:
+    """Return the field that a constant index or key stands for."""
+    return f"[{constant!r}]"
+
+
+# --- reading ------------------------------------------------------------------------------------------
+
+
+def content(ctx: Interpreter, obj: Obj) -> Value:
+    """Return what any element or unknown field of an object may be."""
+    own = ctx.store.get((obj, ANY))
+    if own is not None:
+        return own
+    if obj.parent is not None:
+        outer = content(ctx, obj.parent)
+        return Value(outer.deps) if outer is not BOTTOM else BOTTOM
+    if obj.kind == "message" and isinstance(obj.info, int):
+        return Value(frozenset([obj.info]))
+    return UNKNOWN if obj.kind == "ext" else BOTTOM
+
+
+def read_field(ctx: Interpreter, obj: Obj, name: str) -> Value:
+    """Return what a field of one object may be."""
+    if obj.kind in RENAMING:
+        obj, name = renamed(ctx, obj, name)
+    stored = ctx.store.get((obj, name))
+    if stored is not None:
+        if obj.kind == "class":
+            return bind_class(ctx, stored, obj)
+        if obj.whole.kind == "message" and not written_here(ctx, obj, name):
+            return join(stored, pointer(obj.sub(name)))  # each message brings its own
+        return stored
+    return ctx.ops.default(ctx, obj, name)
+
+
+def renamed(ctx: Interpreter, obj: Obj, name: str) -> tuple[Obj, str]:
+    """Return where an attribute is kept, and under which name: those of functions beside their defaults."""
+    return (obj, f"<{name}>") if obj.kind == "closure" else userdata.seen_through(ctx, obj, name)
+
+
+def written_here(ctx: Interpreter, obj: Obj, name: str) -> bool:
+    """Tell whether this run has stored to a field."""
+    return ctx.store.stored((obj, name))
+
+
+def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
+    """Return what a field is to which nothing was stored."""
+    kind = obj.kind
+    if name in METHODS_OF.get(kind, ()):
+        return held_method(ctx, obj, name)
+    if kind in ("message", "lib", "goal"):
+        if name.startswith("[") and (held := content(ctx, obj)).pts:
+            return held
+        if kind == "lib" and obj.info is not BY_CLASS and name in MEASURES:
+            return Value(ctx.ops.deep(ctx, frozenset([obj])))
+        any_of_them = obj.subs.get("[]") if name.startswith("[") else None
+        return Value(pts=frozenset([obj.sub(name)] if any_of_them is None else [obj.sub(name), any_of_them]))
+    if kind in ("sequence", "mapping"):
+        return content(ctx, obj) if name.startswith("[") else BOTTOM
+    if name == "__class__" and kind == "instance" and isinstance(obj.info, Obj):
+        return pointer(obj.info)
+    if name == "__dict__":
+        return pointer(obj)
+    if kind == "instance" and isinstance(obj.info, Obj):
+        return _inherited(ctx, obj, obj.info, name)
+    if kind == "class":
+        return _class_field(ctx, obj, name)
+    if kind == "ext":
+        return pointer(recency.intern(ctx, "ext", f"{obj.name}.{name}", f"{obj.name}.{name}"))
+    if kind == "module":
+        return opened(ctx, obj, name)
+    return BOTTOM
+
+
+def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:
+    """Return a class attribute seen through an instance: functions become bound methods."""
+    for owner in lineage(cls):
+        value = ctx.store.get((owner, name))
+        if value is not None:
+            return bind(ctx, value, obj, owner)
+    if isinstance(cls.info, ClassInfo) and cls.info.opaque and not name.startswith("["):
+        if name in METHODS:
+            return held_method(ctx, obj, name)
+        holder = recency.intern(ctx, "lib", ("inherited", obj.key, name), name)
+        return pointer(holder)
+    result = content(ctx, obj)  # elements, and attributes whose names are made at run time
+    for attributes in replaced_attributes(ctx, obj):
+        result = join(result, read_field(ctx, attributes, item_field(name)))
+    return result
+
+
+def replaced_attributes(ctx: Interpreter, obj: Obj) -> frozenset[Obj]:
+    """Return the mappings that were stored as an object's `__dict__`, which others may share."""
+    held = ctx.store.get((obj, "__dict__")) if "__dict__" in obj.fields else None
+    return held.pts - {obj} if held is not None else frozenset()
+
+
+def bind(ctx: Interpreter, value: Value, receiver: Obj, owner: Obj) -> Value:
+    """Return a value with its functions bound to a receiver."""
+    if not any(o.kind == "closure" for o in value.pts):
+        return value
+    bound = []
+    for target in value.pts:
+        way = _binding(target)
+        if way == "staticmethod":
+            bound.append(target)
+            continue
+        to = receiver.info if way == "classmethod" and isinstance(receiver.info, Obj) else receiver
+        bound.append(method(ctx, target, to, owner))
+    return Value(value.deps, frozenset(bound), value.consts)
+
+
+def bind_class(ctx: Interpreter, value: Value, cls: Obj) -> Value:
+    """Return a class's attribute with its class methods bound to it."""
+    if not any(_binding(o) == "classmethod" for o in value.pts):
+        return value
+    bound = [method(ctx, o, cls, cls) if _binding(o) == "classmethod" else o for o in value.pts]
+    return Value(value.deps, frozenset(bound), value.consts)
+
+
+def held_method(ctx: Interpreter, owner: Obj, name: str) -> Value:
+    """Return a method of an object that is not of a class of ours, to be called later."""
+    method = recency.intern(ctx, "method", (owner, name), name)
+    method.info = (owner, name)
+    return pointer(method)
+
+
+def method(ctx: Interpreter, closure: Obj, receiver: Obj, owner: Obj) -> Obj:
+    """Return a function bound to a receiver."""
+    method = recency.intern(ctx, "bound", (closure.key, receiver), closure.name)
+    method.info = (closure, receiver, owner)
+    return method
+
+
+def _class_field(ctx: Interpreter, cls: Obj, name: str) -> Value:
+    for owner in lineage(cls)[1:]:
+        value = ctx.store.get((owner, name))
+        if value is not None:
+            return bind_class(ctx, value, cls)
+    return BOTTOM
+
+
+def opened(ctx: Interpreter, module: Obj, name: str) -> Value:
+    """Return a name of a module that came in through `import *`."""
+    result = BOTTOM
+    for star in opened_by(ctx, module):
+        target = ctx.module_objects.get(star)
+        value = ctx.store.get((target, name)) if target is not None else None
+        if value is not None:
+            result = join(result, value)
+    return result
+
+
+def opened_by(ctx: Interpreter, module: Obj) -> list[str]:
+    """Return the modules that a module opens by `import *`, and those that these open in turn."""
+    found: dict[str, None] = {}
+    pending = [module.name]
+    while pending:
+        program = ctx.programs.get(pending.pop())
+        for star in program.stars if program is not None else ():
+            if star not in found and star != module.name:
+                found[star] = None
+                pending.append(star)
+    return list(found)
+
+
+def read_any(ctx: Interpreter, obj: Obj) -> Value:
+    """Return what any element of an object may be."""
+    result = content(ctx, obj)
+    ctx.store.look(obj)
+    ctx.graph.asked += len(obj.fields)
+    for name in list(obj.fields):
+        if name.startswith("["):
+            value = ctx.store.get((obj, name))
+            if value is not None:
+                result = join(result, value)
+    if obj.kind in ("message", "lib") and not result.pts:
+        parts = [obj.sub("[]"), *(sub for name, sub in obj.subs.items() if name.startswith("["))]
+        result = join(result, Value(pts=frozenset(parts)))
+        result = Value(NONE, result.pts) if result.deps == content(ctx, obj).deps else result
+    return result
+
+
+def read(ctx: Interpreter, base: Value, name: str) -> Value:
+    """Return a field read through a pointer, as it arrives through all who passed the pointer on."""
+    if len(base.pts) == 1:
+        (obj,) = base.pts
+        return arrive(ctx, read_field(ctx, obj, name), base.deps)
+    result = Value(base.deps, consts=frozenset())
+    for obj in base.pts:
+        value = read_field(ctx, obj, name)
+        result = join(result, arrive(ctx, value, base.deps))
+    return result if base.pts else Value(base.deps)
+
+
+def elements(ctx: Interpreter, value: Value) -> Value:
+    """Return what iterating over a value gives."""
+    if not value.pts:
+        return Value(value.deps)
+    result = Value(value.deps, consts=frozenset())
+    ctx.graph.asked += len(value.pts)
+    for obj in value.pts:
+        if obj.kind == "instance":
+            result = join(result, Value(ctx.ops.deep(ctx, frozenset([obj]))))
+        elif obj.kind == "mapping":
+            result = join(result, keys(ctx, obj, value.deps))
+        else:
+            result = join(result, arrive(ctx, read_any(ctx, obj), value.deps))
+    return result
+
+
+def keys(ctx: Interpreter, mapping: Obj, carriers: Nodes) -> Value:
+    """Return what the keys of a mapping may be: data only where they were made of data."""
+    stored = ctx.store.get((mapping, KEYS))
+    return UNKNOWN if stored is None else join(arrive(ctx, stored, carriers), UNKNOWN)
+
+
+def arrive(ctx: Interpreter, value: Value, carriers: Nodes) -> Value:
+    """Return a field's value with the carriers of the pointer it was read through."""
+    if not carriers:
+        return value
+    deps = ctx.graph.through(value.deps, carriers) | carriers
+    return Value(deps, value.pts, value.consts)
+
+
+def attribute_of_item(obj: Obj, key: object) -> str:
+    """Return the field of `vars(obj)[key]`: of what is no dictionary itself an attribute."""
+    if obj.kind == "instance" and isinstance(key, str) and isinstance(obj.info, Obj):
+        infos = [c.info for c in lineage(obj.info)]
+        external = {e for i in infos if isinstance(i, ClassInfo) for e in i.external}
+        if not any(e.rpartition(".")[2] in DICTIONARIES for e in external):
+            return key
+    return item_field(key)
+
+
+def _binding(obj: Obj) -> str:
+    """Return how what is found in a class is bound: not at all, to the class, else to the instance."""
+    if obj.kind != "closure":
+        return "staticmethod"
+    function = obj.info[0] if isinstance(obj.info, tuple) else None
+    for decorator in function.decorators if isinstance(function, ir.Function) else ():
+        if isinstance(decorator, ir.Name) and decorator.name in ("staticmethod", "classmethod"):
+            return decorator.name
+    return "method"

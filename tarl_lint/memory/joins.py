@@ -1,0 +1,84 @@
+"""States that come together: after branches, loops, alternative callees."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.memory import heap
+from tarl_lint.memory.store import BORN, Delta
+from tarl_lint.memory.values import (
+    ABSENT,
+    BOTTOM,
+    BY_CLASS,
+    Obj,
+    Value,
+    join,
+)
+
+JOINS = 40  # values joined in the time of a statement
+
+
+def merge(ctx: Interpreter, deltas: Sequence[Delta]) -> None:
+    """Let the state be what it is after any of several continuations of it."""
+    for key, value in joined(ctx, deltas).items():
+        ctx.store.put(key, value)
+
+
+def joined(ctx: Interpreter, deltas: Sequence[Delta]) -> Delta:
+    """Return the join of continuations of the present state."""
+    if len(deltas) == 1:
+        return deltas[0]
+    keys: dict[tuple[Obj, str], None] = {}
+    for delta in deltas:
+        keys.update(dict.fromkeys(delta))
+    ctx.spent += len(keys) // JOINS
+    result: Delta = {}
+    for key in keys:
+        value: Value | None = None
+        blank: Value | None = None
+        for delta in deltas:
+            here = delta.get(key)
+            if here is None or here is ABSENT:
+                here = _former(ctx, key) if here is None else ctx.ops.default(ctx, *key)
+                if here is not None and _unset(ctx, key, here):
+                    blank = here
+                    continue
+            if here is not None:
+                value = here if value is None else join(value, here)
+        if blank is not None and (value is None or not _zero(value)):
+            value = blank if value is None else join(value, blank)
+        if value is not None:
+            result[key] = value
+    return result
+
+
+def _unset(ctx: Interpreter, key: tuple[Obj, str], value: Value) -> bool:
+    """Tell whether a value is a field of a new message, to which nothing was stored yet."""
+    owner = key[0]
+    return (
+        owner.kind == "lib"
+        and owner.whole.info is BY_CLASS
+        and not value.deps
+        and all(o.parent is owner and not o.fields for o in value.pts)
+        and heap.content(ctx, owner) is BOTTOM
+    )
+
+
+def _former(ctx: Interpreter, key: tuple[Obj, str]) -> Value | None:
+    """Return what a continuation that does not store leaves."""
+    value = ctx.store.get(key)
+    if value is not None:
+        return value
+    owner, name = key
+    if owner.kind in ("frame", "module", "class", "closure"):
+        return None
+    if owner.kind != "message" and ctx.store.get((owner.whole, BORN)) is None:
+        return None  # the object does not exist there
+    return heap.content(ctx, owner) if name == "*" else ctx.ops.default(ctx, owner, name)
+
+
+def _zero(value: Value) -> bool:
+    """Tell whether a value is what a field of a message is at first: zero, false, an empty text."""
+    known, constant = value.constant()
+    return known and constant is not None and not constant

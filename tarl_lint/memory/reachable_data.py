@@ -1,0 +1,122 @@
+"""What is inside objects, at any depth."""
+
+from __future__ import annotations
+
+from tarl_lint.definitions import FIELDS
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.memory import heap
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.heap import ANY, HOLLOW
+from tarl_lint.memory.recency import MAX_NESTING
+from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value
+
+
+def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
+    """Return all nodes whose data is inside objects, as long as nothing is stored the same as before."""
+    if len(objects) == 1:
+        (obj,) = objects
+        if not obj.laden:
+            ctx.store.doubt(obj)
+            return NONE
+    now = (ctx.graph.grown, ctx.stack[-1] if ctx.stack else None)
+    if ctx.store.looked != now:
+        ctx.store.looked = now
+        ctx.store.insides.clear()
+    inside = ctx.store.insides.get(objects)
+    if inside is not None:
+        return inside
+    known: dict[Obj, Nodes] = {}
+    found = NONE
+    for obj in in_order(objects):
+        found |= _deep(ctx, obj, known, 0)
+    ctx.count(len(known))
+    if ctx.graph.grown == now[0]:
+        ctx.store.insides[objects] = found
+    return found
+
+
+def _deep(ctx: Interpreter, obj: Obj, known: dict[Obj, Nodes], depth: int, *, counted: bool = False) -> Nodes:
+    """Return what is inside one object. What holds itself is left out at the second time.
+
+    `counted`: what may be anywhere in the object that it is part of was found there. Who comes to the part by
+    another way asks again.
+    """
+    if obj.kind in HOLLOW or depth > MAX_NESTING:
+        return NONE
+    if not obj.laden:
+        ctx.store.doubt(obj)
+        return NONE
+    inside = known.get(obj)
+    if inside is not None:
+        return inside
+    known[obj] = NONE
+    if obj.kind == "instance" and _node_like(ctx, obj):
+        return NONE
+    ctx.store.look(obj)
+    overwritten = replaced(ctx, obj, defined(ctx, obj))
+    found: set[int] = set()
+    whole = not counted or ANY in obj.fields
+    if not overwritten and whole:
+        found |= heap.content(ctx, obj).deps
+    for name in list(obj.fields):
+        value = ctx.store.get((obj, name)) if name != ANY or not overwritten else None
+        if value is not None:
+            found |= ctx.settled(value) if name.isidentifier() else value.deps
+            if value.pts:
+                found |= _behind(ctx, value, known, depth + 1)
+    for name, sub in list(obj.subs.items()):
+        if sub is not obj and ctx.store.get((obj, name)) is None:
+            found |= _deep(ctx, sub, known, depth + 1, counted=not overwritten)
+    inside = frozenset(found)
+    if whole:
+        known[obj] = inside
+    else:
+        del known[obj]
+    return inside
+
+
+def defined(ctx: Interpreter, obj: Obj) -> str:
+    """Return the name of a message's definition where that is known, of a message inside one too."""
+    if obj.parent is None:
+        return obj.defined
+    outer = FIELDS.get(defined(ctx, obj.parent), {})
+    return outer.get(obj.name, "")
+
+
+def replaced(ctx: Interpreter, obj: Obj, kind: str) -> bool:
+    """Tell whether every field of a message, or of a copy of one, was overwritten in this run."""
+    fields = FIELDS.get(kind)
+    return fields is not None and all(
+        heap.written_here(ctx, obj, name)
+        or (inner != "" and name in obj.subs and replaced(ctx, obj.subs[name], inner))
+        for name, inner in fields.items()
+    )
+
+
+def _behind(ctx: Interpreter, value: Value, known: dict[Obj, Nodes], depth: int) -> Nodes:
+    """Return what is inside the objects that a field holds, as it arrives through the field."""
+    inner = NONE
+    for target in in_order(value.pts):
+        if target.laden:
+            inner |= _deep(ctx, target, known, depth)
+        elif target.kind not in HOLLOW:
+            ctx.store.doubt(target)
+    return ctx.graph.through(inner, value.deps) if inner else inner
+
+
+def _node_like(ctx: Interpreter, obj: Obj) -> bool:
+    """Tell whether an instance is a program rather than data: passing it on passes no data."""
+    info = obj.info.info if isinstance(obj.info, Obj) else None
+    if not isinstance(info, ClassInfo):
+        return False
+    return info.opaque or any(_is_self(ctx, f, obj) for f in ctx.stack if "self" in f.fields)
+
+
+def _is_self(ctx: Interpreter, frame: Frame, obj: Obj) -> bool:
+    value = ctx.store.get((frame, "self"))
+    return value is not None and obj in value.pts
+
+
+def in_order(objects: frozenset[Obj]) -> list[Obj]:
+    """Return objects in the order in which they were made: that of a set depends on where they are in memory."""
+    return sorted(objects, key=lambda obj: obj.number) if len(objects) > 1 else list(objects)

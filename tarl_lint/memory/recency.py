@@ -1,0 +1,84 @@
+"""Objects: one per key, the newest of an allocation site apart from the older ones."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.store import BORN
+from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value, join
+
+MAX_NESTING = 7
+
+
+def intern(ctx: Interpreter, kind: str, key: Hashable, name: str = "") -> Obj:
+    """Return the object with this key, made at the first time."""
+    found = ctx.objects.get((kind, key))
+    if found is None:
+        found = ctx.objects[kind, key] = Obj(kind, key, name)
+    return found
+
+
+def allocate(ctx: Interpreter, kind: str, frame: Frame, slot: Hashable) -> Obj:
+    """Return the newest object of an allocation site; what it stood for until now becomes the older ones."""
+    statement = frame.statement
+    key = (frame.id, statement.id if statement is not None else -1, slot, *frame.turn)
+    obj = ctx.objects.get((kind, key))
+    if obj is None:
+        obj = ctx.objects[kind, key] = Obj(kind, key)
+        ctx.store.put((obj, BORN), BOTTOM)
+        return obj
+    if kind == "lib" and obj.fields:
+        _age(ctx, obj)
+    clear_fields(ctx, obj)
+    ctx.store.put((obj, BORN), BOTTOM)
+    return obj
+
+
+def _age(ctx: Interpreter, obj: Obj) -> None:
+    """Where the former object is still held, let it be one of the older ones."""
+    holders = [k for k in obj.holders if k[0] is not obj and _holds(ctx, k, obj)]
+    if not holders:
+        return
+    older = ctx.objects.get(("lib", (obj.key, "older")))
+    if older is None:
+        older = ctx.objects["lib", (obj.key, "older")] = Obj("lib", (obj.key, "older"))
+        older.many = True
+    copy_fields(ctx, obj, older)
+    ctx.graph.asked += len(obj.holders)
+    without: dict[frozenset[Obj], frozenset[Obj]] = {}  # many hold the same objects
+    for key in holders:
+        value = ctx.store.get(key)
+        if value is not None:
+            pts = without.get(value.pts)
+            if pts is None:
+                pts = without[value.pts] = (value.pts - {obj}) | {older}
+            ctx.store.put(key, Value(value.deps, pts, value.consts))
+
+
+def _holds(ctx: Interpreter, key: tuple[Obj, str], obj: Obj) -> bool:
+    value = ctx.store.get(key)
+    return value is not None and obj in value.pts
+
+
+def copy_fields(ctx: Interpreter, obj: Obj, older: Obj, depth: int = 0) -> None:
+    """Copy the fields of an object, and of its parts, to what stands for older ones."""
+    for name in list(obj.fields):
+        value = ctx.store.get((obj, name))
+        if value is not None:
+            before = ctx.store.get((older, name))
+            ctx.store.put((older, name), value if before is None else join(before, value))
+    if depth < MAX_NESTING:
+        for name, sub in list(obj.subs.items()):
+            copy_fields(ctx, sub, older.sub(name), depth + 1)
+
+
+def clear_fields(ctx: Interpreter, obj: Obj, depth: int = 0) -> None:
+    """Let an object and its parts be as if nothing had been stored."""
+    for name in list(obj.fields):
+        ctx.store.put((obj, name), ABSENT)
+    if depth < MAX_NESTING:
+        for sub in list(obj.subs.values()):
+            if sub is not obj:
+                clear_fields(ctx, sub, depth + 1)

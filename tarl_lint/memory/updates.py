@@ -1,0 +1,84 @@
+"""Stores into fields and elements."""
+
+from __future__ import annotations
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.memory import heap
+from tarl_lint.memory.heap import ANY, HOLLOW, KEYS, RENAMING, item_field
+from tarl_lint.memory.values import Obj, Value, join
+
+MAX_KEYS = 8  # of a mapping, one of which a store may be for
+
+
+def write_field(ctx: Interpreter, base: Value, name: str, value: Value) -> None:
+    """Store into a field; for certain when there is only one object that it can be."""
+    certain = len(base.pts) == 1
+    for held in base.pts:
+        if held.kind in ("bound", "ext", "method"):
+            continue
+        obj, field = heap.renamed(ctx, held, name) if held.kind in RENAMING else (held, name)
+        for attributes in heap.replaced_attributes(ctx, obj):
+            weaken(ctx, attributes, item_field(field), value)
+        if certain and not obj.many:
+            ctx.store.put((obj, field), value)
+        else:
+            weaken(ctx, obj, field, value)
+
+
+def weaken(ctx: Interpreter, obj: Obj, name: str, value: Value) -> None:
+    """Store into a field of one of several objects."""
+    before = ctx.store.get((obj, name))
+    if before is None:
+        before = ctx.ops.default(ctx, obj, name)
+    ctx.store.put((obj, name), join(before, value))
+
+
+def add_element(ctx: Interpreter, base: Value, value: Value) -> None:
+    """Store into an element that is not known."""
+    for obj in base.pts:
+        if obj.kind in HOLLOW:
+            continue
+        before = heap.content(ctx, obj)
+        ctx.store.put((obj, ANY), join(before, value))
+        for name in list(obj.fields):
+            if name.startswith("["):
+                known = ctx.store.get((obj, name))
+                if known is not None:
+                    ctx.store.put((obj, name), join(known, value))
+
+
+def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> None:
+    """Store into an element."""
+    keys = ctx.use(index)
+    for obj in base.pts if keys else ():
+        if obj.kind == "mapping":
+            weaken(ctx, obj, KEYS, Value(keys))
+    if index.consts is None or not index.consts or len(index.consts) > 1:
+        _write_some(ctx, base, index, value)
+        return
+    key = next(iter(index.consts))
+    if isinstance(key, int) and key < 0 and any(o.kind == "sequence" for o in base.pts):
+        key = from_end(ctx, base, key)
+        if key < 0:
+            add_element(ctx, base, value)
+            return
+    fields = {heap.attribute_of_item(obj, key) for obj in base.pts}
+    for field in sorted(fields):
+        kin = frozenset(o for o in base.pts if heap.attribute_of_item(o, key) == field)
+        write_field(ctx, base if kin == base.pts else Value(base.deps, kin), field, value)
+
+
+def _write_some(ctx: Interpreter, base: Value, index: Value, value: Value) -> None:
+    """Store into one of several elements: of mappings those of known keys, else any."""
+    known = sorted(index.consts or (), key=repr) if len(index.consts or ()) <= MAX_KEYS else []
+    mappings = frozenset(o for o in base.pts if o.kind == "mapping" and known and not index.pts)
+    for obj in sorted(mappings, key=lambda o: o.number):
+        for key in known:
+            weaken(ctx, obj, heap.attribute_of_item(obj, key), value)
+    add_element(ctx, Value(base.deps, base.pts - mappings), value)
+
+
+def from_end(ctx: Interpreter, base: Value, key: int) -> int:
+    """Return a negative index counted from the start, where the length is known."""
+    known = ctx.ops.unpacked(ctx, base)
+    return key + len(known) if known and -key <= len(known) else key

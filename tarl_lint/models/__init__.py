@@ -1,0 +1,1 @@
+"""Models of what is not read: containers, records, strings, futures, ROS."""

@@ -1,0 +1,173 @@
+"""Callables handed to libraries: what they return may be in what the library gives back, now or later."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Final
+
+from tarl_lint.interpret import call_contexts, calls
+from tarl_lint.interpret.call_contexts import CALLABLE
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Arguments
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, joins
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.heap import HELD
+from tarl_lint.memory.reachable_data import in_order
+from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, join
+from tarl_lint.models import containers
+from tarl_lint.models.smach import LATER
+from tarl_lint.trees import walk
+
+MAX_INSIDE: Final = 3  # levels of tables and lists in which a callable is looked for (constraints of solvers)
+KEPT_APART: Final = 500  # callables of one call; slots of calls by libraries lie in a range of their own
+
+
+def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
+    """Functions handed to a library may be called by it at any time, with the arguments that follow them."""
+    plain, named = arguments
+    for number, value in enumerate(plain):
+        for target in in_order(value.pts):
+            if target.kind == "method":
+                calls.call_object(ctx, target, (plain[number + 1 :], {}), frame, call)
+            elif target.kind in LATER:
+                passed = call_contexts.pass_arguments(ctx, (plain[number + 1 :], {}), frame, call)[0]
+                ctx.ops.call_later(ctx, target, passed)
+    for value in named.values():
+        for target in in_order(value.pts):
+            if target.kind in LATER:
+                opaque = _opaque(ctx, arguments, BOTTOM)
+                ctx.ops.call_later(ctx, target, _wanted(ctx, target, opaque)[0] if opaque.deps else ())
+
+
+def answering(ctx: Interpreter, arguments: Arguments) -> list[Obj]:
+    """Return the callables among arguments, and in tables and lists there, that return anything."""
+    plain, named = arguments
+    return [o for o in _callables(ctx, (*plain, *named.values()), MAX_INSIDE) if _answers(ctx, o)]
+
+
+def _callables(ctx: Interpreter, values: Iterable[Value], depth: int) -> list[Obj]:
+    found: dict[Obj, None] = {}
+    for value in values:
+        for obj in in_order(value.pts):
+            if obj.kind in LATER or (obj.kind == "instance" and _functor(ctx, obj)):
+                found[obj] = None
+            elif obj.kind in ("sequence", "mapping") and depth:
+                found.update(
+                    dict.fromkeys(_callables(ctx, [containers.elements_of_any(ctx, _only(obj))], depth - 1))
+                )
+    return list(found)
+
+
+def _functor(ctx: Interpreter, obj: Obj) -> bool:
+    """Tell whether instances of a class of ours can be called."""
+    return any(o.kind in CALLABLE for o in heap.read_field(ctx, obj, "__call__").pts)
+
+
+def _answers(ctx: Interpreter, obj: Obj) -> bool:
+    function, _ = _behind_callable(ctx, obj)
+    return function is not None and answers(function)
+
+
+def _behind_callable(ctx: Interpreter, obj: Obj) -> tuple[ir.Function | None, int]:
+    """Return the function that a callable runs, and how many of its parameters are given already."""
+    given = 0
+    while True:
+        if obj.kind == "partial" and isinstance(obj.info, tuple):
+            given += len(obj.info[1])
+            inner = obj.info[0].pts
+        elif obj.kind == "instance":
+            inner = frozenset(o for o in heap.read_field(ctx, obj, "__call__").pts if o.kind in CALLABLE)
+        elif obj.kind == "bound" and isinstance(obj.info, tuple):
+            given += 1
+            inner = frozenset([obj.info[0]])
+        elif obj.kind == "closure" and isinstance(obj.info, tuple):
+            return obj.info[0], given
+        else:
+            return None, given
+        if len(inner) != 1:
+            return None, given
+        (obj,) = inner
+
+
+def returned(
+    ctx: Interpreter, targets: Sequence[Obj], arguments: Arguments, base: Value, frame: Frame, call: ir.Call
+) -> Nodes:
+    """Return the data of what callables return when a library calls them, if it does.
+
+    What it passes is not known: parts of what it was given, made into anything.
+    """
+    found = NONE
+    opaque = _opaque(ctx, arguments, base) if targets else BOTTOM
+    for number, target in enumerate(targets[:KEPT_APART]):
+        slot = -1000 * (abs(call.slot) + 1) - KEPT_APART - number
+        inner = replace(call, arguments=(), keywords=(), slot=slot)
+        ctx.store.push()
+        said = calls.call_object(ctx, target, _wanted(ctx, target, opaque), frame, inner)
+        found |= ctx.use(said)
+        joins.merge(ctx, [ctx.store.pop(), {}])
+    return found
+
+
+def _opaque(ctx: Interpreter, arguments: Arguments, base: Value) -> Value:
+    """Return what a library may pass: data of all that it has, messages and objects among it as they are."""
+    plain, named = arguments
+    objects: set[Obj] = set()
+    for value in (*plain, *named.values()):
+        for obj in value.pts:
+            if obj.kind in ("sequence", "mapping"):
+                objects |= containers.elements_of_any(ctx, _only(obj)).pts
+            else:
+                objects.add(obj)
+    parts = frozenset(o for o in objects if o.kind in ("message", "instance", "lib"))
+    return Value(call_contexts.all_used(ctx, arguments) | ctx.use(base), parts)
+
+
+def _wanted(ctx: Interpreter, target: Obj, opaque: Value) -> Arguments:
+    """Return arguments for the parameters of a callable that have to be given."""
+    function, given = _behind_callable(ctx, target)
+    fixed = target.info[2] if target.kind == "partial" and isinstance(target.info, tuple) else {}
+    if function is None:
+        return [], {}
+    left = [p for p in function.parameters if p.kind == "plain"][given:]
+    left += [p for p in function.parameters if p.kind in ("star", "keyword")]
+    asked = [p for p in left if p.default is None and p.name not in fixed]
+    plain = [opaque for p in asked if p.kind == "plain"]
+    if not plain and any(p.kind == "star" for p in asked):
+        plain.append(opaque)
+    return plain, {p.name: opaque for p in asked if p.kind == "keyword"}
+
+
+def hold(ctx: Interpreter, objects: Iterable[Obj], targets: Sequence[Obj]) -> None:
+    """Remember the callables that objects of a library were given: their methods may call them."""
+    for obj in objects:
+        if obj.kind == "lib" and targets:
+            before = ctx.store.get((obj, HELD)) or BOTTOM
+            ctx.store.put((obj, HELD), join(before, Value(pts=frozenset(targets))))
+
+
+def held_by(ctx: Interpreter, base: Value) -> list[Obj]:
+    """Return the callables that objects of a library were given before."""
+    found = [v for o in base.pts if o.kind == "lib" and (v := ctx.store.get((o, HELD))) is not None]
+    return in_order(frozenset(o for v in found for o in v.pts))
+
+
+def answers(function: ir.Function) -> bool:
+    """Tell whether a function returns or yields anything but None."""
+    if function.answers is None:
+        node = function.node
+        function.answers = isinstance(node, ast.Lambda) or any(
+            isinstance(n, (ast.Yield, ast.YieldFrom)) or (isinstance(n, ast.Return) and _something(n.value))
+            for n in walk(node)
+        )
+    return function.answers
+
+
+def _something(expr: ast.expr | None) -> bool:
+    return expr is not None and not (isinstance(expr, ast.Constant) and expr.value is None)
+
+
+def _only(obj: Obj) -> Value:
+    return Value(pts=frozenset([obj]))

@@ -1,0 +1,269 @@
+"""Containers of the standard library: what goes in comes out again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from tarl_lint import catalog
+from tarl_lint.interpret import call_contexts, expressions
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Arguments, Invocation
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, recency, updates
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.heap import ANY, LENGTH, SENT, item_field
+from tarl_lint.memory.values import (
+    BOTTOM,
+    NONE,
+    UNKNOWN,
+    Nodes,
+    Obj,
+    Value,
+    const,
+    join,
+    join_all,
+    pointer,
+)
+from tarl_lint.models import iterators, sizes
+
+QUEUES = frozenset(
+    f"{module}.{name}"
+    for module in ("queue", "Queue", "asyncio", "multiprocessing")
+    for name in ("Queue", "LifoQueue", "PriorityQueue", "SimpleQueue", "JoinableQueue")
+)
+FLAG = "<flag>"  # the field of an event that says whether it is set
+FLAGGING = frozenset(["set", "clear"])
+IN_ORDER = frozenset(["list", "tuple", "deque", "iter", "reversed"])  # keep their argument's elements apart
+CONTAINERS = frozenset(["list", "tuple", "set", "frozenset", "sorted", "reversed", "iter", "deque"])
+
+
+def change(ctx: Interpreter, value: Value, news: Value, exprs: Any, frame: Frame) -> None:
+    """Add data to an object, or to the variable that holds it when there is no object."""
+    if value.pts:
+        updates.add_element(ctx, value, news)
+    elif exprs:
+        ctx.ops.assign_fallback(ctx, exprs[0], news, frame)
+
+
+def mutate(
+    ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
+) -> None:
+    """Store arguments in the receiver."""
+    plain, named = arguments
+    if name in FLAGGING and not plain:
+        _flag(ctx, base, name, frame, call)
+    if name in catalog.DEVICE_WRITERS and all(map(is_device, base.pts)):
+        _transmit(ctx, base, plain, frame, call)
+        return
+    if name == "clear":
+        for obj in base.pts if len(base.pts) == 1 else ():
+            sizes.empty(ctx, obj)
+        shorten(ctx, base, frame, call)
+    elif name == "setdefault" and len(plain) > 1:
+        news = through_statement(ctx, plain[1], frame, call)
+        for obj in base.pts:
+            for key in plain[0].consts or (None,):
+                updates.weaken(ctx, obj, ANY if key is None else item_field(key), news)
+    elif name == "sort":
+        order = iterators.ordered_by(
+            ctx, heap.elements(ctx, base), Invocation(name, base, arguments, frame, call)
+        )
+        insert_elements(ctx, base, [order] if "key" in named else [], frame, call)
+    elif name == "update" and base.pts:
+        _update(ctx, base, plain, named, frame, call)
+    elif name in ("extend", "extendleft"):
+        for obj in base.pts if plain else ():
+            sizes.lengthen(ctx, obj, plain[0])
+        insert_elements(ctx, base, [heap.elements(ctx, v) for v in plain], frame, call)
+    else:
+        insert_elements(ctx, base, plain[-1:] if name == "insert" else plain, frame, call)
+
+
+def _flag(ctx: Interpreter, base: Value, name: str, frame: Frame, call: ir.Call) -> None:
+    """Set or clear an event of a library: whoever asks it learns what decided that."""
+    events = Value(base.deps, frozenset(o for o in base.pts if o.kind == "lib"))
+    updates.write_field(ctx, events, FLAG, through_statement(ctx, const(name == "set"), frame, call))
+
+
+def _transmit(ctx: Interpreter, base: Value, plain: list[Value], frame: Frame, call: ir.Call) -> None:
+    """Send something through a port, file or socket: it holds that, but does not give it back when read."""
+    news = through_statement(ctx, join_all(plain), frame, call) if plain else BOTTOM
+    for obj in base.pts if news is not BOTTOM else ():
+        updates.weaken(ctx, obj, SENT, news)
+
+
+def received(ctx: Interpreter, base: Value, arguments: Arguments) -> Nodes:
+    """Return what reading from a port, file or socket uses: not what was sent there."""
+    deps = base.deps | call_contexts.all_used(ctx, arguments)
+    for obj in base.pts:
+        deps |= heap.content(ctx, obj).deps
+    return deps
+
+
+def _update(
+    ctx: Interpreter, base: Value, plain: list[Value], named: Mapping[str, Value], frame: Frame, call: ir.Call
+) -> None:
+    for number, value in enumerate(plain):
+        news = through_statement(ctx, value, frame, call, number)
+        for obj in base.pts:
+            if obj.kind == "sequence":
+                updates.add_element(ctx, pointer(obj), heap.elements(ctx, news))
+            elif obj.kind == "mapping":
+                ctx.ops.entries(ctx, obj, news)
+            elif obj.kind in ("lib", "instance"):
+                sizes.absorb(ctx, obj, news)
+    for name, value in named.items():
+        news = through_statement(ctx, value, frame, call, name)
+        for obj in base.pts:
+            updates.weaken(ctx, obj, heap.attribute_of_item(obj, name), news)
+
+
+def insert_elements(ctx: Interpreter, base: Value, values: list[Value], frame: Frame, call: ir.Call) -> None:
+    """Store elements into a container, through the calling statement."""
+    news = join_all(values)
+    if news is BOTTOM:
+        return
+    function = call.function
+    news = through_statement(ctx, news, frame, call)
+    change(ctx, base, news, [function.base] if isinstance(function, ir.Attribute) else [], frame)
+
+
+def through_statement(
+    ctx: Interpreter, value: Value, frame: Frame, call: ir.Call, number: Hashable = 0
+) -> Value:
+    """Let a value that a call stores pass through the calling statement."""
+    if frame.statement is None:
+        return value
+    return ctx.carry(value, ctx.node(frame, ("stored", call.slot, number), "call"))
+
+
+def _read_get(ctx: Interpreter, it: Invocation) -> Value:
+    plain = it.arguments[0]
+    if not plain:
+        return elements_of_any(ctx, it.base)
+    result = expressions.read_item(ctx, it.base, plain[0])
+    return join(result, plain[1]) if len(plain) > 1 else result
+
+
+def _take_out(ctx: Interpreter, it: Invocation) -> Value:
+    """Return an element that is no longer there afterwards."""
+    result = _read_get(ctx, it)
+    shorten(ctx, it.base, it.frame, it.call)
+    return result
+
+
+def _removed(ctx: Interpreter, it: Invocation) -> Value:
+    shorten(ctx, it.base, it.frame, it.call)
+    return UNKNOWN
+
+
+def shorten(ctx: Interpreter, base: Value, frame: Frame, call: ir.Call) -> None:
+    """Let the length of containers depend on what decided to take something out."""
+    ours = [o for o in base.pts if o.kind in ("sequence", "mapping")]
+    kept = ctx.kept(ctx.node(frame, ("taken", call.slot), "call")) if ours else NONE
+    for obj in ours if kept else ():
+        sizes.decide_length(ctx, obj, kept)
+
+
+def _write_entry(ctx: Interpreter, it: Invocation) -> Value:
+    """Store an element as `x[key] = value` does."""
+    plain = it.arguments[0]
+    if len(plain) == 2:
+        updates.write_item(ctx, it.base, plain[0], through_statement(ctx, plain[1], it.frame, it.call))
+    return UNKNOWN
+
+
+def elements_of_any(ctx: Interpreter, base: Value) -> Value:
+    """Return any element, also of a mapping."""
+    return join_all(heap.arrive(ctx, heap.read_any(ctx, o), base.deps) for o in base.pts)
+
+
+def _read_values(ctx: Interpreter, it: Invocation) -> Value:
+    return iterators.listed(ctx, elements_of_any(ctx, it.base), sizes.length(ctx, it.base), it)
+
+
+def _read_keys(ctx: Interpreter, it: Invocation) -> Value:
+    return iterators.listed(ctx, heap.elements(ctx, it.base), sizes.length(ctx, it.base), it)
+
+
+def _read_pairs(ctx: Interpreter, it: Invocation) -> Value:
+    keys = join_all(heap.elements(ctx, Value(it.base.deps, frozenset([o]))) for o in it.base.pts)
+    return iterators.pairs(
+        ctx, [keys, elements_of_any(ctx, it.base)], it.frame, it.call, sizes.length(ctx, it.base)
+    )
+
+
+def new_container(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a new container with the elements of its argument."""
+    given = [v for v in it.arguments[0][:1] if v is not BOTTOM]
+    known = sizes.unpacked(ctx, given[0]) if given and it.name in IN_ORDER else None
+    known = known[::-1] if known is not None and it.name == "reversed" else known
+    element = iterators.ordered_by(ctx, join_all(heap.elements(ctx, v) for v in given), it)
+    length = sizes.length(ctx, given[0]) if given else NONE
+    obj = recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot))
+    if known is not None:
+        for number, value in enumerate(known):
+            ctx.store.put((obj, item_field(number)), value)
+    elif given:
+        updates.add_element(ctx, pointer(obj), element)
+    ctx.store.put((obj, LENGTH), Value(length))
+    return pointer(obj)
+
+
+def counted_elements(ctx: Interpreter, it: Invocation) -> Value:
+    """Return `len(x)`: data of what the length is made of, choice of what decided to add elements."""
+    deps = iterators.lengths(ctx, it.arguments[0])
+    ours = [o for value in it.arguments[0] for o in value.pts if sizes.sized(o)]
+    node = ctx.node(it.frame, ("length", it.call.slot), "call")
+    ctx.graph.choice(sizes.placed(ctx, frozenset(ours)), node)
+    if ctx.graph.control[node]:
+        ctx.graph.counts.setdefault(node, set()).update(made_of(ctx, Value(pts=frozenset(ours))))
+    return Value(deps | ctx.kept(node))
+
+
+def made_of(ctx: Interpreter, value: Value) -> Nodes:
+    """Return what elements are made from, of our own objects not what they hold."""
+    found = elements_of_any(ctx, value)
+    return ctx.use(Value(found.deps, frozenset(o for o in found.pts if o.kind != "instance")))
+
+
+def _read_length(ctx: Interpreter, it: Invocation) -> Value:
+    """Return what a queue says about how much is in it."""
+    return counted_elements(ctx, replace(it, arguments=([it.base], {})))
+
+
+def new_queue(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a new queue."""
+    return pointer(recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot)))
+
+
+def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
+    """Return one of the elements of the arguments, which data may choose."""
+    plain = it.arguments[0]
+    values = [heap.elements(ctx, plain[0])] if len(plain) == 1 else plain
+    result = iterators.ordered_by(ctx, join_all(values), it)
+    return Value(result.deps | call_contexts.all_used(ctx, it.arguments), result.pts)
+
+
+def is_device(obj: Obj) -> bool:
+    """Tell whether reading an object of a library gives other things than what was written to it."""
+    return obj.kind == "lib" and not obj.name.startswith("io.")
+
+
+READERS: Mapping[str, Callable[..., Value]] = {
+    "get": _read_get,
+    "__getitem__": _read_get,
+    "__setitem__": _write_entry,
+    **dict.fromkeys(("pop", "popleft", "get_nowait", "popitem"), _take_out),
+    **dict.fromkeys(("remove", "discard"), _removed),
+    "next": _read_get,
+    **dict.fromkeys(("qsize", "empty", "full"), _read_length),
+    "values": _read_values,
+    "itervalues": _read_values,
+    "keys": _read_keys,
+    "iterkeys": _read_keys,
+    "items": _read_pairs,
+    "iteritems": _read_pairs,
+}

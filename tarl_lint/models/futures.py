@@ -1,0 +1,92 @@
+"""Futures and executors: a result that somebody else sets or computes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Final
+
+from tarl_lint.interpret import calls
+from tarl_lint.interpret.call_contexts import CALLABLE
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.memory import heap, recency, updates
+from tarl_lint.memory.heap import item_field
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value, join, pointer
+from tarl_lint.models import containers
+from tarl_lint.models.containers import READERS as CONTAINER_READERS
+from tarl_lint.models.records import RECORDS
+
+RESULT: Final = "<result>"  # the field of a future that holds its result
+
+
+def _set_result(ctx: Interpreter, it: Invocation) -> Value:
+    plain, named = it.arguments
+    value = plain[0] if plain else named.get("result", UNKNOWN)
+    updates.write_field(ctx, it.base, RESULT, containers.through_statement(ctx, value, it.frame, it.call))
+    return UNKNOWN
+
+
+def _result(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a future's result; of one that comes from a library, whatever went into it."""
+    result = BOTTOM
+    for obj in it.base.pts:
+        stored = ctx.store.get((obj, RESULT))
+        if stored is not None:
+            result = join(result, heap.arrive(ctx, stored, it.base.deps))
+        if stored is None or heap.content(ctx, obj).deps:
+            result = join(result, Value(ctx.use(Value(it.base.deps, frozenset([obj])))))
+    return result
+
+
+def _is_done(ctx: Interpreter, it: Invocation) -> Value:
+    """Return whether a future has a result: what decided to set it, whatever it is."""
+    node = ctx.node(it.frame, ("done", it.call.slot), "call")
+    deps = it.base.deps
+    for obj in it.base.pts:
+        stored = ctx.store.get((obj, RESULT))
+        if stored is None:
+            deps |= ctx.use(Value(it.base.deps, frozenset([obj])))
+        else:
+            ctx.graph.choice(stored.deps, node)
+    return Value(deps | ctx.kept(node))
+
+
+def gathered_results(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the results of several coroutines, one by one."""
+    obj = recency.allocate(ctx, "sequence", it.frame, ("gathered", it.call.slot))
+    for number, value in enumerate(it.arguments[0]):
+        ctx.store.put((obj, item_field(number)), value)
+    rest = it.arguments[1].get("*")
+    if rest is not None:
+        updates.add_element(ctx, pointer(obj), rest)
+    return pointer(obj)
+
+
+def awaited_result(ctx: Interpreter, it: Invocation) -> Value:
+    """Return what a coroutine gives that is run, started or waited for."""
+    ctx.ops.wait(ctx, it.frame)
+    return it.arguments[0][0] if it.arguments[0] else UNKNOWN
+
+
+def _submit(ctx: Interpreter, it: Invocation) -> Value:
+    """Call the function that an executor is given; its result is the future's."""
+    plain, named = it.arguments
+    skipped = 1 if it.name == "run_in_executor" else 0
+    given = plain[skipped:]
+    if not given or not any(o.kind in CALLABLE for o in given[0].pts):
+        return ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    result = calls.call_value(ctx, given[0], (given[1:], named), it.frame, it.call)
+    obj = recency.allocate(ctx, "lib", it.frame, ("future", it.call.slot))
+    ctx.store.put((obj, RESULT), result)
+    return pointer(obj)
+
+
+READERS: Final[Mapping[str, Callable[..., Value]]] = {
+    **CONTAINER_READERS,
+    **RECORDS,
+    "result": _result,
+    "submit": _submit,
+    "run_in_executor": _submit,
+    "done": _is_done,
+    "set_result": _set_result,
+}

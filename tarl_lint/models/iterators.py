@@ -1,0 +1,148 @@
+"""What goes over elements: zip, enumerate, map and filter, and the sequences that they give."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import replace
+from functools import partial
+
+from tarl_lint.interpret import calls, operators
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, recency, updates
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.heap import LENGTH, item_field
+from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, const, join_all, pointer
+from tarl_lint.models import sizes
+
+MAX_ROWS = 8  # elements of zip, enumerate and map that are told apart
+
+
+def listed(ctx: Interpreter, element: Value, length: Nodes, it: Invocation) -> Value:
+    """Return a new sequence of elements that are not told apart."""
+    obj = recency.allocate(ctx, "sequence", it.frame, ("values", it.call.slot))
+    updates.add_element(ctx, pointer(obj), element)
+    ctx.store.put((obj, LENGTH), Value(length))
+    return pointer(obj)
+
+
+def pairs(ctx: Interpreter, parts: list[Value], frame: Frame, call: ir.Call, length: Nodes) -> Value:
+    """Return a sequence of tuples."""
+    pair = recency.allocate(ctx, "sequence", frame, ("pair", call.slot))
+    for number, part in enumerate(parts):
+        ctx.store.put((pair, item_field(number)), part)
+    obj = recency.allocate(ctx, "sequence", frame, ("pairs", call.slot))
+    updates.add_element(ctx, pointer(obj), pointer(pair))
+    ctx.store.put((obj, LENGTH), Value(length))
+    return pointer(obj)
+
+
+def zipped_elements(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a sequence of tuples of what several sequences give."""
+    if it.name == "zip" and "*" in it.arguments[1] and not it.arguments[0]:
+        return _transposed(ctx, it.arguments[1]["*"], it)
+    known = [sizes.unpacked(ctx, v) for v in it.arguments[0]]
+    if it.name == "enumerate" and known and known[0] is not None:
+        known.insert(0, [const(n) for n in range(len(known[0]))] if len(known) == 1 else None)
+    rows = list(zip(*(k for k in known if k is not None), strict=False)) if None not in known else []
+    if rows and len(rows) <= MAX_ROWS:
+        return _rows(ctx, rows, it)
+    parts = [heap.elements(ctx, v) for v in it.arguments[0]]
+    length = lengths(ctx, it.arguments[0])
+    return pairs(ctx, [UNKNOWN, *parts] if it.name == "enumerate" else parts, it.frame, it.call, length)
+
+
+def lengths(ctx: Interpreter, values: Sequence[Value]) -> Nodes:
+    """Return the nodes that the lengths of several values are data of."""
+    return NONE.union(*map(partial(sizes.length, ctx), values))
+
+
+def _transposed(ctx: Interpreter, row: Value, it: Invocation) -> Value:
+    """Return what `zip(*rows)` gives: a sequence for each place in a row."""
+    places = calls.one_by_one(ctx, row) or [heap.elements(ctx, row)]
+    obj = recency.allocate(ctx, "sequence", it.frame, ("pairs", it.call.slot))
+    for number, place in enumerate(places):
+        column = recency.allocate(ctx, "sequence", it.frame, ("column", it.call.slot, number))
+        updates.add_element(ctx, pointer(column), place)
+        if len(places) > 1:
+            ctx.store.put((obj, item_field(number)), pointer(column))
+        else:
+            updates.add_element(ctx, pointer(obj), pointer(column))
+    return pointer(obj)
+
+
+def _rows(ctx: Interpreter, rows: Sequence[Sequence[Value]], it: Invocation) -> Value:
+    """Return a sequence of tuples whose elements are told apart."""
+    obj = recency.allocate(ctx, "sequence", it.frame, ("pairs", it.call.slot))
+    for number, row in enumerate(rows):
+        pair = recency.allocate(ctx, "sequence", it.frame, ("pair", it.call.slot, number))
+        for place, part in enumerate(row):
+            ctx.store.put((pair, item_field(place)), part)
+        ctx.store.put((obj, item_field(number)), pointer(pair))
+    return pointer(obj)
+
+
+def _each(ctx: Interpreter, function: Value, rows: Sequence[Sequence[Value]], it: Invocation) -> Value:
+    """Return what a function gives for known elements, one by one."""
+    obj = recency.allocate(ctx, "sequence", it.frame, ("values", it.call.slot))
+    for number, row in enumerate(rows):
+        call = replace(it.call, slot=-1000 * (abs(it.call.slot) + 1) - number)
+        said = calls.call_value(ctx, function, (list(row), {}), it.frame, call)
+        ctx.store.put((obj, item_field(number)), said)
+    return pointer(obj)
+
+
+def mapped_elements(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a sequence of what a function gives for each element."""
+    function, *rest = it.arguments[0] or [UNKNOWN]
+    known = [sizes.unpacked(ctx, v) for v in rest]
+    rows = list(zip(*(k for k in known if k is not None), strict=False)) if None not in known else []
+    if it.name == "map" and rows and len(rows) <= MAX_ROWS:
+        return _each(ctx, function, rows, it)
+    parts = [heap.elements(ctx, v) for v in rest]
+    length = lengths(ctx, rest)
+    if it.name == "map":
+        return listed(ctx, calls.call_value(ctx, function, (parts, {}), it.frame, it.call), length, it)
+    kept = join_all(parts)
+    asks = kept if function.consts else calls.call_value(ctx, function, (parts, {}), it.frame, it.call)
+    decided = gate(
+        ctx, operators.truth(ctx, asks, it.frame, ("filter", it.call.slot)), it.frame, it.call.slot
+    )
+    return listed(ctx, Value(kept.deps | decided, kept.pts, kept.consts), length | decided, it)
+
+
+def gate(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:
+    """Return the node of a decision which elements a new container gets, none where no data decides."""
+    if not decides:
+        return NONE
+    node = ctx.node(frame, ("filter", slot), "condition")
+    ctx.graph.depend(node, decides)
+    return frozenset([node])
+
+
+def ordered_by(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
+    """Return elements as chosen or ordered by `key=`: what the function says of them decides which is where."""
+    key = it.arguments[1].get("key")
+    if key is None or key.consts or not elements.deps | elements.pts | key.pts:
+        return elements
+    said = calls.call_value(ctx, key, ([elements], {}), it.frame, it.call)
+    return Value(elements.deps | ctx.use(said), elements.pts, elements.consts)
+
+
+def asked(ctx: Interpreter, it: Invocation) -> Value:
+    """Return what `bool(x)`, `any(xs)` and `all(xs)` say: whether something is there is no data of it."""
+    if not it.arguments[0]:
+        return UNKNOWN
+    value = it.arguments[0][0]
+    known, constant = value.constant()
+    if it.name == "bool" and known:
+        return Value(value.deps, consts=frozenset([bool(constant)]))
+    parts, deps = [value], NONE
+    if it.name != "bool":
+        each = sizes.unpacked(ctx, value)
+        parts = each if each is not None else [heap.elements(ctx, value)]
+        deps = value.deps if each is not None else sizes.length(ctx, value)
+    for number, part in enumerate(parts):
+        deps |= operators.truth(ctx, part, it.frame, (it.name, it.call.slot, number))
+    return Value(deps)

@@ -1,0 +1,362 @@
+"""Calls into libraries: arguments pass to results unless something better is known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from tarl_lint import catalog
+from tarl_lint.catalog import Fact
+from tarl_lint.interpret import call_contexts, dunder_methods
+from tarl_lint.interpret.dunder_methods import FUNCTIONS
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Arguments, Invocation
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, recency, userdata
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.heap import ANY
+from tarl_lint.memory.userdata import MACHINE_FIELD
+from tarl_lint.memory.values import (
+    BOTTOM,
+    BY_CLASS,
+    NONE,
+    UNKNOWN,
+    Nodes,
+    Obj,
+    Value,
+    inherited_from,
+    lineage,
+    pointer,
+)
+from tarl_lint.method_effects import changes, fails, keeps_callables
+from tarl_lint.models import (
+    callables,
+    containers,
+    futures,
+    iterators,
+    qt_signals,
+    records,
+    reflection,
+    smach,
+    strings,
+)
+from tarl_lint.models.containers import CONTAINERS, QUEUES, is_device
+from tarl_lint.models.futures import READERS
+from tarl_lint.models.ros.endpoints import Publisher
+from tarl_lint.models.smach import LATER
+from tarl_lint.models.strings import TEXT_METHODS
+from tarl_lint.wrapping import facts
+
+SIGNALLING = frozenset(["connect", "emit"])
+
+
+def call_library(
+    ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call
+) -> Value:
+    """Call a function or class of a library."""
+    if qualified in ctx.config.sanitizers:
+        return UNKNOWN
+    if qualified in catalog.WAITS:
+        ctx.ops.wait(ctx, frame)
+    if qualified in ctx.config.sinks:
+        return ctx.ops.send(
+            ctx, Invocation(qualified, BOTTOM, arguments, frame, call), Publisher(api=qualified)
+        )
+    fact = _configured(ctx, qualified) or catalog.fact(qualified)
+    if fact is not None:
+        return ctx.ops.ros_call(ctx, Invocation(qualified, BOTTOM, arguments, frame, call, fact))
+    name = qualified.removeprefix("builtins.").removeprefix("collections.")
+    if name in FUNCTIONS and arguments[0]:
+        said = dunder_methods.special(ctx, arguments[0][0], f"__{name}__", arguments[0][1:], frame, call.pos)
+        if said is not None:
+            return said
+    particular = BUILTIN.get(name)
+    if particular is not None:
+        return particular(ctx, Invocation(name, BOTTOM, arguments, frame, call))
+    return generic(ctx, qualified, arguments, frame, call)
+
+
+def _configured(ctx: Interpreter, qualified: str) -> Fact | None:
+    """Return what the settings say of a function: a source subscribes when it is given a callback."""
+    if ctx.config.wrappers and (fact := facts(ctx.config.wrappers).get(qualified)):
+        return fact
+    if qualified not in ctx.config.sources:
+        return None
+    return Fact("configured", qualified, (0, "topic"), (1, "type"), (-1, "callback"))
+
+
+def named_by_settings(ctx: Interpreter, target: Obj) -> str:
+    """Return the qualified name of a function or method of ours that the settings speak of, else ""."""
+    if not ctx.config.named:
+        return ""
+    closure = target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
+    if closure.kind != "closure" or not isinstance(closure.info, tuple):
+        return ""
+    function, _, program, _ = closure.info
+    qualified = f"{program.name}.{function.qualname}"
+    return qualified if qualified in ctx.config.named else ""
+
+
+def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
+    """Pass the arguments on to the result; write the argument that the catalog says is written."""
+    name = qualified.rpartition(".")[2]
+    if (raises := fails(name)) is not None:
+        ctx.ops.may_fail(ctx, call_contexts.all_used(ctx, arguments), raises, frame)
+    shaped = name in catalog.SHAPED and qualified not in ctx.config.named
+    deps = call_contexts.all_used(ctx, (arguments[0][1:], arguments[1]) if shaped else arguments)
+    held = callables.answering(ctx, arguments) if qualified not in catalog.KEEPERS else []
+    if qualified not in catalog.KEEPERS:
+        callables.call_back(ctx, arguments, frame, call)
+    if held and not keeps_callables(name):
+        deps |= callables.returned(ctx, held, arguments, BOTTOM, frame, call)
+    written = catalog.written(qualified)
+    if written is not None and written < len(arguments[0]):
+        news = containers.through_statement(ctx, Value(deps), frame, call)
+        containers.change(ctx, arguments[0][written], news, call.arguments[written:], frame)
+    for keyword, expr in call.keywords:
+        if keyword in catalog.WRITTEN_KEYWORDS and keyword in arguments[1]:
+            news = containers.through_statement(ctx, Value(deps), frame, call, keyword)
+            containers.change(ctx, arguments[1][keyword], news, [expr], frame)
+    if catalog.scalar(qualified):
+        same = qualified == "builtins.float" and len(arguments[0]) == 1
+        return Value(deps, arguments[0][0].pts if same else frozenset())
+    made = new_object(ctx, arguments, deps, frame, call, fields=name[:1].isupper())
+    callables.hold(ctx, made.pts, held)
+    if qualified.startswith("io.") or (ctx.config.named and name[:1].isupper()):
+        for obj in made.pts:
+            obj.name = qualified  # settings may speak of its methods; from io.* comes what was written
+    return made
+
+
+def new_object(
+    ctx: Interpreter, arguments: Arguments, deps: frozenset[int], frame: Frame, call: ir.Call, *, fields: bool
+) -> Value:
+    """Return a new object of a library; keywords of a class are its fields."""
+    obj = recency.allocate(ctx, "lib", frame, ("made", call.slot))
+    where = pointer(obj)
+    plain, named = arguments
+    if fields:
+        obj.info = BY_CLASS
+        rest = NONE
+        for value in plain:
+            rest |= ctx.use(value)
+        for name, value in named.items():
+            if name in ("*", "**"):
+                rest |= ctx.use(value)
+            else:
+                ctx.store.put((obj, name), value)
+        deps = rest
+    if deps:
+        ctx.store.put((obj, ANY), Value(deps))
+    return where
+
+
+# --- methods ------------------------------------------------------------------------------------------
+
+
+def call_method(
+    ctx: Interpreter,
+    base: Value,
+    target: Obj | None,
+    name: str,
+    arguments: Arguments,
+    frame: Frame,
+    call: ir.Call,
+) -> Value:
+    """Call a method of an object that is not a class of ours."""
+    kind = target.kind if target is not None else ""
+    if target is not None and kind == "lib" and f"{target.name}.{name}" in ctx.config.named:
+        return ctx.ops.call_library(ctx, f"{target.name}.{name}", arguments, frame, call)
+    if name == "__new__" and kind in ("super", "class"):
+        return _blank_object(ctx, Invocation(name, base, arguments, frame, call))
+    if target is not None and isinstance(target.info, Publisher) and name == "publish":
+        return ctx.ops.send(ctx, Invocation(name, base, arguments, frame, call), target.info)
+    if target is not None and kind in ("server", "goal"):
+        return ctx.ops.serve(ctx, target, Invocation(name, base, arguments, frame, call))
+    if name == "registerCallback" and kind in ("filter", "synchronizer"):
+        return ctx.ops.register_filter(ctx, target, Invocation(name, base, arguments, frame, call))
+    if kind == "parameter":
+        return base if name == "get_parameter_value" else UNKNOWN
+    fact = catalog.METHODS.get(name)
+    if fact is not None and kind not in ("sequence", "mapping"):
+        return ctx.ops.ros_call(ctx, Invocation(name, base, arguments, frame, call, fact))
+    if name in catalog.LOGGING or name in catalog.CLOCKS:
+        return UNKNOWN
+    if name in catalog.WAITING_METHODS and base.consts is None:
+        ctx.ops.wait(ctx, frame)
+    if name in catalog.MUTATORS and base.consts is None:
+        containers.mutate(ctx, base, name, arguments, frame, call)
+        given_back = name == "setdefault" or (name == "send" and kind == "sequence")
+        return heap.read_any(ctx, target) if given_back and target is not None else UNKNOWN
+    if name in READERS and base.pts:
+        return READERS[name](ctx, Invocation(name, base, arguments, frame, call))
+    return _unknown_method(ctx, base, name, arguments, frame, call)
+
+
+def _unknown_method(
+    ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
+) -> Value:
+    if name == "join" and not base.pts:
+        arguments = strings.keys_joined(ctx, arguments, frame, call)
+    callables.call_back(ctx, arguments, frame, call)
+    if name in SIGNALLING:
+        qt_signals.signal(ctx, base, name, arguments, frame, call)
+    given = _given(ctx, base, name, arguments, frame, call)
+    if (raises := fails(name)) is not None:
+        ctx.ops.may_fail(ctx, ctx.use(base) | call_contexts.all_used(ctx, arguments), raises, frame)
+    learnt = call_contexts.all_used(ctx, arguments) | given
+    if learnt or any(o.kind in LATER for v in (*arguments[0], *arguments[1].values()) for o in v.pts):
+        ctx.ended |= inherited_from(base)
+    if learnt and base.pts and all(map(changeable, base.pts)) and changes(name, dropped=dropped(frame, call)):
+        containers.insert_elements(ctx, base, [Value(learnt)], frame, call)
+    written = catalog.METHODS_WRITING.get(name)
+    if written is not None and written < len(arguments[0]):
+        news = containers.through_statement(
+            ctx, Value(ctx.use(base) | call_contexts.all_used(ctx, arguments)), frame, call
+        )
+        containers.change(ctx, arguments[0][written], news, call.arguments[written:], frame)
+    if name in TEXT_METHODS and not base.pts and base.consts:
+        return Value(
+            ctx.use(base) | call_contexts.all_used(ctx, arguments),
+            consts=strings.text_of(ctx, base, name, arguments),
+        )
+    if name in catalog.DEVICE_READERS and base.pts and all(map(is_device, base.pts)):
+        deps = containers.received(ctx, base, arguments)
+    else:
+        deps = ctx.use(base) | call_contexts.all_used(ctx, arguments) | given
+    if not deps and not base.pts:
+        return UNKNOWN
+    return new_object(ctx, arguments, deps, frame, call, fields=False)
+
+
+def _given(
+    ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
+) -> Nodes:
+    """Return the data of what callables say that an object of a library has: it may call them when it is called."""
+    new = callables.answering(ctx, arguments) if name not in SIGNALLING else []
+    if keeps_callables(name):
+        callables.hold(ctx, base.pts, new)
+        return NONE
+    return callables.returned(ctx, [*callables.held_by(ctx, base), *new], arguments, base, frame, call)
+
+
+# --- builtins -----------------------------------------------------------------------------------------
+
+
+def _blank_object(ctx: Interpreter, it: Invocation) -> Value:
+    """Return what `object.__new__(cls)` gives."""
+    classes = [o for v in it.arguments[0][:1] for o in v.pts if o.kind == "class"]
+    return Value(pts=frozenset(call_contexts.blank_instance(ctx, c, it.frame, it.call) for c in classes))
+
+
+def _weak(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a weak reference: called, it gives what it refers to."""
+    obj = recency.allocate(ctx, "weak", it.frame, ("made", it.call.slot))
+    obj.info = it.arguments[0][0] if it.arguments[0] else UNKNOWN
+    return pointer(obj)
+
+
+def _same(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
+    """Return the first argument itself."""
+    return it.arguments[0][0] if it.arguments[0] else UNKNOWN
+
+
+def type_of(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
+    """Return the class of objects of ours; what a type is, is not data."""
+    classes = [o.info for v in it.arguments[0][:1] for o in v.pts if o.kind == "instance"]
+    found = frozenset(c for c in classes if isinstance(c, Obj))
+    return Value(pts=found) if found else UNKNOWN
+
+
+def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
+    """Return what a question about a type gives, which is not data either."""
+    return UNKNOWN
+
+
+def parent(ctx: Interpreter, it: Invocation) -> Value:
+    """Return what `super()` gives: the object, seen from its class on."""
+    receiver = it.frame
+    while receiver.owner is None and receiver.outer is not None:
+        receiver = receiver.outer
+    parameters = receiver.function.parameters
+    this = ctx.store.get((receiver, parameters[0].name)) if parameters else None
+    if this is None or receiver.owner is None:
+        return UNKNOWN
+    found = []
+    for obj in this.pts:
+        view = recency.intern(ctx, "super", (receiver.owner.key, obj))
+        view.info = (receiver.owner, obj)
+        found.append(view)
+    return Value(pts=frozenset(found))
+
+
+def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
+    """Return a field to which nothing was stored, also through `super()` and of parameters."""
+    if obj.kind == "super" and isinstance(obj.info, tuple):
+        owner, this = obj.info
+        cls = this.info if this.kind == "instance" else this
+        order = lineage(cls) if isinstance(cls, Obj) else []
+        after = order[order.index(owner) + 1 :] if owner in order else []
+        for base in after:
+            value = ctx.store.get((base, name))
+            if value is not None:
+                return heap.bind(ctx, value, this, base)
+        return BOTTOM
+    if obj.kind == "lib" and name == MACHINE_FIELD:
+        return userdata.userdata(ctx)
+    if obj.kind == "parameter":
+        return ctx.store.get((obj, "value")) or UNKNOWN if name in catalog.PARAMETER_VALUES else UNKNOWN
+    return heap.default(ctx, obj, name)
+
+
+def changeable(obj: Obj) -> bool:
+    """Tell whether an object of a library may be changed by its methods: a node's own methods are ROS's."""
+    return obj.kind == "lib" and not (isinstance(obj.key, tuple) and obj.key[:1] == ("inherited",))
+
+
+def dropped(frame: Frame, call: ir.Call) -> bool:
+    """Tell whether a call's result is not used: then it is there for what it does."""
+    return isinstance(frame.statement, ir.Evaluate) and frame.statement.value is call
+
+
+BUILTIN: Mapping[str, Callable[..., Value]] = {
+    **dict.fromkeys(CONTAINERS, containers.new_container),
+    **dict.fromkeys(QUEUES, containers.new_queue),
+    "dict": records.new_mapping,
+    "OrderedDict": records.new_mapping,
+    "defaultdict": records.new_mapping,
+    "Counter": records.new_mapping,
+    "dict.fromkeys": records.from_keys,
+    "namedtuple": records.named_tuple_class,
+    "dataclasses.field": records.field_default,
+    "dataclasses.replace": records.replaced_record,
+    "copy.replace": records.replaced_record,
+    **dict.fromkeys(("dataclasses.asdict", "attr.asdict", "attrs.asdict"), records.as_mapping),
+    **dict.fromkeys(("dataclasses.astuple", "attr.astuple", "attrs.astuple"), records.as_sequence),
+    **dict.fromkeys(("attr.evolve", "attrs.evolve"), records.replaced_record),
+    "object.__new__": _blank_object,
+    **dict.fromkeys(("weakref.ref", "weakref.WeakMethod"), _weak),
+    **dict.fromkeys(("weakref.proxy", "vars", "typing.cast"), _same),
+    "type": type_of,
+    **dict.fromkeys(("isinstance", "issubclass", "hasattr", "callable"), of_type),
+    "len": containers.counted_elements,
+    **dict.fromkeys(("bool", "any", "all"), iterators.asked),
+    "str": strings.as_text,
+    **dict.fromkeys(catalog.SAME_TEXT, strings.same_text),
+    **dict.fromkeys(catalog.PATH_JOINS, strings.joined_path),
+    "enumerate": iterators.zipped_elements,
+    "zip": iterators.zipped_elements,
+    "map": iterators.mapped_elements,
+    "filter": iterators.mapped_elements,
+    "min": containers.chosen_element,
+    "max": containers.chosen_element,
+    "next": containers.chosen_element,
+    "asyncio.gather": futures.gathered_results,
+    **dict.fromkeys(catalog.ADDS_STATE, smach.add_state),
+    **dict.fromkeys(catalog.STATE_BY_CALLBACKS, smach.state_by_callbacks),
+    **dict.fromkeys(catalog.AWAITING, futures.awaited_result),
+    "getattr": reflection.get_attribute,
+    **dict.fromkeys(("operator.attrgetter", "operator.itemgetter"), reflection.getter),
+    **dict.fromkeys(("operator.attrgetter.<made>", "operator.itemgetter.<made>"), reflection.get_named),
+    "setattr": reflection.set_attribute,
+    "super": parent,
+}

@@ -1,0 +1,321 @@
+"""Objects with named fields, copies of objects, and mappings that make what they lack."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator
+from typing import Final
+
+from tarl_lint.interpret import call_contexts, calls, expressions
+from tarl_lint.interpret.call_contexts import CALLABLE
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Arguments, Invocation
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, reachable_data, recency, updates
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.heap import ANY, KEYS, item_field
+from tarl_lint.memory.values import (
+    BOTTOM,
+    BY_CLASS,
+    UNKNOWN,
+    ClassInfo,
+    Obj,
+    Value,
+    const,
+    join,
+    lineage,
+    pointer,
+)
+from tarl_lint.models import sizes
+
+MAX_COPIED: Final = 3  # objects inside objects that a deep copy follows
+INNER: Final = frozenset(["instance", "sequence", "mapping", "lib"])
+MADE_BY: Final = {
+    **dict.fromkeys(("list", "set", "deque", "tuple", "frozenset"), "sequence"),
+    **dict.fromkeys(("dict", "OrderedDict", "Counter"), "mapping"),
+}
+PLAIN: Final = frozenset(["abc.ABC", "typing.Generic", "typing.Protocol"])  # bases that make no constructor
+
+
+# --- fields -------------------------------------------------------------------------------------------
+
+
+def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
+    """Store the arguments as a dataclass or named tuple does."""
+    plain, named = call_contexts.pass_arguments(ctx, arguments, frame, call)
+    given = dict(named)
+    rest = given.pop("*", None)
+    mapping = given.pop("**", None)
+    numbered, arriving = _named_tuple(cls), iter(plain)
+    for number, (owner, name) in enumerate(_fields(cls)):
+        options = _options(ctx, owner, name)
+        inside = not _says(options, "init", False)
+        value = given.pop(name, None)
+        if value is None and inside and not _says(options, "kw_only", True):
+            value = next(arriving, None)
+        if value is None and mapping is not None and inside:
+            value = expressions.read_item(ctx, mapping, const(name))
+        if value is None or value is BOTTOM:
+            passed = rest if inside else None
+            value = passed if passed is not None else _preset(ctx, owner, name, frame, call, number)
+        if value is None:
+            continue
+        ctx.store.put((obj, name), value)
+        if numbered:
+            ctx.store.put((obj, item_field(number)), value)
+    for name, value in given.items():
+        ctx.store.put((obj, name), value)
+    if plain and isinstance(cls.info, ClassInfo) and cls.info.external and not numbered:
+        updates.add_element(ctx, pointer(obj), Value(call_contexts.all_used(ctx, (plain, {}))))
+    _after(ctx, obj, cls, frame, call)
+
+
+def _after(ctx: Interpreter, obj: Obj, cls: Obj, frame: Frame, call: ir.Call) -> None:
+    for owner in lineage(cls):
+        after = ctx.store.get((owner, "__post_init__"))
+        if after is not None:
+            calls.call_value(ctx, heap.bind(ctx, after, obj, owner), ([], {}), frame, call)
+            return
+
+
+def _preset(
+    ctx: Interpreter, owner: Obj, name: str, frame: Frame, call: ir.Call, number: int
+) -> Value | None:
+    """Return a field's default: of `field(default_factory=f)` what f makes."""
+    options = _options(ctx, owner, name)
+    if options is None:
+        return ctx.store.get((owner, name))
+    if "default_factory" in options:
+        made = ir.Call(call.function, (), (), call.pos, -1000 * abs(call.slot) - number)
+        return calls.call_value(ctx, options["default_factory"], ([], {}), frame, made)
+    return options.get("default", UNKNOWN)
+
+
+def _options(ctx: Interpreter, owner: Obj, name: str) -> dict[str, Value] | None:
+    """Return what `field(...)` says of a field of a dataclass, None where that was not called."""
+    preset = ctx.store.get((owner, name))
+    spec = next((o for o in preset.pts if o.kind == "field"), None) if preset is not None else None
+    return spec.info if spec is not None and isinstance(spec.info, dict) else None
+
+
+def field_default(ctx: Interpreter, it: Invocation) -> Value:
+    """Return what `field(...)` says of a field."""
+    obj = recency.intern(ctx, "field", (it.frame.id, it.statement, it.call.slot))
+    obj.info = it.arguments[1]
+    return pointer(obj)
+
+
+def named_tuple_class(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the class that `namedtuple(name, fields)` makes."""
+    plain = it.arguments[0]
+    if len(plain) < 2:
+        return UNKNOWN
+    names: list[str] = []
+    for text in plain[1].texts():
+        names += text.replace(",", " ").split()
+    for element in sizes.unpacked(ctx, plain[1]) or []:
+        names += element.texts()
+    cls = recency.intern(
+        ctx, "class", (it.frame.id, it.statement, it.call.slot), "".join(plain[0].texts()[:1])
+    )
+    cls.info = ClassInfo(cls.name, cls.name, named=True, module=it.frame.program.name)
+    cls.info.fields = tuple(names)
+    return pointer(cls)
+
+
+# --- copies -------------------------------------------------------------------------------------------
+
+
+def replaced_record(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a copy with some fields other than before."""
+    plain, named = it.arguments
+    base = plain[0] if plain and it.base is BOTTOM else it.base
+    made = copy_of(ctx, base, it.frame, it.call.slot)
+    for obj in made.pts:
+        cls = obj.info if obj.kind == "instance" else None
+        names = [n for _, n in _fields(cls)] if isinstance(cls, Obj) else []
+        for name, value in named.items():
+            ctx.store.put((obj, name), value)
+            if name in names and _named_tuple(cls):
+                ctx.store.put((obj, item_field(names.index(name))), value)
+    return made
+
+
+def as_mapping(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the mapping of field names to fields that `asdict(x)` or a named tuple's `_asdict()` makes."""
+    return _listing(ctx, it, "mapping")
+
+
+def as_sequence(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the tuple of fields that `astuple(x)` makes."""
+    return _listing(ctx, it, "sequence")
+
+
+def _listing(ctx: Interpreter, it: Invocation, kind: str) -> Value:
+    given = it.base if it.base is not BOTTOM else it.arguments[0][0] if it.arguments[0] else UNKNOWN
+    ours = {o: o.info for o in given.pts if o.kind == "instance" and isinstance(o.info, Obj)}
+    if not ours or len(ours) < len(given.pts):
+        return Value(ctx.use(given))
+    made = recency.allocate(ctx, kind, it.frame, ("display", it.call.slot))
+    for obj, cls in ours.items():
+        for number, (_, name) in enumerate(_fields(cls)):
+            field = item_field(name if kind == "mapping" else number)
+            updates.weaken(ctx, made, field, heap.arrive(ctx, heap.read_field(ctx, obj, name), given.deps))
+    return pointer(made)
+
+
+def _read_copy(ctx: Interpreter, it: Invocation) -> Value:
+    return copy_of(ctx, it.base, it.frame, it.call.slot)
+
+
+def copy_of(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Value:
+    """Return a new object with the same fields."""
+    if not value.pts or any(o.kind in CALLABLE for o in value.pts):
+        return value
+    obj = _blank(ctx, value, frame, ("copy", slot))
+    content = BOTTOM
+    for source in value.pts:
+        recency.copy_fields(ctx, source, obj)
+        content = join(content, heap.content(ctx, source))
+    if content is not BOTTOM:
+        ctx.store.put((obj, ANY), content)
+    return Value(value.deps, frozenset([obj]))
+
+
+def _blank(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Obj:
+    """Return a new object of the kind that all the copied ones are of."""
+    classes = {o.info for o in value.pts if o.kind == "instance"}
+    if len(classes) == 1 and all(o.kind == "instance" for o in value.pts):
+        obj = recency.allocate(ctx, "instance", frame, slot)
+        obj.info = classes.pop()
+        return obj
+    kinds = {o.kind for o in value.pts} & {"sequence", "mapping"}
+    obj = recency.allocate(ctx, kinds.pop() if kinds else "lib", frame, slot)
+    if all(o.info is BY_CLASS for o in value.pts):
+        obj.info = BY_CLASS
+    definitions = {reachable_data.defined(ctx, o) for o in value.pts}
+    obj.defined = definitions.pop() if len(definitions) == 1 else ""
+    return obj
+
+
+def deep_copy(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable, depth: int = 0) -> Value:
+    """Return a copy whose inner objects are copies too."""
+    made = copy_of(ctx, value, frame, slot)
+    for obj in made.pts - value.pts if depth < MAX_COPIED else ():
+        for name in list(obj.fields):
+            inner = ctx.store.get((obj, name))
+            if inner is not None and any(o.kind in INNER for o in inner.pts):
+                ctx.store.put((obj, name), deep_copy(ctx, inner, frame, (slot, name), depth + 1))
+    return made
+
+
+# --- mappings -----------------------------------------------------------------------------------------
+
+
+def new_mapping(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a new mapping with what its arguments hold."""
+    plain, named = it.arguments
+    factory = plain[0] if it.name == "defaultdict" and plain else None
+    given = plain[1:] if it.name == "defaultdict" else plain
+    obj = recency.allocate(ctx, "mapping", it.frame, ("display", it.call.slot))
+    for value in given:
+        if it.name == "Counter":
+            updates.weaken(ctx, obj, KEYS, Value(ctx.use(value)))
+            updates.add_element(ctx, pointer(obj), Value(ctx.use(value)))
+        elif value.pts:
+            entries(ctx, obj, value)
+    for key, value in named.items():
+        ctx.store.put((obj, item_field(key)), value)
+    if factory is not None:
+        obj.info = factory
+    return pointer(obj)
+
+
+def entries(ctx: Interpreter, obj: Obj, value: Value) -> None:
+    """Take over the entries of a mapping, or of a sequence of pairs."""
+    for source in value.pts:
+        if source.kind != "sequence":
+            sizes.absorb(ctx, obj, Value(value.deps, frozenset([source])))
+            continue
+        known = [sizes.unpacked(ctx, p) or [] for p in sizes.unpacked(ctx, pointer(source)) or ()]
+        if known and all(len(pair) == 2 for pair in known):
+            for key, item in known:
+                updates.write_item(
+                    ctx, pointer(obj), key, Value(item.deps | value.deps, item.pts, item.consts)
+                )
+            continue
+        pair = heap.elements(ctx, Value(value.deps, frozenset([source])))
+        keys = ctx.use(expressions.read_item(ctx, pair, const(0)))
+        if keys:
+            updates.weaken(ctx, obj, KEYS, Value(keys))
+        updates.add_element(ctx, pointer(obj), expressions.read_item(ctx, pair, const(1)))
+        sizes.lengthen(ctx, obj, Value(value.deps, frozenset([source])))
+
+
+def from_keys(ctx: Interpreter, it: Invocation) -> Value:
+    """Return what `dict.fromkeys(keys, value)` makes."""
+    plain = it.arguments[0]
+    obj = recency.allocate(ctx, "mapping", it.frame, ("display", it.call.slot))
+    known = sizes.unpacked(ctx, plain[0]) if plain else None
+    value = plain[1] if len(plain) > 1 else const(None)
+    for key in known or ():
+        updates.write_item(ctx, pointer(obj), key, value)
+    if known is None:
+        keys = ctx.use(heap.elements(ctx, plain[0])) if plain else frozenset()
+        updates.weaken(ctx, obj, KEYS, Value(keys)) if keys else None
+        updates.add_element(ctx, pointer(obj), value)
+    return pointer(obj)
+
+
+def missing(ctx: Interpreter, mapping: Obj, name: str) -> Value:
+    """Return what a mapping with a default makes for a key that it does not have."""
+    factory = mapping.info
+    if not isinstance(factory, Value):
+        return BOTTOM
+    result = BOTTOM
+    for maker in factory.pts:
+        kind = MADE_BY.get(maker.name.rpartition(".")[2]) if maker.kind == "ext" else None
+        if kind is not None:
+            result = join(result, pointer(recency.intern(ctx, kind, (mapping.key, "missing", name))))
+        elif maker.kind in CALLABLE and ctx.stack:
+            result = join(result, calls.call_object(ctx, maker, ([], {}), ctx.stack[-1], _MISSING))
+    if result.pts:
+        ctx.store.put((mapping, name), result)
+    return result
+
+
+_MISSING: Final = ir.Call(ir.Const(None, (0, 0, 0, 0)), (), (), (0, 0, 0, 0), -1)
+
+
+def _fields(cls: Obj) -> Iterator[tuple[Obj, str]]:
+    """Yield the fields of a class and of those it inherits from, in the order of the constructor."""
+    seen: set[str] = set()
+    made = any(isinstance(o.info, ClassInfo) and not set(o.info.external) <= PLAIN for o in lineage(cls))
+    for owner in reversed(lineage(cls)):
+        info = owner.info if isinstance(owner.info, ClassInfo) else None
+        for name in info.fields if info is not None and (made or _decorated(info)) else ():
+            if name not in seen:
+                seen.add(name)
+                yield owner, name
+
+
+def _decorated(info: ClassInfo) -> bool:
+    """Tell whether a class has a decorator, as dataclasses do: what others annotate is no field."""
+    return info.statement is None or bool(info.statement.decorators)
+
+
+def _says(options: dict[str, Value] | None, name: str, answer: bool) -> bool:
+    """Tell whether `field(...)` is given an option, for certain."""
+    return options is not None and name in options and options[name].constant() == (True, answer)
+
+
+def _named_tuple(cls: object) -> bool:
+    """Tell whether a class is a named tuple, whose fields are elements too."""
+    infos = [o.info for o in lineage(cls)] if isinstance(cls, Obj) else []
+    return any(isinstance(i, ClassInfo) and (i.named or "typing.NamedTuple" in i.external) for i in infos)
+
+
+RECORDS: Final = {
+    "copy": _read_copy,
+    "_replace": replaced_record,
+    "_asdict": as_mapping,
+}

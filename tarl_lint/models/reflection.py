@@ -1,0 +1,88 @@
+"""Attributes by names that are values: `getattr` and `setattr`."""
+
+from __future__ import annotations
+
+from tarl_lint.interpret import expressions
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, recency, updates
+from tarl_lint.memory.heap import item_field
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, join_all, lineage, pointer
+from tarl_lint.models import containers
+
+
+def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
+    """Return an attribute, by a name that is known or begins with something known."""
+    plain = it.arguments[0]
+    names = plain[1].texts() if len(plain) > 1 else ()
+    if not names and len(it.call.arguments) > 1:
+        return _method_by_beginning(ctx, it) or ctx.ops.generic(ctx, it.name, it.arguments, it.frame, it.call)
+    return join_all([heap.read(ctx, plain[0], n) for n in names] + plain[2:])
+
+
+def _method_by_beginning(ctx: Interpreter, it: Invocation) -> Value | None:
+    """Return the methods that `getattr(self, "do_" + verb)` may mean, None where nothing tells."""
+    start, (holder, name, *rest) = _beginning(it.call.arguments[1]), it.arguments[0]
+    found = BOTTOM
+    for obj in holder.pts if len(start) > 1 else ():
+        for cls in lineage(obj.info) if obj.kind == "instance" and isinstance(obj.info, Obj) else ():
+            for member in [n for n in cls.fields if n.startswith(start)]:
+                found = join_all([found, heap.read_field(ctx, obj, member)])
+    if not found.pts:
+        return None
+    decides = ctx.use(name)
+    return Value(found.deps | decides, join_all([found, *rest]).pts)
+
+
+def getter(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the function that `attrgetter(...)` or `itemgetter(...)` makes."""
+    obj = recency.intern(ctx, "partial", (it.frame.id, it.statement, it.call.slot, *it.frame.turn), it.name)
+    obj.info = (expressions.external(ctx, f"{it.name}.<made>"), it.arguments[0], {})
+    return pointer(obj)
+
+
+def get_named(ctx: Interpreter, it: Invocation) -> Value:
+    """Return what a function made by `attrgetter` or `itemgetter` gives: several things as a tuple."""
+    *keys, given = it.arguments[0] or [UNKNOWN]
+    found = [
+        _by_path(ctx, given, k) if "attr" in it.name else expressions.read_item(ctx, given, k) for k in keys
+    ]
+    if len(found) == 1:
+        return found[0]
+    obj = recency.allocate(ctx, "sequence", it.frame, ("display", it.call.slot, it.name))
+    for number, value in enumerate(found):
+        ctx.store.put((obj, item_field(number)), value)
+    return pointer(obj)
+
+
+def _by_path(ctx: Interpreter, value: Value, name: Value) -> Value:
+    for part in (name.texts() or ("",))[0].split("."):
+        value = heap.read(ctx, value, part)
+    return value
+
+
+def set_attribute(ctx: Interpreter, it: Invocation) -> Value:
+    """Store into the attribute that is named, into any where no name is known."""
+    plain = it.arguments[0]
+    if len(plain) == 3:
+        value = containers.through_statement(ctx, plain[2], it.frame, it.call)
+        for field in plain[1].texts():
+            updates.write_field(ctx, plain[0], field, value)
+        if not plain[1].texts():
+            updates.add_element(ctx, plain[0], value)
+    return UNKNOWN
+
+
+def _beginning(expr: ir.Expr) -> str:
+    """Return the text that a text made at run time begins with."""
+    while isinstance(expr, ir.Operation) and expr.parts and expr.operator in ("+", "text", "%"):
+        expr = expr.parts[0]
+    if (
+        isinstance(expr, ir.Call)
+        and isinstance(expr.function, ir.Attribute)
+        and expr.function.name == "format"
+    ):
+        expr = expr.function.base
+    text = expr.value if isinstance(expr, ir.Const) else ""
+    return text.partition("%")[0].partition("{")[0] if isinstance(text, str) else ""

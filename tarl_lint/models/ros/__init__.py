@@ -1,0 +1,1 @@
+"""Models of ROS: sources, sinks and what runs callbacks."""

@@ -1,0 +1,171 @@
+"""What the catalog's calls do: sources, sinks, publishers, timers, parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from functools import partial
+
+from tarl_lint.interpret import displays
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import recency
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value, join, pointer
+from tarl_lint.models import containers, records, sizes
+from tarl_lint.models.ros import publications, services, subscriptions
+
+
+def ros_call(ctx: Interpreter, it: Invocation) -> Value:
+    """Do what the catalog says about a call."""
+    action = ACTIONS.get(it.fact.kind)
+    return action(ctx, it) if action is not None else UNKNOWN  # a callback of what nothing is known of
+
+
+def _timer(ctx: Interpreter, it: Invocation) -> Value:
+    for target in it.argument(it.fact.callback).pts:
+        subscriptions.call_when(
+            ctx, (it.fact.kind, it.frame.program.path, it.call.pos), target, [], "callback"
+        )
+    return subscriptions.handle(ctx, it.frame, it.call)
+
+
+def _done(ctx: Interpreter, it: Invocation) -> Value:
+    """Run a callback on a future, with the future."""
+    future = containers.through_statement(ctx, it.base, it.frame, it.call, "future")
+    for target in it.argument(it.fact.callback).pts:
+        subscriptions.call_when(
+            ctx, ("done", it.frame.program.path, it.call.pos), target, [future], "callback"
+        )
+    return UNKNOWN
+
+
+def _thread(ctx: Interpreter, it: Invocation) -> Value:
+    given = it.argument(it.fact.extra)
+    values = sizes.unpacked(ctx, given) or []
+    for target in it.argument(it.fact.callback).pts:
+        subscriptions.call_when(
+            ctx, (it.fact.kind, it.frame.program.path, it.call.pos), target, values, "thread"
+        )
+    return subscriptions.handle(ctx, it.frame, it.call)
+
+
+# --- values -------------------------------------------------------------------------------------------
+
+
+def _partial(ctx: Interpreter, it: Invocation) -> Value:
+    obj = recency.intern(ctx, "partial", (it.frame.id, it.statement, it.call.slot, *it.frame.turn))
+    plain, named = it.arguments
+    if not plain:
+        return UNKNOWN
+    obj.info = (plain[0], plain[1:], named)
+    obj.name = next((t.name for t in plain[0].pts), "")
+    return pointer(obj)
+
+
+def _copied(ctx: Interpreter, it: Invocation) -> Value:
+    given = [*it.arguments[0], *it.arguments[1].values()]
+    if not given:
+        return UNKNOWN
+    copied = (
+        partial(records.deep_copy, ctx) if it.fact.api == "copy.deepcopy" else partial(records.copy_of, ctx)
+    )
+    return copied(given[0], it.frame, it.call.slot)
+
+
+def parameter(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a parameter's value: its default, as far as is known here."""
+    default = it.argument(it.fact.extra)
+    if default is BOTTOM:
+        node = ctx.node(it.frame, ("parameter", it.call.slot), "assign")
+        ctx.graph.parameters.add(node)
+        ctx.graph.literals[node] = (None, it.call.pos, it.frame.program.path)
+        return Value(ctx.kept(node))
+    expr = _default(it)
+    return _default_of(ctx, default, expr, it.frame, ("parameter", it.call.slot))
+
+
+def _default_of(
+    ctx: Interpreter, default: Value, expr: ir.Expr | None, frame: Frame, slot: Hashable
+) -> Value:
+    node = ctx.node(frame, slot, "assign")
+    ctx.graph.parameters.add(node)
+    if expr is not None:
+        displays.mark(ctx, node, expr, default, frame)
+    ctx.graph.flow(default.deps, node)
+    return Value(ctx.kept(node))
+
+
+def declare(ctx: Interpreter, it: Invocation) -> Value:
+    """Remember a declared parameter's default under the node and its name."""
+    default = it.argument(it.fact.extra)
+    expr = _default(it)
+    value = (
+        UNKNOWN
+        if default is BOTTOM
+        else _default_of(ctx, default, expr, it.frame, ("parameter", it.call.slot))
+    )
+    found = _parameters(ctx, it.base, it.argument(it.fact.topic))
+    for obj in found.pts:
+        ctx.store.put((obj, "value"), value)
+    return found
+
+
+def declare_all(ctx: Interpreter, it: Invocation) -> Value:
+    """Remember the defaults of several declared parameters: tuples of a name and a default."""
+    prefix = it.argument(it.fact.topic).texts()
+    for number, entry in enumerate(sizes.unpacked(ctx, it.argument(it.fact.extra)) or ()):
+        parts = sizes.unpacked(ctx, entry) or []
+        names = [f"{p}.{t}" if p else t for p in prefix or ("",) for t in (parts[0].texts() if parts else ())]
+        if len(parts) < 2:
+            continue
+        value = _default_of(ctx, parts[1], None, it.frame, ("parameter", it.call.slot, number))
+        for obj in _parameters(ctx, it.base, Value(consts=frozenset(names))).pts:
+            ctx.store.put((obj, "value"), value)
+    return UNKNOWN
+
+
+def parameter_or(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a parameter, or the one given instead."""
+    found = _parameters(ctx, it.base, it.argument(it.fact.topic))
+    return join(found, it.argument(it.fact.extra))
+
+
+def _parameter_object(ctx: Interpreter, it: Invocation) -> Value:
+    return _parameters(ctx, it.base, it.argument(it.fact.topic))
+
+
+def _parameters(ctx: Interpreter, receiver: Value, name: Value) -> Value:
+    keys = [(o.key, text) for o in receiver.pts for text in name.texts()]
+    return Value(pts=frozenset(recency.intern(ctx, "parameter", key, str(key[1])) for key in keys))
+
+
+ACTIONS: Mapping[str, Callable[..., Value]] = {
+    "publisher": publications.made_publisher,
+    "subscribe": subscriptions.subscribe,
+    "receive": subscriptions.receive,
+    "configured": subscriptions.configured_source,
+    "filter": subscriptions.message_filter,
+    "synchronizer": subscriptions.synchronizer,
+    "timer": _timer,
+    "service": services.service,
+    "action": services.action,
+    "transform": services.transform_look_up,
+    "call later": _timer,
+    "done": _done,
+    "thread": _thread,
+    "partial": _partial,
+    "copy": _copied,
+    "parameter": parameter,
+    "declare": declare,
+    "declare all": declare_all,
+    "parameter object": _parameter_object,
+    "parameter or": parameter_or,
+}
+
+
+def _default(it: Invocation) -> ir.Expr | None:
+    """Return the expression that gives a parameter's default."""
+    if len(it.call.arguments) > 1:
+        return it.call.arguments[1]
+    return next((e for name, e in it.call.keywords if name == it.fact.extra[1]), None)

@@ -1,0 +1,111 @@
+"""Publishers and publish calls."""
+
+from __future__ import annotations
+
+from tarl_lint.interpret import call_contexts
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import recency
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.value_flow_graph import Place
+from tarl_lint.memory.values import UNKNOWN, Value, pointer
+from tarl_lint.models.ros.endpoints import Publisher, SinkRecord
+
+
+def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a new publisher."""
+    obj = recency.intern(ctx, "publisher", (it.frame.id, it.statement, it.call.slot, *it.frame.turn))
+    info = obj.info
+    if not isinstance(info, Publisher):
+        info = Publisher(api=it.fact.api, path=it.frame.program.path, pos=it.call.pos)
+    obj.info = info
+    info.topics.update(topics(ctx, it))
+    info.types.update(type_names(it.argument(it.fact.type)))
+    return pointer(obj)
+
+
+def topics(ctx: Interpreter, it: Invocation) -> list[str]:
+    """Return the names that a registration's topic may have, as they are when launched."""
+    names = ctx.config.launched
+    return [names.get(text.lstrip("/"), text) for text in it.argument(it.fact.topic).texts()]
+
+
+def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
+    """Record a sink: everything inside the message reaches it, and whether it is reached at all."""
+    frame, call = it.frame, it.call
+    key = (frame.program.path, call.pos)
+    record = ctx.sinks.get(key)
+    if record is None:
+        record = SinkRecord(*key, _api(info, it), ctx.modules[key[0]].name, qualname(frame))
+        record.kind = info.kind
+        ctx.sinks[key] = record
+    record.topics |= info.topics
+    record.types |= info.types
+    record.publishers.add((info.path, info.pos))
+    info.used = True
+    node = ctx.node(frame, ("publish", call.slot), "publish")
+    ctx.graph.flow(call_contexts.all_used(ctx, it.arguments), node)
+    ctx.graph.choice(it.base.deps, node)
+    ctx.graph.depend(node, it.base.deps)  # which publisher it is
+    ctx.graph.depend(node, [n for n, _ in ctx.guards])
+    if frame.statement is not None:
+        under(ctx, frame, frame.statement, node)
+    record.nodes.add(node)
+    return UNKNOWN
+
+
+def under(ctx: Interpreter, frame: Frame, statement: ir.Stmt, node: int) -> None:
+    """Let a node depend on the conditions that decide whether its statement runs, in callers too."""
+    control = ctx.control(frame)
+    for branch in control.direct.get(statement.id, ()):
+        decision, _ = ctx.branch(frame, branch)
+        ctx.graph.depend(node, (decision,))
+        _reached(ctx, frame, branch[0], node)
+    if statement.id in control.always:
+        _entered(ctx, frame, node)
+
+
+def _reached(ctx: Interpreter, frame: Frame, number: int, node: int) -> None:
+    """Let a node depend on what decides whether a condition is evaluated."""
+    place = ctx.graph.places[ctx.branch(frame, (number, ""))[0]]
+    if place.statement is None:
+        return
+    key = (frame.id, number, "reached")
+    if key not in ctx.graph.numbers:
+        waypoint = ctx.graph.node(key, place, frozenset())
+        under(ctx, frame, place.statement, waypoint)
+    waypoint = ctx.graph.numbers[key]
+    if waypoint != node:
+        ctx.graph.depend(node, (waypoint,))
+
+
+def _entered(ctx: Interpreter, frame: Frame, node: int) -> None:
+    """Let a node depend on what decides whether its function is called."""
+    caller, call = frame.caller, frame.call
+    if caller is None or call is None:
+        return
+    key = (frame.id, "entered")
+    if key not in ctx.graph.numbers:
+        waypoint = ctx.graph.node(key, Place(caller, call, "call", call.pos), frozenset())
+        under(ctx, caller, call, waypoint)
+        ctx.graph.depend(waypoint, [n for n, _ in frame.guards])
+    ctx.graph.depend(node, (ctx.graph.numbers[key],))
+
+
+def qualname(frame: Frame) -> str:
+    """Return the qualified name of the function (or class body) that a frame runs."""
+    return frame.function.qualname
+
+
+def type_names(value: Value) -> list[str]:
+    """Return the names of message types: the last part."""
+    return [o.name.rpartition(".")[2] for o in value.pts if o.kind in ("ext", "class")]
+
+
+def _api(info: Publisher, it: Invocation) -> str:
+    """Name the call that sends, by who made the sender."""
+    if info.kind != "topic":
+        return f"{info.api}.{it.name}"
+    library = info.api.partition(".")[0]
+    return f"{library}.Publisher.publish" if library in ("rospy", "rclpy") else info.api

@@ -1,0 +1,132 @@
+"""Services, actions and transforms: requests come in, responses, feedback and results go out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from tarl_lint import catalog
+from tarl_lint.interpret import call_contexts
+from tarl_lint.interpret.call_contexts import CALLABLE
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.memory import heap, recency
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, pointer
+from tarl_lint.models import library
+from tarl_lint.models.ros import publications, subscriptions
+from tarl_lint.models.ros.endpoints import Publisher, SourceRecord
+
+RUN: Final = frozenset([*CALLABLE, "instance"])
+
+
+@dataclass(slots=True, eq=False)
+class Server:
+    """An action server, or the handle of one goal: where goals come from and how results leave."""
+
+    record: SourceRecord
+    sends: Publisher
+    handle: bool = False
+
+
+def service(ctx: Interpreter, it: Invocation) -> Value:
+    """Run a handler on every request; what it returns is the response."""
+    callback = it.argument(it.fact.callback)
+    record = subscriptions.source(ctx, it, callback)
+    answer = _sender(it, record, "service")
+    for target in callback.pts:
+        if target.kind not in RUN:
+            continue
+        values = [pointer(subscriptions.message(ctx, record, target))]
+        response = recency.intern(ctx, "lib", ("response", record.path, record.pos, target.key))
+        if it.fact.api in catalog.FILLS_RESPONSE:
+            values.append(pointer(response))
+        key = ("service", record.path, record.pos)
+        subscriptions.call_when(ctx, key, target, values, "callback", [(response, "<new>", BOTTOM)], answer)
+    return subscriptions.handle(ctx, it.frame, it.call)
+
+
+def _sender(it: Invocation, record: SourceRecord, kind: str) -> Publisher:
+    sends = Publisher(api=it.fact.api, path=record.path, pos=record.pos)
+    sends.topics, sends.types = record.topics, record.types
+    sends.kind = "service" if kind == "service" else "action"
+    sends.methods = catalog.ACTION_SENDERS
+    return sends
+
+
+# --- actions ------------------------------------------------------------------------------------------
+
+
+def action(ctx: Interpreter, it: Invocation) -> Value:
+    """Run the callbacks of an action server."""
+    callbacks = {name: it.argument(where) for name, where in catalog.ACTION_CALLBACKS[it.fact.api].items()}
+    supplied = frozenset(o for v in callbacks.values() for o in v.pts if o.kind in RUN)
+    record = subscriptions.source(ctx, it, Value(pts=supplied))
+    server = Server(record, _sender(it, record, "action"))
+    for way, callback in callbacks.items():
+        for target in callback.pts:
+            if target.kind in RUN:
+                _goal_callback(ctx, server, way, target)
+    obj = recency.intern(ctx, "server", (record.path, record.pos))
+    obj.info = server
+    return pointer(obj)
+
+
+def _goal_callback(ctx: Interpreter, server: Server, way: str, target: Obj) -> None:
+    record = server.record
+    message = pointer(subscriptions.message(ctx, record, target))
+    key = ("action", way, record.path, record.pos)
+    if way == "goal":
+        subscriptions.call_when(ctx, key, target, [message], "callback")
+        return
+    handle = recency.intern(ctx, "goal", (record.path, record.pos, target.key))
+    handle.info = Server(record, server.sends, handle=True)
+    answer = server.sends if way == "execute" else None
+    subscriptions.call_when(
+        ctx, key, target, [pointer(handle)], "callback", [(handle, catalog.GOAL_FIELD, message)], answer
+    )
+
+
+def serve(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
+    """Call a method of an action server or of a goal's handle."""
+    server = target.info
+    if not isinstance(server, Server):
+        return UNKNOWN
+    if it.name in server.sends.methods:
+        given = bool(it.arguments[0] or it.arguments[1])  # without a result there is nothing to send
+        return publications.send(ctx, it, server.sends) if given else UNKNOWN
+    if it.name in catalog.GOAL_READERS:
+        if server.handle:
+            return heap.read(ctx, pointer(target), catalog.GOAL_FIELD)
+        return _accepted(ctx, server.record, it)
+    if it.name in catalog.GOAL_REGISTERS:
+        for callback in (*it.arguments[0], *it.arguments[1].values()):
+            for function in callback.pts:
+                if function.kind in RUN:
+                    key = (it.name, server.record.path, it.call.pos)
+                    subscriptions.call_when(ctx, key, function, [], "callback")
+    return UNKNOWN
+
+
+def _accepted(ctx: Interpreter, record: SourceRecord, it: Invocation) -> Value:
+    """Return the goal that a server gives out when it is asked for one."""
+    key = (it.frame.id, it.call.slot)
+    obj = record.messages.get(key)
+    if obj is None:
+        obj = record.messages[key] = Obj("message", (record.path, record.pos, key))
+        obj.info = ctx.node(it.frame, ("receive", it.call.slot), "receive")
+        record.nodes.add(obj.info)
+        ctx.graph.begin(obj.info)
+    return pointer(obj)
+
+
+# --- transforms ---------------------------------------------------------------------------------------
+
+
+def transform_look_up(ctx: Interpreter, it: Invocation) -> Value:
+    """Return what a look-up in the tree of transforms gives: a source when the settings say so."""
+    if not ctx.config.tf2:
+        return library.generic(ctx, it.fact.api, it.arguments, it.frame, it.call)
+    record = subscriptions.source(ctx, it, BOTTOM)
+    record.topics.add("/tf")
+    message = _accepted(ctx, record, it)
+    return Value(message.deps | call_contexts.all_used(ctx, it.arguments), message.pts)

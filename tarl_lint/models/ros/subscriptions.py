@@ -1,0 +1,288 @@
+"""Subscriptions: where messages come in, and the callbacks that they go to."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from itertools import zip_longest
+from typing import Final
+
+from tarl_lint import catalog
+from tarl_lint.interpret import calls
+from tarl_lint.interpret.budget import MAX_ALIKE, MAX_GENERATIONS
+from tarl_lint.interpret.call_contexts import CALLABLE, ROOT_CALL
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, recency
+from tarl_lint.memory.abstract_gc import together
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.reachable_data import in_order
+from tarl_lint.memory.store import Root
+from tarl_lint.memory.value_flow_graph import Place
+from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, function_of, join, join_all, pointer
+from tarl_lint.models import sizes
+from tarl_lint.models.ros import publications
+from tarl_lint.models.ros.endpoints import Kind, Publisher, SourceRecord
+from tarl_lint.models.ros.publications import type_names
+from tarl_lint.models.smach import LATER
+
+KINDS: Final[Mapping[str, Kind]] = {"service": "service", "action": "action", "transform": "transform"}
+NOTHING: Final[Mapping[str, Value]] = {}
+Fresh = Sequence[tuple[Obj, str, Value]]  # objects that a call brings anew, with a field and what it is
+
+
+def source(ctx: Interpreter, it: Invocation, callback: Value) -> SourceRecord:
+    """Record a subscription at the outermost call that supplies its callback."""
+    place, pos, statement, via = it.frame, it.call.pos, it.frame.statement, []
+    while place.caller is not None and place.call is not None and _supplied(place, callback):
+        via.append((place.program.path, pos))
+        statement = place.call
+        pos = call_position(place)
+        place = place.caller
+    key = (place.program.path, pos)
+    record = ctx.sources.get(key)
+    if record is None:
+        assert statement is not None  # noqa: S101 - a call stands in a statement
+        record = SourceRecord(
+            *key, it.fact.api, ctx.modules[key[0]].name, publications.qualname(place), statement, place
+        )
+        record.kind = KINDS.get(it.fact.kind, "topic")
+        ctx.sources[key] = record
+    record.via.update(via)
+    record.topics.update(publications.topics(ctx, it))
+    record.types.update(type_names(it.argument(it.fact.type)))
+    return record
+
+
+def call_position(frame: Frame) -> ir.Pos:
+    """Return where the call stands that entered a frame."""
+    assert frame.call is not None  # noqa: S101 - asked before
+    return frame.call_pos or frame.call.pos
+
+
+def subscribe(ctx: Interpreter, it: Invocation) -> Value:
+    """Record a source and run its callback with messages."""
+    callback = it.argument(it.fact.callback)
+    record = source(ctx, it, callback)
+    extra = it.argument(it.fact.extra)
+    passed = [extra] if extra is not BOTTOM else []
+    connect(ctx, record, callback, passed)
+    _forward(ctx, record, callback, it)
+    return handle(ctx, it.frame, it.call)
+
+
+def _forward(ctx: Interpreter, record: SourceRecord, callback: Value, it: Invocation) -> None:
+    """Where the callback is a method of no class of ours, as `other.publish`, call it where it is registered."""
+    for target in in_order(callback.pts):
+        if target.kind == "method":
+            obj = _received(ctx, record, it.frame, ("forward", it.call.slot, target.key))
+            calls.call_object(ctx, target, ([pointer(obj)], {}), it.frame, it.call)
+
+
+def _received(ctx: Interpreter, record: SourceRecord, frame: Frame, slot: Hashable) -> Obj:
+    """Return the message object that arrives at a frame's current statement."""
+    obj = record.messages.get((frame.id, slot))
+    if obj is None:
+        obj = record.messages[frame.id, slot] = Obj("message", (record.path, record.pos, frame.id, slot))
+        obj.info = ctx.node(frame, ("receive", slot), "receive")
+        record.nodes.add(obj.info)
+        ctx.graph.begin(obj.info)
+    return obj
+
+
+def configured_source(ctx: Interpreter, it: Invocation) -> Value:
+    """Subscribe when one of the arguments is a function, else return the message."""
+    given = [*it.arguments[0], *it.arguments[1].values()]
+    callbacks = [v for v in given if any(o.kind in ("closure", "bound", "partial") for o in v.pts)]
+    if not callbacks:
+        return receive(ctx, it)
+    connect(ctx, source(ctx, it, callbacks[0]), callbacks[0], [])
+    return handle(ctx, it.frame, it.call)
+
+
+def handle(ctx: Interpreter, frame: Frame, call: ir.Call) -> Value:
+    """Return the object that a registration gives back."""
+    return pointer(recency.allocate(ctx, "lib", frame, ("made", call.slot)))
+
+
+def connect(ctx: Interpreter, record: SourceRecord, callback: Value, extra: Sequence[Value]) -> None:
+    """Run a callback whenever a message of the source arrives."""
+    for target in callback.pts:
+        if (target.kind in CALLABLE and target.kind != "method") or target.kind == "instance":
+            arriving = message(ctx, record, target)
+            call_when(
+                ctx, ("callback", record.path, record.pos), target, [pointer(arriving), *extra], "callback"
+            )
+
+
+def message(ctx: Interpreter, record: SourceRecord, target: Obj) -> Obj:
+    """Return the message object that a source hands to a callback."""
+    obj = record.messages.get(target.key)
+    if obj is None:
+        obj = record.messages[target.key] = Obj("message", (record.path, record.pos, target.key))
+        obj.defined = next(iter(record.types)) if len(record.types) == 1 else ""
+        frame = described(ctx, target)
+        place = Place(frame or record.frame, None, "receive", (frame or record.frame).function.pos)
+        node = ctx.graph.node(("receive", obj.key), place, frozenset())
+        obj.info = node
+        record.nodes.add(node)
+        ctx.graph.begin(node)
+        record.callbacks.add(frame.function.qualname if frame is not None else target.name)
+    return obj
+
+
+def described(ctx: Interpreter, target: Obj) -> Frame | None:
+    """Return a frame that stands for a callback's function, whoever calls it."""
+    while target.kind in ("bound", "partial", "instance"):
+        if target.kind == "bound" and isinstance(target.info, tuple):
+            target = target.info[0]
+            continue
+        if target.kind == "partial" and isinstance(target.info, tuple):
+            inner: frozenset[Obj] = target.info[0].pts
+        else:
+            inner = heap.read_field(ctx, target, "__call__").pts
+        if len(inner) != 1:
+            return None
+        target = next(iter(inner))
+    if target.kind != "closure" or not isinstance(target.info, tuple):
+        return None
+    function, _, program, _ = target.info
+    return Frame(("described", target.key), -1, function, program, ctx.module_objects[program.name])
+
+
+def receive(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the message that a waiting call gives."""
+    obj = _received(ctx, source(ctx, it, BOTTOM), it.frame, it.call.slot)
+    recency.clear_fields(ctx, obj)
+    return pointer(obj)
+
+
+def message_filter(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a subscriber of message_filters: rospy's starts with the topic, rclpy's with the node."""
+    first = it.arguments[0][0] if it.arguments[0] else BOTTOM
+    if len(it.arguments[0]) > 2 and not first.texts() and not it.argument(it.fact.type).texts():
+        it.fact = catalog.FILTER_WITH_NODE
+    record = source(ctx, it, BOTTOM)
+    obj = recency.intern(ctx, "filter", (record.path, record.pos))
+    obj.info = record
+    return pointer(obj)
+
+
+def synchronizer(ctx: Interpreter, it: Invocation) -> Value:
+    """Return a synchroniser of several subscribers."""
+    given = it.argument(it.fact.topic)
+    obj = recency.intern(ctx, "synchronizer", (it.frame.id, it.statement, it.call.slot, *it.frame.turn))
+    parts = sizes.unpacked(ctx, given)
+    several = parts is None and all(o.kind == "sequence" for o in given.pts)
+    if parts is None:
+        parts = [heap.elements(ctx, given)] if several else [given]
+    obj.info = (parts, (it.frame.program.path, it.call.pos), several)
+    return pointer(obj)
+
+
+def register_filter(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
+    """Run a callback with one message of each subscriber."""
+    if target is None:
+        return UNKNOWN
+    places = {(it.frame.program.path, it.call.pos)}
+    parts: Sequence[Value] = [pointer(target)]
+    several = False
+    if target.kind == "synchronizer" and isinstance(target.info, tuple):
+        parts = target.info[0]
+        places.add(target.info[1])
+        several = target.info[2]
+    callback = it.argument((0, "cb"))
+    extra = it.arguments[0][1:]
+    for function in callback.pts:
+        if function.kind in CALLABLE:
+            messages = [_filtered(ctx, part, function, places) for part in parts]
+            key = ("filter", it.frame.program.path, it.call.pos)
+            named = {"*": join_all([*messages, *extra])} if several else {}
+            values = [] if several else [*messages, *extra]
+            call_when(ctx, key, function, values, "callback", named=named)
+    return UNKNOWN
+
+
+def _filtered(ctx: Interpreter, part: Value, function: Obj, places: set[tuple[str, ir.Pos]]) -> Value:
+    """Return the message that a subscriber of message_filters hands on."""
+    arriving = BOTTOM
+    for subscriber in part.pts:
+        if isinstance(subscriber.info, SourceRecord):
+            subscriber.info.registered |= places
+            arriving = join(arriving, pointer(message(ctx, subscriber.info, function)))
+    return arriving
+
+
+def call_when(
+    ctx: Interpreter,
+    key: Hashable,
+    target: Obj,
+    values: Sequence[Value],
+    kind: str,
+    fresh: Fresh = (),
+    answer: Publisher | None = None,
+    named: Mapping[str, Value] = NOTHING,
+    program: str = "",
+) -> None:
+    """Run a function on its own with these arguments; `answer` takes what it returns."""
+    root = Root((key, target.kind, target.key), kind, target.name, kind == "thread", function_of(target))
+    root.maker = ctx.store.root
+    root.program = program or root.maker.program
+    if root.key not in ctx.roots and _too_many(ctx, root):
+        return
+    before = ctx.passed.get(root.key, [])
+    values = [join(a, b) for a, b in zip_longest(before, values, fillvalue=BOTTOM)]
+    news = bool(before) and values != before
+    ctx.passed[root.key] = values
+    ctx.given |= together([target, *(o for v in (*values, *named.values()) for o in v.pts)])
+
+    def run(root: Root) -> None:
+        frame = ctx.ops.root_frame(ctx, root)
+        frame.answer = answer
+        ctx.delivered = frozenset(o for v in (*values, *named.values()) for o in v.pts if o.kind == "message")
+        for obj, name, value in fresh:
+            recency.clear_fields(ctx, obj)
+            ctx.store.put((obj, name), value)
+        calls.call_object(ctx, target, (list(values), dict(named)), frame, ROOT_CALL)
+
+    ctx.ops.add_root(ctx, root, run, news=news)
+
+
+def _too_many(ctx: Interpreter, root: Root) -> bool:
+    """Tell whether a function runs on its own often enough: for itself, or for other objects of a class."""
+    if root.function is None:
+        return False
+    if root.generations() > MAX_GENERATIONS:
+        return True
+    if not _for_each_object(root):
+        return False
+    alike = [r for r, _ in ctx.roots.values() if r.function is root.function and _for_each_object(r)]
+    return len(alike) >= MAX_ALIKE
+
+
+def call_later(ctx: Interpreter, target: Obj, values: Sequence[Value]) -> None:
+    """Have a function run on its own; of other arguments than these nothing is known."""
+    call_when(ctx, "later", target, values, "callback")
+
+
+def _for_each_object(root: Root) -> bool:
+    """Tell whether a thread or a framework runs something, which it does for each object of a class."""
+    return root.kind == "thread" or (isinstance(root.key, tuple) and root.key[0] == "framework")
+
+
+def _supplied(frame: Frame, callback: Value) -> bool:
+    """Tell whether a function's caller hands in the callback."""
+    wanted = {o for o in callback.pts if o.kind in CALLABLE}
+    for target in tuple(wanted):
+        wanted |= _wrapped(target, frame)
+    return bool(wanted) and any(wanted & v.pts for v in frame.arguments)
+
+
+def _wrapped(target: Obj, frame: Frame) -> set[Obj]:
+    """Return the functions that a helper, this one or one called from here, was given to make a callback around."""
+    if target.kind == "partial" and isinstance(target.info, tuple):
+        return {o for o in target.info[0].pts if o.kind in CALLABLE}
+    maker = target.info[1] if target.kind == "closure" and isinstance(target.info, tuple) else None
+    if not isinstance(maker, Frame) or frame not in (maker, maker.caller):
+        return set()
+    return {o for value in maker.arguments for o in value.pts if o.kind in LATER}

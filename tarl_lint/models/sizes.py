@@ -1,0 +1,173 @@
+"""Containers made of containers: concatenation, repetition, union, slices; and what decides how long they are."""
+
+from __future__ import annotations
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, recency, updates
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.heap import ANY, KEYS, LENGTH, SENT, item_field
+from tarl_lint.memory.values import ABSENT, BOTTOM, NONE, UNKNOWN, Nodes, Obj, Value, join_all, pointer
+
+MAX_KNOWN = 16  # elements of a made sequence that are told apart
+COMBINING = frozenset(["+", "*", "|", "-", "&"])
+
+
+def combined(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value | None:
+    """Return the new container that an operator makes of containers, None where there are none."""
+    kinds = [{o.kind for o in v.pts} for v in values]
+    if expr.operator == "*" and {"sequence"} in kinds:
+        return repeated(ctx, expr, values, frame)
+    if kinds == [{"sequence"}, {"sequence"}]:
+        return concatenated(ctx, expr, values, frame)
+    if kinds == [{"mapping"}, {"mapping"}]:
+        obj = recency.allocate(ctx, "mapping", frame, ("combined", expr.pos))
+        for value in values:
+            absorb(ctx, obj, value)
+        return Value(values[0].deps | values[1].deps, frozenset([obj]))
+    return None
+
+
+def repeated(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:
+    """Return `[x] * n`."""
+    several = next(v for v in values if v.pts)
+    count = ctx.use(next((v for v in values if v is not several), UNKNOWN))
+    element, longer = heap.elements(ctx, several), length(ctx, several)
+    obj = recency.allocate(ctx, "sequence", frame, ("combined", expr.pos))
+    updates.add_element(ctx, pointer(obj), element)
+    ctx.store.put((obj, LENGTH), Value(longer | count))
+    return Value(several.deps, frozenset([obj]))
+
+
+def concatenated(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:
+    """Return `a + b`; elements are told apart where both are known one by one."""
+    known = [unpacked(ctx, v) for v in values]
+    element = join_all(heap.elements(ctx, v) for v in values)
+    longer = length(ctx, values[0]) | length(ctx, values[1])
+    obj = recency.allocate(ctx, "sequence", frame, ("combined", expr.pos))
+    exact = [e for part in known if part is not None for e in part]
+    if None in known or len(exact) > MAX_KNOWN or expr.operator != "+":
+        updates.add_element(ctx, pointer(obj), element)
+    else:
+        for number, value in enumerate(exact):
+            ctx.store.put((obj, item_field(number)), value)
+    ctx.store.put((obj, LENGTH), Value(longer))
+    return Value(values[0].deps | values[1].deps, frozenset([obj]))
+
+
+def grown(ctx: Interpreter, name: str, values: list[Value]) -> Value:
+    """Return what `a += b` or `a |= b` leaves in a container."""
+    first, second = values
+    for obj in first.pts:
+        if obj.kind == "mapping" and name == "|=":
+            absorb(ctx, obj, second)
+        else:
+            updates.add_element(ctx, pointer(obj), heap.elements(ctx, second))
+            lengthen(ctx, obj, second)
+    return Value(first.deps | second.deps, first.pts)
+
+
+def sliced(ctx: Interpreter, base: Value, index: ir.Slice, pos: ir.Pos, frame: Frame) -> Value:
+    """Return `base[a:b]`: of sequences a new one, of others what their elements are."""
+    bounds = [ctx.ops.evaluate(ctx, part, frame) for part in index.parts]
+    extra = NONE
+    for bound in bounds:
+        extra |= ctx.use(bound)
+    ours = frozenset(o for o in base.pts if o.kind == "sequence")
+    if not ours or ours != base.pts:
+        return ctx.ops.read_item(ctx, base, Value(extra))
+    element = heap.elements(ctx, Value(pts=ours))
+    longer = length(ctx, Value(pts=ours)) | extra
+    obj = recency.allocate(ctx, "sequence", frame, ("slice", pos))
+    updates.add_element(ctx, pointer(obj), Value(element.deps | extra, element.pts, element.consts))
+    ctx.store.put((obj, LENGTH), Value(longer))
+    return Value(base.deps, frozenset([obj]))
+
+
+def unpacked(ctx: Interpreter, value: Value) -> list[Value] | None:
+    """Return the elements of a sequence whose elements are known one by one."""
+    if len(value.pts) != 1:
+        return None
+    obj = next(iter(value.pts))
+    if obj.kind != "sequence" or heap.content(ctx, obj) is not BOTTOM:
+        return None
+    found: list[Value] = []
+    while (stored := ctx.store.get((obj, item_field(len(found))))) is not None:
+        found.append(heap.arrive(ctx, stored, value.deps))
+    return found
+
+
+def absorb(ctx: Interpreter, obj: Obj, value: Value) -> None:
+    """Copy the elements of what a value may be into an object."""
+    for source in value.pts:
+        ctx.store.look(source)
+        for name in list(source.fields):
+            stored = ctx.store.get((source, name))
+            if stored is not None and (name.startswith("[") or name in (ANY, KEYS, LENGTH)):
+                field = heap.attribute_of_item(obj, name[2:-2]) if name.startswith("['") else name
+                updates.weaken(ctx, obj, field, heap.arrive(ctx, stored, value.deps))
+        content = heap.content(ctx, source)
+        if content.deps and ctx.store.get((source, ANY)) is None:
+            updates.add_element(ctx, pointer(obj), content)
+    if not value.pts and value.deps:
+        updates.add_element(ctx, pointer(obj), Value(value.deps))
+
+
+def empty(ctx: Interpreter, obj: Obj) -> None:
+    """Take everything out of a container."""
+    for name in list(obj.fields):
+        if name.startswith("[") or name in (ANY, KEYS, LENGTH):
+            ctx.store.put((obj, name), ABSENT)
+
+
+# --- lengths ------------------------------------------------------------------------------------------
+
+
+def length(ctx: Interpreter, value: Value) -> Nodes:
+    """Return the nodes that a value's length is data of: of our containers not their elements."""
+    deps = value.deps
+    for obj in value.pts:
+        if sized(obj):
+            stored = ctx.store.get((obj, LENGTH))
+            made = stored.deps if stored is not None else NONE
+            if obj.parent is not None:
+                made |= heap.content(ctx, obj.parent).deps
+            deps |= ctx.graph.through(made, value.deps)
+        elif SENT in obj.fields:
+            deps |= heap.content(ctx, obj).deps
+        else:
+            deps |= ctx.use(Value(value.deps, frozenset([obj])))
+    return deps
+
+
+def sized(obj: Obj) -> bool:
+    """Tell whether an object has elements that say nothing of how many there are: ours, and arrays of messages."""
+    if obj.kind in ("sequence", "mapping"):
+        return True
+    return obj.parent is not None and (ANY in obj.fields or any(n.startswith("[") for n in obj.subs))
+
+
+def placed(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
+    """Return the nodes that put elements into containers, whatever was stored inside the elements later."""
+    found: set[int] = set()
+    for obj in objects:
+        ctx.store.look(obj)
+        found |= heap.content(ctx, obj).deps
+        for name in list(obj.fields):
+            if name.startswith("[") or name in (KEYS, LENGTH):
+                value = ctx.store.get((obj, name))
+                found |= value.deps if value is not None else NONE
+    return frozenset(found)
+
+
+def lengthen(ctx: Interpreter, obj: Obj, value: Value) -> None:
+    """Let an object's length depend on that of a value whose elements it takes over."""
+    longer = length(ctx, value)
+    if longer:
+        decide_length(ctx, obj, longer)
+
+
+def decide_length(ctx: Interpreter, obj: Obj, deps: Nodes) -> None:
+    """Let an object's length depend on more than before."""
+    before = ctx.store.get((obj, LENGTH))
+    ctx.store.put((obj, LENGTH), Value(deps | (before.deps if before is not None else NONE)))

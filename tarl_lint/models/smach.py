@@ -1,0 +1,34 @@
+"""The states of smach's machines, added by calls and made of functions."""
+
+from __future__ import annotations
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Invocation
+from tarl_lint.memory import recency, userdata
+from tarl_lint.memory.reachable_data import in_order
+from tarl_lint.memory.values import UNKNOWN, Value, pointer
+
+LATER = frozenset(["closure", "bound", "partial"])  # what a library can call of what it is given
+
+
+def add_state(ctx: Interpreter, it: Invocation) -> Value:
+    """Add a state to a machine: `remapping` says what its names for shared fields stand for."""
+    plain, named = it.arguments
+    states = plain[1] if len(plain) > 1 else named.get("state", UNKNOWN)
+    remapping = plain[3] if len(plain) > 3 else named.get("remapping", UNKNOWN)
+    for table in in_order(remapping.pts):
+        held = ((n, ctx.store.get((table, n))) for n in list(table.fields) if n.startswith("['"))
+        pairs = [(n[2:-2], v.texts()[0]) for n, v in held if v is not None and v.texts()]
+        for state in states.pts:
+            userdata.rename(ctx, state, pairs)
+    return UNKNOWN
+
+
+def state_by_callbacks(ctx: Interpreter, it: Invocation) -> Value:
+    """Make a state of functions, which are handed what the states share."""
+    state = recency.allocate(ctx, "lib", it.frame, ("made", it.call.slot))
+    for value in (*it.arguments[0], *it.arguments[1].values()):
+        for target in in_order(value.pts):
+            if target.kind in LATER:
+                ctx.ops.call_later(ctx, target, [userdata.userdata(ctx, state)])
+    return pointer(state)

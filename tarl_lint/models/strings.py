@@ -1,0 +1,101 @@
+"""Texts made of known texts: names of topics, parameters, keys."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, Final
+
+from tarl_lint.interpret import call_contexts, operators
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Arguments, Invocation
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import MAX_TEXTS, UNKNOWN, Consts, Value
+from tarl_lint.models import sizes
+
+TEXT_METHODS: Final = frozenset(
+    [
+        "format",
+        "join",
+        "strip",
+        "lstrip",
+        "rstrip",
+        "lower",
+        "upper",
+        "title",
+        "replace",
+        "removeprefix",
+        "removesuffix",
+    ]
+)
+MAX_TEXT: Final = 300
+
+
+def text_of(ctx: Interpreter, base: Value, name: str, arguments: Arguments) -> Consts:
+    """Return the texts that a method of known texts gives, None when something of it is not known."""
+    plain, named = arguments
+    return _made(
+        ctx,
+        lambda text, *given: getattr(text, name)(
+            *given[: len(plain)], **dict(zip(named, given[len(plain) :], strict=True))
+        ),
+        [base, *plain, *named.values()],
+    )
+
+
+def keys_joined(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> Arguments:
+    """Return what `text.join(mapping)` joins: its keys, whatever they stand for."""
+    given = [
+        Value(operators.membership(ctx, v, frame, ("joined", call.slot)))
+        if any(o.kind == "mapping" for o in v.pts)
+        else v
+        for v in arguments[0]
+    ]
+    return given, arguments[1]
+
+
+def _made(ctx: Interpreter, function: Callable[..., object], values: Sequence[Value]) -> Consts:
+    """Return the texts that a function makes of all that the values may be, the first being a text."""
+    ways = [_known(ctx, v) for v in values]
+    if not all(ways) or math.prod(len(w) for w in ways) > MAX_TEXTS:
+        return None
+    try:
+        made = [function(*given) for given in itertools.product(*ways) if isinstance(given[0], str)]
+    except Exception:  # whatever the program itself would fail with
+        return None
+    return frozenset(made) if made and all(isinstance(m, str) and len(m) <= MAX_TEXT for m in made) else None
+
+
+def _known(ctx: Interpreter, value: Value) -> list[Any]:
+    """Return the constants that a value may be, or lists of such; nothing when not all is known."""
+    if value.consts and not value.pts:
+        return sorted(value.consts, key=str)
+    parts = [_known(ctx, e) for e in sizes.unpacked(ctx, value) or ()]
+    if not value.pts or sizes.unpacked(ctx, value) is None or math.prod(map(len, parts)) > MAX_TEXTS:
+        return []
+    return [list(way) for way in itertools.product(*parts)]
+
+
+def remainder(ctx: Interpreter, values: list[Value]) -> Consts:
+    """Return `text % values` where all is known."""
+    return _made(ctx, lambda text, given: text % (tuple(given) if isinstance(given, list) else given), values)
+
+
+def as_text(ctx: Interpreter, it: Invocation) -> Value:
+    """Return `str(x)`."""
+    deps = call_contexts.all_used(ctx, it.arguments)
+    known, constant = it.arguments[0][0].constant() if len(it.arguments[0]) == 1 else (False, None)
+    return Value(deps, consts=frozenset([str(constant)]) if known else None)
+
+
+def same_text(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
+    """Return a name that a function resolves, as it is written."""
+    return it.arguments[0][0] if it.arguments[0] else UNKNOWN
+
+
+def joined_path(ctx: Interpreter, it: Invocation) -> Value:
+    """Return the names joined by slashes."""
+    whole = _made(ctx, lambda *parts: "/".join(str(p).rstrip("/") for p in parts), it.arguments[0])
+    return Value(call_contexts.all_used(ctx, it.arguments), consts=whole)

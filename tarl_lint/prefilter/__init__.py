@@ -1,0 +1,1 @@
+"""What cannot matter, told before anything is interpreted."""

@@ -1,0 +1,1 @@
+"""Questions of the plugin about constants at a site."""

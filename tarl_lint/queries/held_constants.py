@@ -1,0 +1,229 @@
+"""What variables hold: constants and where they were written, fields of messages kept unchanged."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory import heap, reachable_data
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import BOTTOM, NONE, Obj, Value, join
+
+MAX_VARIABLES = 400
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """A constant where it is written; value None for what only the run time tells (a parameter)."""
+
+    value: bool | int | float | None
+    path: str
+    pos: ir.Pos
+
+
+class Origins:
+    """Follows values back to the constants they are."""
+
+    def __init__(self, machine: Linker) -> None:
+        self.machine = machine
+        self.graph = machine.graph
+        self.topics: dict[Obj, frozenset[str]] = {}
+        for record in machine.sources.values():
+            for message in record.messages.values():
+                self.topics[message] = frozenset(t.lstrip("/") for t in record.topics)
+
+    def of(self, expr: ir.Expr, value: Value | None) -> frozenset[Origin]:
+        """Return where the constants that an expression may be were written; none when it may be more."""
+        if isinstance(expr, ir.Const):
+            if isinstance(expr.value, (bool, int, float)):
+                return frozenset([Origin(expr.value, "", expr.pos)])
+            return frozenset()
+        if value is None or value.pts or not value.deps:
+            return frozenset()
+        found = self._trace(value.deps, set())
+        return frozenset(found) if found is not None else frozenset()
+
+    def entries(self, value: Value | None, index: Value | None) -> frozenset[Origin]:
+        """Return where the numbers of a table were written from which a computed index takes one; else none."""
+        if value is None or index is None or value.pts:
+            return frozenset()
+        found = self._trace(value.deps - self.machine.use(index), set())
+        numbers = found is not None and all(origin.value is not None for origin in found)
+        return frozenset(found) if found and numbers else frozenset()
+
+    def _trace(self, deps: Iterable[int], seen: set[int]) -> set[Origin] | None:
+        """Return the constants behind nodes, None when something else is behind one."""
+        found: set[Origin] = set()
+        for node in sorted(deps):
+            if node in seen:
+                continue
+            seen.add(node)
+            literal = self.graph.literals.get(node)
+            if literal is not None:
+                value, pos, path = literal
+                found.add(Origin(value if isinstance(value, (bool, int, float)) else None, path, pos))
+                continue
+            if node in self.graph.copies or node in self.graph.carried:
+                inner = self._trace(self.graph.data[node], seen)
+                if inner is None:
+                    return None
+                found |= inner
+            elif node not in self.graph.held:  # who only passes an object on says nothing about what is in it
+                return None
+        return found
+
+    def unchanged(self, value: Value, topic: str, path: str) -> bool:
+        """Tell whether a value is a field of a topic's messages, or a constant from before the first."""
+        fields = 0
+        for obj in value.pts:
+            root = obj.whole
+            if root in self.topics:
+                if topic not in self.topics[root] or _dotted(obj) != path:
+                    return False
+                fields += 1
+            elif obj.kind != "lib" or reachable_data.deep(self.machine, frozenset([obj])):
+                return False
+        return fields > 0 and self._copied(value.deps, set())
+
+    def _copied(self, deps: Iterable[int], seen: set[int]) -> bool:
+        for node in deps:
+            if node in seen:
+                continue
+            seen.add(node)
+            initial = not self.graph.data[node]
+            copied = node in self.graph.copies or node in self.graph.carried
+            if not initial and not (copied and self._copied(self.graph.data[node], seen)):
+                return False
+        return True
+
+    def constant(self, value: Value) -> bool:
+        """Tell whether a value is nothing but constants (or nothing yet)."""
+        return value is BOTTOM or (not value.pts and all(not self.graph.data[d] for d in value.deps))
+
+
+@dataclass(slots=True)
+class Holding:
+    """What the variables at one statement may hold, over all visits."""
+
+    values: dict[str, Value] = field(default_factory=dict)
+    fields: dict[tuple[str, str], Value] = field(default_factory=dict)  # variable and field read from it
+
+    fresh: dict[str, bool] = field(default_factory=dict)  # variables written in the run that is looked at
+
+    delivered: set[Obj] = field(default_factory=set)  # messages that have just arrived
+
+    def look(self, machine: Linker, frame: Frame) -> None:
+        """Add what the variables hold now."""
+        self.delivered |= machine.delivered
+        for name, value, written in _variables(machine, frame):
+            self.fresh[name] = written and self.fresh.get(name, True)
+            before = self.values.get(name)
+            self.values[name] = value if before is None else join(before, value)
+            if any(o.kind == "message" for o in value.pts):
+                self._fields(machine, name, value)
+
+    def _fields(self, machine: Linker, name: str, value: Value) -> None:
+        """Read the fields of a message kept whole which were written here: they may no more be the topic's."""
+        pending: list[tuple[str, Value]] = [("", value)]
+        while pending:
+            path, current = pending.pop()
+            for obj in current.pts:
+                for part in [*obj.fields, *obj.subs]:
+                    longer = f"{path}.{part}" if path else part
+                    if (name, longer) in self.fields or part == "*" or longer.count(".") > 5:
+                        continue
+                    stored = heap.read(machine, Value(NONE, current.pts), part)
+                    self.fields[name, longer] = stored
+                    pending.append((longer, stored))
+
+    def expressions(self, topic: str, path: str, origins: Origins) -> tuple[str, ...]:
+        """Return the expressions that hold a topic's field, shortest first."""
+        found: list[tuple[str, bool]] = []
+        for name, value in self.values.items():
+            for obj in value.pts:
+                if obj.whole not in origins.topics:
+                    continue
+                rest = _rest(_dotted(obj), path)
+                if rest is None or not origins.unchanged(value, topic, _dotted(obj)):
+                    continue
+                if self._intact(name, rest, obj, origins, topic):
+                    found.append((name + _spelled(rest), self.fresh[name]))
+                break
+        arrived = any(topic in origins.topics.get(m, ()) for m in self.delivered)
+        new = (
+            [text for text, fresh in found if fresh] if arrived else []
+        )  # an earlier message's values are stale
+        texts = new or [text for text, _ in found]
+        return tuple(sorted(texts, key=lambda text: (text.count("."), len(text), text)))
+
+    def _intact(self, name: str, rest: str, obj: Obj, origins: Origins, topic: str) -> bool:
+        """Tell whether no field on the way was written."""
+        parts = rest.split(".") if rest else []
+        outer = _dotted(obj)
+        for count in range(1, len(parts) + 1):
+            key = ".".join(parts[:count])
+            whole = f"{outer}.{key}" if outer else key
+            read = self.fields.get((name, key)) or self.fields.get((name, _bracketed(key)))
+            if read is not None and not origins.unchanged(read, topic, whole):
+                return False
+        return True
+
+
+def _variables(machine: Linker, frame: Frame) -> Iterator[tuple[str, Value, bool]]:
+    """Yield what can be named at a statement: locals, names of enclosing functions, globals, their attributes."""
+    seen: set[str] = set()
+    count = 0
+    around: Frame | None = frame
+    holders: list[Obj] = []
+    while around is not None:
+        holders.append(around)
+        around = around.outer
+    for holder in (*holders, frame.module):
+        for name in list(holder.fields):
+            value = machine.store.get((holder, name)) if name not in seen and name.isidentifier() else None
+            if value is None:
+                continue
+            seen.add(name)
+            yield name, value, heap.written_here(machine, holder, name)
+            yield from _attributes(machine, name, value)
+            count += 1
+            if count > MAX_VARIABLES:
+                return
+
+
+def _attributes(machine: Linker, owner: str, value: Value) -> Iterator[tuple[str, Value, bool]]:
+    if len(value.pts) != 1:
+        return
+    obj = next(iter(value.pts))
+    if obj.kind != "instance":
+        return
+    for name in list(obj.fields):
+        inner = machine.store.get((obj, name))
+        if inner is not None and name.isidentifier():
+            yield f"{owner}.{name}", inner, heap.written_here(machine, obj, name)
+
+
+def _dotted(obj: Obj) -> str:
+    """Return the field of a message that an object is, elements by number: `ranges.0`."""
+    return obj.path().replace("[", "").replace("]", "")
+
+
+def _bracketed(path: str) -> str:
+    return ".".join(f"[{p}]" if p.lstrip("-").isdigit() else p for p in path.split("."))
+
+
+def _rest(have: str, want: str) -> str | None:
+    """Return what is left to read, None when it is another field."""
+    if have == want:
+        return ""
+    if not have:
+        return want
+    return want[len(have) + 1 :] if want.startswith(f"{have}.") else None
+
+
+def _spelled(rest: str) -> str:
+    """Write a dotted field as Python does."""
+    parts = rest.split(".") if rest else []
+    return "".join(f"[{p}]" if p.lstrip("-").isdigit() else f".{p}" for p in parts)

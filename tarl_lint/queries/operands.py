@@ -1,0 +1,127 @@
+"""Which expressions of a statement a repair may replace: uses of numbers, not indices, sizes or rates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Final, Protocol
+
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory.values import Value
+
+NOT_BEHAVIOUR: Final = frozenset(
+    [
+        "Rate", "create_rate", "sleep", "range", "zeros", "ones", "empty", "reshape", "deque", "Subscriber",
+        "Publisher", "create_subscription", "create_publisher", "create_timer", "create_service", "Timer", "Service",
+        "declare_parameter", "declare_parameters", "waitKey", "namedWindow", "QoSProfile", "init_node", "spin_once",
+        "wait_for_message", "wait_for_service", "get_parameter", "zfill", "ljust", "rjust", "seed", "time_ns",
+    ]
+)  # fmt: skip
+PARAMETER_CALLS: Final = frozenset(["get_param"])
+LOGGING: Final = frozenset(
+    [
+        "info",
+        "debug",
+        "warn",
+        "warning",
+        "error",
+        "fatal",
+        "loginfo",
+        "logdebug",
+        "logwarn",
+        "logerr",
+        "print",
+    ]
+)
+
+
+class Constants(Protocol):
+    """Tells whether an expression is a constant."""
+
+    def of(self, expr: ir.Expr, value: Value | None) -> object:
+        """Return where the constants were written, nothing when it is not one."""
+        ...
+
+    def entries(self, value: Value | None, index: Value | None) -> object:
+        """Return where the entries of a table of constants were written, nothing when it is none."""
+        ...
+
+
+def uses(statement: ir.Stmt, values: Mapping[ir.Pos, Value], constants: Constants) -> Iterator[ir.Expr]:
+    """Yield the expressions of a statement that may be constants, outermost first."""
+    for expr in _expressions(statement):
+        yield from _inside(expr, values, constants)
+
+
+def _expressions(statement: ir.Stmt) -> Sequence[ir.Expr]:
+    """Return what a statement (its header) evaluates, without the targets of assignments."""
+    if isinstance(statement, ir.Assign):
+        if statement.augmented and isinstance(statement.value, ir.Operation):
+            return statement.value.parts[1:]
+        return [statement.value]
+    if isinstance(statement, (ir.Evaluate, ir.Return, ir.Raise)):
+        return [statement.value] if statement.value is not None else []
+    if isinstance(statement, ir.If):
+        return [statement.test]
+    if isinstance(statement, ir.Loop):
+        return [statement.source]
+    if isinstance(statement, ir.With):
+        return [context for context, _ in statement.items]
+    return []
+
+
+def _inside(expr: ir.Expr, values: Mapping[ir.Pos, Value], constants: Constants) -> Iterator[ir.Expr]:
+    if isinstance(expr, (ir.Const, ir.Name)):
+        yield expr
+        return
+    if isinstance(expr, (ir.Attribute, ir.Item)):
+        if constants.of(expr, values.get(expr.pos)) or _entry(expr, values, constants):
+            yield expr
+        else:
+            yield from _inside(expr.base, values, constants)
+        return
+    if isinstance(expr, ir.Call):
+        yield from _call(expr, values, constants)
+        return
+    for part in _parts(expr):
+        yield from _inside(part, values, constants)
+
+
+def _entry(expr: ir.Attribute | ir.Item, values: Mapping[ir.Pos, Value], constants: Constants) -> bool:
+    """Tell whether an expression looks a number up in a table by an index that is computed."""
+    if not isinstance(expr, ir.Item):
+        return False
+    return bool(constants.entries(values.get(expr.pos), values.get(expr.index.pos)))
+
+
+def _call(expr: ir.Call, values: Mapping[ir.Pos, Value], constants: Constants) -> Iterator[ir.Expr]:
+    function = expr.function
+    name = function.name if isinstance(function, (ir.Name, ir.Attribute)) else ""
+    if name in PARAMETER_CALLS:
+        yield expr
+        return
+    if name in NOT_BEHAVIOUR or name in LOGGING:
+        return
+    if isinstance(function, ir.Attribute) and not isinstance(function.base, ir.Name):
+        yield from _inside(function.base, values, constants)
+    for argument in expr.arguments:
+        yield from _inside(argument, values, constants)
+    for keyword, argument in expr.keywords:
+        if keyword not in ("queue_size", "qos_profile", "timeout", "timeout_sec", "dtype", "axis"):
+            yield from _inside(argument, values, constants)
+
+
+def _parts(expr: ir.Expr) -> Sequence[ir.Expr]:
+    """Return the parts of an expression that take part in its value as numbers."""
+    if isinstance(expr, ir.Operation):
+        return () if expr.operator == "text" else expr.parts
+    if isinstance(expr, ir.Choice):
+        return (expr.test, expr.then, expr.other)
+    if isinstance(expr, ir.SequenceDisplay):
+        return expr.items
+    if isinstance(expr, ir.MappingDisplay):
+        return [value for _, value in expr.items]
+    if isinstance(expr, ir.Comprehension):
+        return [expr.element, *(c for _, _, conditions in expr.loops for c in conditions)]
+    if isinstance(expr, (ir.Starred, ir.Walrus, ir.Yield)):
+        return (expr.value,)
+    return ()

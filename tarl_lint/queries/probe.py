@@ -1,0 +1,102 @@
+"""Questions about single statements, answered by running the analysis once more and looking on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from tarl_lint.flows.statement_text import Texts
+from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import Value, join
+from tarl_lint.model import Flow, Operand, SiteId
+from tarl_lint.queries.held_constants import Holding, Origin, Origins
+from tarl_lint.queries.operands import uses
+
+
+@dataclass(slots=True)
+class Seen:
+    """What was seen at one statement: what its expressions were, and what its variables hold before it runs."""
+
+    statement: ir.Stmt
+    path: str
+    values: dict[ir.Pos, Value] = field(default_factory=dict)
+    holding: Holding = field(default_factory=Holding)
+
+
+class Prober:
+    """Looks at every site of the flows in one more run."""
+
+    def __init__(self, machine: Linker, flows: Sequence[Flow]) -> None:
+        self.machine = machine
+        self.texts = Texts(machine.modules)
+        self.origins = Origins(machine)
+        self.starts = {
+            (step.span.path, step.span.line, step.span.column): step.site for f in flows for step in f.steps
+        }
+        self.seen: dict[SiteId, Seen] = {}
+        self._columns: dict[tuple[str, ir.Pos], SiteId | None] = {}
+        machine.probe, machine.watch = self._look, self._arrive
+        machine.replay()
+        machine.probe = machine.watch = None
+
+    def operands(self, site: SiteId) -> tuple[Operand, ...]:
+        """Return the constants that a site uses, in the order of the text."""
+        seen = self.seen.get(site)
+        if seen is None:
+            return ()
+        text = self.texts[seen.path]
+        found: dict[ir.Pos, Operand] = {}
+        for expr in uses(seen.statement, seen.values, self.origins):
+            origins = self._origins(expr, seen.values)
+            if not origins or expr.pos in found:
+                continue
+            values = {(type(o.value), o.value) for o in origins}
+            single = next(iter(origins)) if len(origins) == 1 else None
+            value = next(iter(origins)).value if len(values) == 1 else None
+            span = text.stretch(expr.pos)
+            definition = None
+            if single is not None:
+                definition = self.texts[single.path].stretch(single.pos) if single.path else span
+            found[expr.pos] = Operand(site, span, text.code(span), value, definition)
+        return tuple(sorted(found.values(), key=lambda o: o.span))
+
+    def _origins(self, expr: ir.Expr, values: Mapping[ir.Pos, Value]) -> frozenset[Origin]:
+        found = self.origins.of(expr, values.get(expr.pos))
+        if not found and isinstance(expr, ir.Item):
+            return self.origins.entries(values.get(expr.pos), values.get(expr.index.pos))
+        return found
+
+    def holders(self, topic: str, field: str, site: SiteId) -> tuple[str, ...]:
+        """Return expressions that hold a topic's field unchanged at a site, shortest first."""
+        seen = self.seen.get(site)
+        return seen.holding.expressions(topic.lstrip("/"), field, self.origins) if seen is not None else ()
+
+    def _site(self, frame: Frame, statement: ir.Stmt) -> SiteId | None:
+        key = (frame.program.path, statement.pos)
+        if key not in self._columns:
+            span = self.texts[key[0]].stretch(statement.pos)
+            self._columns[key] = self.starts.get((span.path, span.line, span.column))
+        return self._columns[key]
+
+    def _arrive(self, frame: Frame, statement: ir.Stmt) -> None:
+        """Look at the variables before a statement runs."""
+        site = self._site(frame, statement)
+        if site is None:
+            return
+        seen = self.seen.get(site)
+        if seen is None:
+            seen = self.seen[site] = Seen(statement, frame.program.path)
+        seen.holding.look(self.machine, frame)
+
+    def _look(self, ctx: Interpreter, frame: Frame, statement: ir.Stmt, expr: ir.Expr, value: Value) -> None:  # noqa: ARG002
+        """Look at what an expression is."""
+        site = self._site(frame, statement)
+        if site is None:
+            return
+        seen = self.seen.get(site)
+        if seen is not None:
+            before = seen.values.get(expr.pos)
+            seen.values[expr.pos] = value if before is None else join(before, value)

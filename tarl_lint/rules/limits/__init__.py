@@ -1,0 +1,1 @@
+"""What rules about magnitudes ask: range checks."""

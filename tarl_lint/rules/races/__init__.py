@@ -1,0 +1,1 @@
+"""What rules about races ask: locks that are held, threads, accesses."""

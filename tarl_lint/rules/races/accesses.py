@@ -1,0 +1,163 @@
+"""Where a function reads and writes state that outlives it: attributes of its object, globals of its module."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final, Literal
+
+from tarl_lint import catalog
+from tarl_lint.evidence import Outline
+from tarl_lint.rules.races.held_locks import FUNCTIONS, in_loop, locks_around
+from tarl_lint.trees import children, walk
+
+MUTATORS: Final = catalog.MUTATORS | {"pop", "popleft", "remove", "clear", "sort", "reverse", "discard"}
+How = Literal["replaces", "adds", "inside", "reads", "length"]  # what an access does to what a name holds
+CONTAINERS: Final = frozenset(["OrderedDict", "Counter", "ChainMap", "UserDict", "UserList"])
+
+
+@dataclass(frozen=True)
+class Access:
+    """An access as written, with the locks held around it in its function.
+
+    `constant`: it stores one, as flags do.
+    """
+
+    node: ast.Attribute | ast.Name
+    locks: frozenset[str]
+    writes: bool
+    constant: bool
+    repeated: bool
+    how: How = "reads"
+
+    @property
+    def name(self) -> str:
+        """Return the name of the attribute or global."""
+        return self.node.attr if isinstance(self.node, ast.Attribute) else self.node.id
+
+    @property
+    def is_global(self) -> bool:
+        """Tell whether it is to a global rather than to an attribute."""
+        return isinstance(self.node, ast.Name)
+
+
+def accesses(function: ast.AST, receiver: str, outline: Outline) -> Iterator[Access]:
+    """Yield the accesses in a function to attributes of its receiver (its name, "" for none) and to globals."""
+    shared = _globals(outline) - _locals(function)
+    for node in _own(function):
+        if isinstance(node, ast.Attribute):
+            if not (isinstance(node.value, ast.Name) and node.value.id == receiver):
+                continue
+        elif not (isinstance(node, ast.Name) and node.id in shared):
+            continue
+        writes = _writes(node, outline)
+        if writes or not _asks_presence(node, outline):
+            constant = writes and _stores_constant(node, outline)
+            how = _changes(node, outline) if writes else _looks(node, outline)
+            yield Access(node, locks_around(node, outline), writes, constant, in_loop(node, outline), how)
+
+
+def _globals(outline: Outline) -> frozenset[str]:
+    """Return the names that the module's functions change and those that hold containers from the start."""
+    if outline.shared is None:
+        outline.shared = frozenset(outline.declared | _containers(outline))
+    return outline.shared
+
+
+def _containers(outline: Outline) -> set[str]:
+    """Return the globals that hold containers from the start."""
+    return {
+        target.id
+        for node in outline.tree.body
+        if isinstance(node, ast.Assign) and isinstance(node.value, (ast.List, ast.Dict, ast.Set, ast.Call))
+        for target in node.targets
+        if isinstance(target, ast.Name) and not _foreign(target.id, outline)
+    }
+
+
+def _locals(function: ast.AST) -> set[str]:
+    """Return the names that are a function's own."""
+    arguments = getattr(function, "args", None)
+    names = {a.arg for a in walk(arguments) if isinstance(a, ast.arg)} if arguments is not None else set()
+    shared: set[str] = set()
+    for node in _own(function):
+        if isinstance(node, ast.Global):
+            shared |= set(node.names)
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            names.add(node.id)
+    return names - shared
+
+
+def _own(function: ast.AST) -> Iterator[ast.AST]:
+    """Yield the nodes of a function, not of functions inside it."""
+    body = getattr(function, "body", [])
+    pending: list[ast.AST] = list(body) if isinstance(body, list) else [body]
+    while pending:
+        node = pending.pop()
+        yield node
+        pending += [c for c in children(node) if not isinstance(c, FUNCTIONS)]
+
+
+def _writes(node: ast.Attribute | ast.Name, outline: Outline) -> bool:
+    """Tell whether a name, or something inside what it holds, is stored to."""
+    current: ast.expr = node
+    for outer in outline.around(node):
+        if isinstance(getattr(current, "ctx", None), (ast.Store, ast.Del)):
+            return True
+        if isinstance(outer, ast.Call):
+            return current is not node and _mutates(current, node, outline)
+        if not isinstance(outer, (ast.Attribute, ast.Subscript)) or outer.value is not current:
+            return False
+        current = outer
+    return False
+
+
+def _changes(node: ast.Attribute | ast.Name, outline: Outline) -> How:
+    """Tell whether a name gets something new, or what it holds is changed."""
+    if isinstance(node.ctx, ast.Load):
+        return "inside"
+    return "adds" if isinstance(outline.parents.get(node), ast.AugAssign) else "replaces"
+
+
+def _looks(node: ast.expr, outline: Outline) -> How:
+    outer = outline.parents.get(node)
+    asks = isinstance(outer, ast.Call) and isinstance(outer.func, ast.Name) and outer.func.id == "len"
+    return "length" if asks else "reads"
+
+
+def _mutates(method: ast.expr, node: ast.Attribute | ast.Name, outline: Outline) -> bool:
+    """Tell whether a method that is called changes a container; objects of classes guard themselves."""
+    if not isinstance(method, ast.Attribute) or method.attr not in MUTATORS:
+        return False
+    name = node.attr if isinstance(node, ast.Attribute) else node.id
+    return method.value is not node or not _foreign(name, outline)
+
+
+def _foreign(name: str, outline: Outline) -> bool:
+    """Tell whether all that is assigned to a name was handed in, or made by calling a class."""
+    values = outline.assigned.get(name, [])
+    return bool(values) and all(_handed(value) for value in values)
+
+
+def _handed(value: ast.expr) -> bool:
+    if isinstance(value, ast.Call):
+        function = value.func
+        made = function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+        return made.lstrip("_")[:1].isupper() and made not in CONTAINERS
+    return isinstance(value, ast.Name)
+
+
+def _asks_presence(node: ast.expr, outline: Outline) -> bool:
+    """Tell whether a value is only asked whether it is there: `self.x is None`, `if not self.x`."""
+    outer = outline.parents.get(node)
+    if isinstance(outer, ast.Compare):
+        return all(isinstance(o, (ast.Is, ast.IsNot)) for o in outer.ops)
+    return isinstance(outer, (ast.If, ast.While, ast.BoolOp)) or (
+        isinstance(outer, ast.UnaryOp) and isinstance(outer.op, ast.Not)
+    )
+
+
+def _stores_constant(node: ast.expr, outline: Outline) -> bool:
+    outer = outline.parents.get(node)
+    return isinstance(outer, ast.Assign) and isinstance(outer.value, ast.Constant)

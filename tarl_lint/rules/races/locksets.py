@@ -1,0 +1,241 @@
+"""Which locks are held where state is read and written, along the chain of calls."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from tarl_lint.evidence import Evidence
+from tarl_lint.ir.nodes import Pos
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import Obj
+from tarl_lint.rules.races.accesses import Access, How, accesses
+from tarl_lint.rules.races.held_locks import asked_before, in_loop, locks_around
+from tarl_lint.rules.races.threads import EXECUTOR, MAIN, Threads
+
+MADE: Final = re.compile(r"\b(R?Lock|Condition|(Bounded)?Semaphore)\(")
+State = tuple[object, str]  # an object with one of its attributes, or a module with one of its globals
+
+
+@dataclass(frozen=True)
+class Spot:
+    """An access, or a call that leads to it: where, in which function, with which locks held.
+
+    `asked` are locks that the function takes later, if all it does here is to ask whether to leave.
+    """
+
+    path: str
+    pos: Pos
+    function: str
+    locks: frozenset[str] = frozenset()
+    asked: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class Use:
+    """One access to shared state in one thread: its spots from the inside out, the access first.
+
+    `name` is as written (`self.pose`, `pose`); `constant`: it stores a constant, as flags do.
+    """
+
+    name: str
+    spots: tuple[Spot, ...]
+    thread: object
+    writes: bool
+    constant: bool = False
+    how: How = "reads"
+
+    @property
+    def locks(self) -> frozenset[str]:
+        """Return the locks held at the access."""
+        return self.spots[0].locks
+
+
+class Locking:
+    """Collects the accesses to attributes of objects, and to globals, in modules that make locks."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        self.evidence = evidence
+        modules = evidence.machine.modules.values()
+        self.paths = {m.path for m in modules if MADE.search(m.text) or "with self." in m.text}
+        self.active = any(MADE.search(m.text) for m in modules)
+        self._accesses: dict[tuple[str, Pos], list[Access]] = {}
+
+    def uses(self) -> dict[State, list[Use]]:
+        """Return every access by what it is to, except while the object is being made."""
+        found: dict[State, dict[Use, None]] = {}
+        if not self.active:
+            return {}
+        threads = Threads(self.evidence)
+        for frame in list(self.evidence.machine.frames.values()):
+            written = self.accesses(frame) if frame.program.path in self.paths else []
+            thread = threads.of(frame) if written else None
+            if thread is None:
+                continue
+            callers, repeated = self._callers(frame)
+            receiver = _receiver(frame)
+            for access in written:
+                state = _state(access, frame, receiver)
+                if state is None:
+                    continue
+                if thread in (MAIN, EXECUTOR) and _top(frame) and not (repeated or access.repeated):
+                    continue  # it may be from before the threads started
+                use = self._use(access, frame, thread, callers)
+                found.setdefault(state, {})[use] = None
+        return {state: list(uses) for state, uses in found.items()}
+
+    def _use(self, access: Access, frame: Frame, thread: object, callers: Sequence[Spot]) -> Use:
+        node, path = access.node, frame.program.path
+        pos = (node.lineno, node.col_offset, node.end_lineno or 0, node.end_col_offset or 0)
+        above = callers[0].locks if callers else frozenset[str]()
+        asked = asked_before(node, self.evidence.outline(path))
+        spot = Spot(path, pos, frame.function.name, access.locks | above, asked)
+        name = access.name if access.is_global else f"self.{access.name}"
+        return Use(name, (spot, *callers), thread, access.writes, access.constant, access.how)
+
+    def _callers(self, frame: Frame) -> tuple[list[Spot], bool]:
+        """Return the calls that lead to a frame, the nearest first, and whether one is made again and again."""
+        spots: list[Spot] = []
+        repeated = False
+        current: Frame = frame
+        while current.caller is not None and current.call is not None and current.call_pos is not None:
+            path, pos, caller = current.caller.program.path, current.call_pos, current.caller
+            outline = self.evidence.outline(path)
+            call = outline.call(pos)
+            own = locks_around(call, outline) if call is not None else frozenset[str]()
+            asked = asked_before(call, outline) if call is not None else frozenset[str]()
+            repeated |= call is not None and in_loop(call, outline)
+            spots.append(Spot(path, pos, caller.function.name, own, asked))
+            current = caller
+        held = frozenset[str]()
+        for index in range(len(spots) - 1, -1, -1):
+            spot = spots[index]
+            held |= spot.locks
+            spots[index] = Spot(spot.path, spot.pos, spot.function, held, spot.asked)
+        return spots, repeated
+
+    def accesses(self, frame: Frame) -> list[Access]:
+        """Return the accesses written in a function."""
+        key = (frame.program.path, frame.function.pos)
+        known = self._accesses.get(key)
+        if known is None:
+            outline = self.evidence.outline(key[0])
+            found = accesses(frame.function.node, _receiver_name(frame), outline)
+            known = self._accesses[key] = list(found)
+        return known
+
+
+def unguarded(uses: Sequence[Use]) -> Iterator[tuple[Use, Spot]]:
+    """Yield the accesses without lock, each with the place where the lock is missing.
+
+    That is the access itself, unless others come to it with a lock: then it is the call that comes without.
+    """
+    held = {(s.path, s.pos) for use in uses for s in use.spots if s.locks}
+    locks = frozenset(lock for use in uses for lock in use.locks)
+    for use in uses:
+        if use.locks:
+            continue
+        spot = next((s for s in use.spots if (s.path, s.pos) not in held), use.spots[-1])
+        if use.writes or not spot.asked & locks:
+            yield use, spot
+
+
+class Harm:
+    """Tells where an access without lock can go wrong beside one that holds it.
+
+    Python stores a reference at once: one look at something that is only ever replaced sees the old or the new one,
+    and storing something new is lost only where another changes what is there, or relies on it for longer.
+    """
+
+    def __init__(self, uses: Mapping[State, Sequence[Use]]) -> None:
+        self._times: dict[object, set[Pos]] = {}  # by state and function: where it is accessed
+        self._read: dict[object, set[State]] = {}  # by function: what it reads without lock
+        self._written: dict[object, set[State]] = {}  # by function: what it writes under a lock
+        self._locked: set[object] = set()  # by state and function: what it accesses under a lock
+        for state, every in uses.items():
+            for use in every:
+                if use.locks:
+                    self._locked.add((state, *_by(use)[:3]))
+                self._times.setdefault((state, *_by(use)), set()).add(use.spots[0].pos)
+                if use.writes and use.locks:
+                    self._written.setdefault(_by(use), set()).add(state)
+                elif not use.writes and not use.locks:
+                    self._read.setdefault(_by(use), set()).add(state)
+
+    def between(self, state: State, use: Use, guarded: Use) -> bool:
+        """Tell whether `use`, without lock, can go wrong beside `guarded`."""
+        if use.how == "length":
+            return False
+        if use.writes:
+            changed = guarded.how in ("adds", "inside") or (guarded.writes and self._relied_on(state, use))
+            return use.how != "replaces" or changed or self._often(state, guarded)
+        torn = self._read.get(_by(use), set()) & self._written.get(_by(guarded), set())
+        return guarded.how == "inside" or self._often(state, use) or len(torn) > 1
+
+    def _relied_on(self, state: State, use: Use) -> bool:
+        """Tell whether a function that stores something without lock takes the lock to work with it."""
+        return (state, *_by(use)[:3]) in self._locked
+
+    def _often(self, state: State, use: Use) -> bool:
+        """Tell whether a function relies on the same state several times."""
+        return len(self._times[(state, *_by(use))]) > 1
+
+
+def _by(use: Use) -> tuple[object, ...]:
+    """Return what tells one function's accesses from others': where it is written, its thread, the locks held."""
+    return use.spots[0].path, use.spots[0].function, use.thread, use.locks
+
+
+def _state(access: Access, frame: Frame, receiver: Obj | None) -> State | None:
+    """Return what an access is to; None while it is being made, and where that is not known."""
+    if access.is_global:
+        return frame.module, access.name
+    return None if receiver is None or _making(frame, receiver) else (receiver, access.name)
+
+
+def _method(frame: Frame) -> Frame | None:
+    """Return the method that a function is, or is written inside of."""
+    current: Frame | None = frame
+    while current is not None and current.owner is None:
+        current = current.outer
+    return current
+
+
+def _receiver(frame: Frame) -> Obj | None:
+    """Return the object whose method runs."""
+    method = _method(frame)
+    key = method.key if method is not None else None
+    found = key[4] if isinstance(key, tuple) and len(key) == 5 else None
+    if not isinstance(found, frozenset) or len(found) != 1:
+        return None
+    obj = next(iter(found))
+    return obj if isinstance(obj, Obj) and obj.kind == "instance" else None
+
+
+def _receiver_name(frame: Frame) -> str:
+    method = _method(frame)
+    parameters = method.function.parameters if method is not None else ()
+    return parameters[0].name if parameters else ""
+
+
+def _making(frame: Frame, receiver: Obj) -> bool:
+    """Tell whether the object is only being made: no other thread knows it yet."""
+    current: Frame | None = frame
+    while current is not None:
+        if current.function.name == "__init__" and _receiver(current) is receiver:
+            return True
+        current = current.caller
+    return False
+
+
+def _top(frame: Frame) -> bool:
+    """Tell whether the program's own start leads here, not a callback."""
+    top = frame
+    while top.caller is not None:
+        top = top.caller
+    key = top.key
+    if not isinstance(key, tuple):
+        return False
+    return key[0] == "module" or (isinstance(key[1], tuple) and key[1][0] in ("main", "node"))

@@ -1,1 +1,0 @@
-"""The value-flow graph: what every statement takes from which other, over a whole set of modules."""
