@@ -34,6 +34,7 @@ Reason = Literal[
     "not shown",
     "cannot be written",
     "never tested",
+    "a smaller step breaks it",
 ]
 
 

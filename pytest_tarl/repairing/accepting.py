@@ -9,8 +9,8 @@ from statistics import fmean
 from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
-from pytest_tarl.repairing.between import Between
-from pytest_tarl.repairing.ledger import Ledger, Tried, alike, of_fresh_seeds, operands
+from pytest_tarl.repairing.between import Between, further
+from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.repairing.neighbours import NOTHING_BESIDE, Beside, beside
 from pytest_tarl.repairing.placing import Placing
@@ -21,7 +21,6 @@ from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 from tarl_lint.model import Operand
 
 QUICK = 3  # seeds on which a guard is looked at before it is tested on fresh ones
-HELD: tuple[Reason, ...] = ("nominal gets worse", "another test gets worse")  # in one world, in both of them
 OLD_WORLD = 8  # episodes that show what a repair for good earns in the old world
 MOST = 5  # candidates that are tested ...
 SHARE = 2  # ... and how many of them may be of the same operands while others wait
@@ -35,16 +34,6 @@ class Accepted:
     candidate: Candidate
     acceptance: Acceptance
     beside: Beside = NOTHING_BESIDE
-
-
-@dataclass(frozen=True)
-class Refused:
-    """The best that did not hold, and why; `mean` is its reward on fresh seeds, -inf where it got none."""
-
-    candidate: Candidate | None
-    reason: Reason
-    mean: float = float("-inf")
-    episodes: int = 0
 
 
 class Examiner:
@@ -125,6 +114,8 @@ class Examiner:
         )
         if known is not None:
             return known
+        if self._goes_further(candidate):
+            return self.ledger.enter(Tried(candidate, "a smaller step breaks it", ()))
         placed = self.placing(candidate, trials)
         if placed is None:
             self._refuse(Refused(candidate, "not at its definition"))
@@ -141,6 +132,15 @@ class Examiner:
             self.waiting.append(candidate)
             return Tried(candidate, "never tested", ())
         return self._on_fresh_seeds(candidate)
+
+    def _goes_further(self, candidate: Candidate) -> bool:
+        """Tell whether a smaller step of the same operands under the same guard broke the designed world."""
+        return any(
+            one.reason == "nominal gets worse"
+            and one.candidate.guard == candidate.guard
+            and further(candidate, one.candidate)
+            for one in self.tried
+        )
 
     def _of_those_waiting(self) -> Accepted | None:
         """Test what had to wait for others, while there are tests left."""
@@ -241,13 +241,3 @@ class Examiner:
 
     def _refuse(self, refused: Refused) -> None:
         self.refused = furthest(self.refused, refused)
-
-
-def furthest(one: Refused, other: Refused) -> Refused:
-    """Return what came further: in how many worlds it held, or else which earned more on fresh seeds."""
-
-    def came(refused: Refused) -> tuple[bool, int, float]:
-        held = HELD.index(refused.reason) + 1 if refused.reason in HELD else 0
-        return refused.candidate is not None, held, refused.mean
-
-    return other if came(other) > came(one) else one

@@ -49,13 +49,26 @@ class Between:
     def told(self, reason: Reason) -> bool:
         """Take what became of the last one; return whether it says on which side to go on."""
         share = (self.weak + self.strong) / 2
-        if reason in ("gain too small", "worse than unrepaired"):
+        if reason in ("gain too small", "fails too often", "worse than unrepaired"):
             self.weak = share
         elif reason == "nominal gets worse":
             self.strong = share
         else:
             return False
         return True
+
+
+def further(candidate: Candidate, other: Candidate) -> bool:
+    """Tell whether a candidate moves each of its operands the same way as another one, and no less far."""
+    mine, its = ({m.operand: factor(m) for m in one.mutations} for one in (candidate, other))
+    if mine.keys() != its.keys():
+        return False
+    pairs = [(mine[operand], its[operand]) for operand in mine]
+    return all(one is not None and two is not None and _beyond(one, two) for one, two in pairs)
+
+
+def _beyond(one: float, other: float) -> bool:
+    return one >= other > 1.0 or one <= other < 1.0
 
 
 def factor(mutation: Mutation) -> float | None:

@@ -19,8 +19,8 @@ from pytest_tarl.patching.mutate import Mutation, guard_text
 from pytest_tarl.patching.reading import read
 from pytest_tarl.patching.suggesting import sarif
 from pytest_tarl.patching.verify import nothing_lost
-from pytest_tarl.repairing.accepting import Accepted, Refused
-from pytest_tarl.repairing.ledger import Tried
+from pytest_tarl.repairing.accepting import Accepted
+from pytest_tarl.repairing.ledger import Refused, Tried
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.partial import Best

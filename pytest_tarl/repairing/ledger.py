@@ -12,6 +12,7 @@ from pytest_tarl.searching.search import Candidate
 from tarl_lint.model import Operand
 
 ALIKE = 0.05  # share of a value that two candidates of the same operands and guard may differ in and be one
+HELD: tuple[Reason, ...] = ("nominal gets worse", "another test gets worse")  # in one world, in both of them
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,16 @@ class Tried:
     totals: tuple[float, ...]
     fresh: bool = False
     tested: bool = False
+
+
+@dataclass(frozen=True)
+class Refused:
+    """The best that did not hold, and why; `mean` is its reward on fresh seeds, -inf where it got none."""
+
+    candidate: Candidate | None
+    reason: Reason
+    mean: float = float("-inf")
+    episodes: int = 0
 
 
 @dataclass
@@ -74,3 +85,13 @@ def _near(one: Mutation, other: Mutation) -> bool:
 def of_fresh_seeds(tried: Sequence[Tried]) -> int:
     """Return how many candidates were run on fresh seeds."""
     return sum(one.fresh for one in tried)
+
+
+def furthest(one: Refused, other: Refused) -> Refused:
+    """Return what came further: in how many worlds it held, or else which earned more on fresh seeds."""
+
+    def came(refused: Refused) -> tuple[bool, int, float]:
+        held = HELD.index(refused.reason) + 1 if refused.reason in HELD else 0
+        return refused.candidate is not None, held, refused.mean
+
+    return other if came(other) > came(one) else one

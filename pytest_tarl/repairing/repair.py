@@ -11,9 +11,10 @@ from pytest_tarl.learning import localize
 from pytest_tarl.learning.judgements import with_worlds
 from pytest_tarl.model import Comparison, FormulaRow, Guarantee, Guard, OperandEffect, SearchTrace, SitePlace
 from pytest_tarl.repairing import strategies
-from pytest_tarl.repairing.accepting import Accepted, Examiner, Refused
+from pytest_tarl.repairing.accepting import Accepted, Examiner
 from pytest_tarl.repairing.delivering import attempts, delivered, partial, remarks, withheld
 from pytest_tarl.repairing.guaranteeing import guaranteed
+from pytest_tarl.repairing.ledger import Refused
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.partial import best

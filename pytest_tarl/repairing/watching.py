@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from statistics import fmean
 
-from pytest_tarl.repairing.accepting import Refused
-from pytest_tarl.repairing.ledger import Tried
+from pytest_tarl.repairing.ledger import Refused, Tried
 from pytest_tarl.repairing.order import Order
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate

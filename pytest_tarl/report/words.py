@@ -34,6 +34,7 @@ REASONS: dict[Reason, str] = {
     "not shown": "the best change found may hold, but 200 episodes do not suffice to show it",
     "cannot be written": "the best change found cannot be written into the source",
     "never tested": "the best change found was not tested, since others took all the tests",
+    "a smaller step breaks it": "a smaller step of the best change found makes the designed world worse already",
 }
 
 
@@ -50,6 +51,7 @@ ENDS: dict[Reason, str] = {
     "not shown": "dropped, 200 episodes would not suffice to show that it holds",
     "cannot be written": "dropped, it cannot be written into the source",
     "never tested": "never tested, since others took the tests",
+    "a smaller step breaks it": "not run, a smaller step makes the designed world worse already",
 }
 
 

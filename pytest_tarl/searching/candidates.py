@@ -65,7 +65,8 @@ def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
     offline, sensors = evidence.offline, evidence.sensors
     return tuple(
         sorted(
-            dict.fromkeys(proposals), key=lambda guard: (len(guard.conjuncts), share(guard, offline, sensors))
+            dict.fromkeys(map(_asking, proposals)),
+            key=lambda guard: (len(guard.conjuncts), share(guard, offline, sensors)),
         )
     )
 
@@ -198,6 +199,11 @@ def _conjunct(sensor: Sensor, bins: Bins, seen: set[int]) -> Conjunct:
         low = -np.inf if bins[0] <= min(seen) else low
         high = np.inf if bins[1] >= max(seen) else high
     return Conjunct(sensor, float(low), float(high))
+
+
+def _asking(guard: Guard) -> Guard:
+    """Leave out conditions that always hold: what is written is the same without them."""
+    return Guard(tuple(one for one in guard.conjuncts if np.isfinite(one.low) or np.isfinite(one.high)))
 
 
 def _widened(guard: Guard) -> Guard:

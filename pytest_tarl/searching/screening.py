@@ -17,6 +17,7 @@ from pytest_tarl.searching.together import Joint, Together
 from pytest_tarl.searching.units import NEAR, Unit
 
 MANY = 40  # units: fewer are swept one by one
+BLOCK = 20  # units that are swept together after a screening
 AT_ONCE = 4  # units that a run mutates
 RUNS = 6.0  # times the square root of the number of units
 RIDGE = 1.0
@@ -63,3 +64,9 @@ def main_effects(design: np.ndarray, gains: np.ndarray) -> np.ndarray:
 def worth_screening(units: Sequence[Unit]) -> bool:
     """Tell whether a sweep over all units would take longer than screening them first."""
     return len(units) > MANY
+
+
+def blocks(units: Sequence[Unit]) -> list[Sequence[Unit]]:
+    """Cut what was screened into blocks, so that the best is refined before the rest is looked at."""
+    size = BLOCK if worth_screening(units) else max(len(units), 1)
+    return [units[start : start + size] for start in range(0, len(units), size)]

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.searching.plainness import oddness, plainer
-from pytest_tarl.searching.screening import screened, worth_screening
-from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confirmed, operand_effect
+from pytest_tarl.searching.screening import blocks, screened, worth_screening
+from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confirmed
 from pytest_tarl.searching.together import Joint, Together
-from pytest_tarl.searching.units import NEAR, Unit, units
+from pytest_tarl.searching.units import NEAR, Unit, best_effects, units
 from tarl_lint.model import Operand, SiteId
 
 if TYPE_CHECKING:
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # ... and those beyond, each behind the one that leads there
 OUTWARD = 2.3  # by how much the outermost factor is exceeded where it is the best
-BLOCK = 20  # units that are swept together after a screening
 FLIP = -1.0
 BETWEEN = (1.5, 0.65)
 LAST = (10.0, 0.05)
@@ -74,7 +73,7 @@ class Sweep:
         chief = self.guards[: 1 if not self.guards[0].conjuncts else 2]
         if self.generator is not None and worth_screening(self.units):
             self.units = yield from screened(self._joining({}), self.guards[0], self.generator)
-        for block in _blocks(self.units):
+        for block in blocks(self.units):
             for guard in chief:
                 moving = self._moving(block)
                 for factor in NEAR:
@@ -95,17 +94,7 @@ class Sweep:
 
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, per site, what each operand's best value gained over the unmutated runs of the same seeds."""
-        best: dict[Operand, OperandEffect] = {}
-        for (unit, _), gains in self._gains.items():
-            factor = max(gains.keys() - {1.0}, key=lambda one: (gains[one], -one))
-            for mutation in unit.mutations(self.mutate, factor):
-                operand = mutation.operand
-                if operand not in best or gains[factor] > best[operand].effect:
-                    best[operand] = operand_effect(mutation, gains[factor])
-        found: dict[str, list[OperandEffect]] = {}
-        for operand, effect in best.items():
-            found.setdefault(str(operand.site), []).append(effect)
-        return found
+        return best_effects([(unit, gains) for (unit, _), gains in self._gains.items()], self.mutate)
 
     def _all(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try one factor on several operands, then refine what gains most."""
@@ -252,9 +241,3 @@ class Sweep:
 
     def _joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> Together:
         return Together(self.units, self.mutate, self.trials, self.goal, gains, self.slack)
-
-
-def _blocks(units: Sequence[Unit]) -> list[Sequence[Unit]]:
-    """Cut what was screened into blocks, so that the best is refined before the rest is looked at."""
-    size = BLOCK if worth_screening(units) else max(len(units), 1)
-    return [units[start : start + size] for start in range(0, len(units), size)]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+from pytest_tarl.model import OperandEffect
 from pytest_tarl.patching.mutate import Mutation
-from pytest_tarl.searching.search import Mutate
+from pytest_tarl.searching.search import Mutate, operand_effect
 from tarl_lint.model import Operand
 
 NEAR = (2.2, 0.4)  # factors that everything is tried with first
@@ -34,6 +35,22 @@ def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
         else:
             alike.append(operand)
     return tuple(Unit(tuple(group)) for group in groups)
+
+
+def best_effects(
+    gained: Iterable[tuple[Unit, Mapping[float, float]]], mutate: Mutate
+) -> dict[str, list[OperandEffect]]:
+    """Return, per site id, what each operand gained at its best factor; of equals the one that was tried first."""
+    best: dict[Operand, OperandEffect] = {}
+    for unit, gains in gained:
+        factor = max(gains.keys() - {1.0}, key=lambda one: (gains[one], -one))
+        for mutation in unit.mutations(mutate, factor):
+            if mutation.operand not in best or gains[factor] > best[mutation.operand].effect:
+                best[mutation.operand] = operand_effect(mutation, gains[factor])
+    found: dict[str, list[OperandEffect]] = {}
+    for operand, effect in best.items():
+        found.setdefault(str(operand.site), []).append(effect)
+    return found
 
 
 def _alike(one: Operand, other: Operand) -> bool:

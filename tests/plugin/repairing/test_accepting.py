@@ -8,14 +8,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.mutate import Mutation
-from pytest_tarl.repairing.accepting import Accepted, Examiner, Refused, furthest
+from pytest_tarl.repairing.accepting import Accepted, Examiner
+from pytest_tarl.repairing.ledger import Refused, furthest
 from pytest_tarl.repairing.mutants import ORIGINAL
-from pytest_tarl.searching.accept import Outcome, Reference
+from pytest_tarl.searching.accept import Acceptance, Outcome, Reference
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from tarl_lint.model import Operand
 from tests.plugin.searching.test_search import operand
 
 SOME, ANOTHER = Candidate((), Guard()), Candidate((), Guard(()))
@@ -142,3 +146,105 @@ def test_one_that_fails_is_dropped_the_next_is_tried_and_the_history_says_why(
     else:
         assert accepted is None
         assert examiner.refused.candidate is not None
+
+
+class Window(Field):
+    """One operand: below a factor it gains too little, beyond another one it breaks the designed world."""
+
+    def __init__(self, low: float, high: float) -> None:
+        super().__init__(["window"])
+        self.low, self.high = low, high
+        self.runs: list[tuple[float, str | None]] = []
+
+    def mutate(self, operand: Operand, factor: float) -> Mutation:  # type: ignore[override]
+        return Mutation(operand, round(factor * float(operand.value or 1), 6))
+
+    def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+        if candidate == ORIGINAL:
+            return Outcome(DESIGNED, passed=True)
+        (mutation,) = candidate.mutations
+        factor = float(mutation.value) / float(mutation.operand.value or 1)
+        self.runs.append((factor, drift))
+        good = factor >= self.low if drift else factor <= self.high
+        return Outcome(DESIGNED if good else DRIFTED, passed=good)
+
+
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.floats(1.2, 3.5), st.floats(0.0, 1.0), st.floats(1.2, 2.0))
+def test_between_too_little_and_what_breaks_the_designed_world_lies_a_repair(
+    low: float, share: float, further: float
+) -> None:
+    """Windows of 30 % and wider, entered from beyond; a candidate beyond that is not even run."""
+    high = low * (1.3 + share)
+    field: Any = Window(low, high)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(
+            "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+        )
+        examiner = Examiner(field, (ALWAYS,))
+        (first,) = field.candidates
+        moved = first.mutations[0].operand
+        beyond = [Candidate((field.mutate(moved, high * by),), ALWAYS) for by in (1.2, 1.2 * further * 1.1)]
+        trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
+        accepted = examiner.first(iter(beyond), trials)
+    assert isinstance(accepted, Accepted)
+    value = float(accepted.candidate.mutations[0].value) / float(moved.value or 1)
+    assert low <= value <= high
+    designed = [factor for factor, drift in field.runs if drift is None]
+    assert max(designed) <= high * 1.2 + 1e-3
+
+
+def test_what_differs_by_a_few_percent_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+    )
+    field: Any = Field(["lucky on known seeds"] * 4)
+    (first, *_) = field.candidates
+    operand, value = first.mutations[0].operand, float(first.mutations[0].value)
+    again = [Candidate((Mutation(operand, value * by),), ALWAYS) for by in (1.0, 1.03, 0.97, 1.5, 1.52)]
+    field.candidates[1:] = again[1:]
+    field.line_up = ["lucky on known seeds"] * len(field.candidates)
+    examiner = Examiner(field, (ALWAYS,))
+    trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
+    assert examiner.first(iter(again), trials) is None
+    assert [one.candidate for one in examiner.tried] == [again[0], again[3]]
+
+
+def test_no_operand_takes_the_tests_of_others_and_none_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seven values of one constant that hold on known seeds only, then the right one: it gets its test."""
+    monkeypatch.setattr(
+        "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+    )
+    monkeypatch.setattr("pytest_tarl.repairing.accepting.accept", _tested_at_once)
+    field: Any = Field(["lucky on known seeds"] * 7 + ["good"])
+    operand = field.candidates[0].mutations[0].operand
+    field.candidates[:7] = [Candidate((Mutation(operand, 2.0**at),), ALWAYS) for at in range(1, 8)]
+    examiner = Examiner(field, (ALWAYS,))
+    trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
+    accepted = examiner.first(iter(field.candidates), trials)
+    assert accepted is not None
+    assert accepted.candidate == field.candidates[7]
+    assert examiner.tested == 3
+    assert len(examiner.waiting) == 5
+
+
+def test_what_had_to_wait_is_tested_once_nobody_else_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+    )
+    monkeypatch.setattr("pytest_tarl.repairing.accepting.accept", _tested_at_once)
+    field: Any = Field(["lucky on known seeds"] * 3 + ["good"] + ["lucky on known seeds"] * 4)
+    operand = field.candidates[0].mutations[0].operand
+    field.candidates[:] = [Candidate((Mutation(operand, 2.0**at),), ALWAYS) for at in range(1, 9)]
+    examiner = Examiner(field, (ALWAYS,))
+    trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
+    accepted = examiner.first(iter(field.candidates), trials)
+    assert accepted is not None
+    assert accepted.candidate == field.candidates[3]
+
+
+def _tested_at_once(drifted: Any, nominal: Any, designed: Any, seeds: Sequence[int], *_: Any) -> Acceptance:
+    """Take a test for each candidate, which its first mission decides."""
+    outcome = drifted.run(seeds[0])
+    good = outcome.total >= DESIGNED - 0.5
+    return Acceptance(good, "" if good else "gain too small", (outcome,), (), True, 1)
