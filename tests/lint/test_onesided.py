@@ -23,6 +23,7 @@ EXAMPLES = {
     for kind, texts in (("invalid", rule.INVALID), ("valid", rule.VALID))
     for number, text in enumerate(texts)
 }
+SHIPPED = tuple(rule for rule in HAZARDS if rule.CODE <= "TARL204")  # a further rule may ask for more
 TALKER = """
     import rospy
     class Talker:
@@ -47,8 +48,8 @@ def module(text, name="node"):
     return parsed
 
 
-def skipped(*texts, **settings):
-    return one_sided([module(text, f"node{n}") for n, text in enumerate(texts)], Config(**settings), HAZARDS)
+def skipped(*texts, rules=SHIPPED, **settings):
+    return one_sided([module(text, f"node{n}") for n, text in enumerate(texts)], Config(**settings), rules)
 
 
 def found(modules):
@@ -67,12 +68,12 @@ def test_modules_that_only_say_or_only_hear_are_not_run():
 
 @pytest.mark.parametrize("text", EXAMPLES.values(), ids=EXAMPLES)
 def test_nothing_is_found_in_what_is_not_run(text):
-    assert not (skipped(text) and found([module(text)]))
+    assert not (skipped(text, rules=HAZARDS) and found([module(text)]))
 
 
 def test_nothing_is_found_in_the_cases_that_are_not_run():
     for path in sorted(CASES.rglob("*.py")):
-        if skipped(text := path.read_text()):
+        if skipped(text := path.read_text(), rules=HAZARDS):
             assert not found([module(text)]), path
 
 
