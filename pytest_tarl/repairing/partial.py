@@ -27,6 +27,7 @@ HARMFUL: tuple[Reason, ...] = (
     "another test gets worse",
     "cannot be written",
     "not at its definition",
+    "a smaller step breaks it",
 )
 
 
