@@ -19,8 +19,8 @@ from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.partial import best
 from pytest_tarl.repairing.ranges import Ranged, bands_in_words, fits_a_part, repaired_sizes
+from pytest_tarl.repairing.ranking_confidence import ranking_confidence
 from pytest_tarl.repairing.structural import Structures
-from pytest_tarl.repairing.sureness import sureness
 from pytest_tarl.repairing.unnamed import unnamed_modules
 from pytest_tarl.repairing.watching import Watch
 from pytest_tarl.searching import candidates
@@ -187,7 +187,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         if accepted
         else replace(withheld(order, refused, history), partial=part),
         notes=(*order.comparison.notes, *_notes(mutants, examiner, found, watch)),
-        ranking=sureness(order, found.effects or {}, accepted, found.ranking),
+        ranking=ranking_confidence(order, found.effects or {}, accepted, found.ranking),
     )
     episodes = {"search": found.episodes, "acceptance": examiner.spent + spent}
     return Repaired(comparison, accepted, episodes, found.interrupted)

@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.race import Arm, Race
 from pytest_tarl.searching.search import FACTORS, Candidate, Goal, Mutate, Trials, confirmed, operand_effect
-from pytest_tarl.searching.together import Joint, Together
 from pytest_tarl.searching.units import units
 from tarl_lint.model import Operand
 
@@ -78,7 +78,7 @@ class Halving:
         ranked = race.ranked(arm for arm in race.gains if arm.guard == guard)
         if ranked and race.gain(ranked[0]) > self.slack:
             gains = {unit: {a.factor: race.gain(a) for a in ranked if a.unit == unit} for unit in self.units}
-            joining = Together(self.units, race.mutate, race.trials, self.goal, gains, self.slack)
+            joining = ForwardSelection(self.units, race.mutate, race.trials, self.goal, gains, self.slack)
             yield from joining.candidates(Joint(((ranked[0].unit, ranked[0].factor),), guard))
 
 

@@ -12,8 +12,8 @@ from math import ceil, sqrt
 import numpy as np
 
 from pytest_tarl.model import Guard
+from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.search import Candidate
-from pytest_tarl.searching.together import Joint, Together
 from pytest_tarl.searching.units import NEAR, Unit
 
 MANY = 40  # units: fewer are swept one by one
@@ -24,7 +24,7 @@ RIDGE = 1.0
 
 
 def screened(
-    together: Together, guard: Guard, generator: np.random.Generator
+    together: ForwardSelection, guard: Guard, generator: np.random.Generator
 ) -> Generator[Candidate, None, tuple[Unit, ...]]:
     """Yield candidates that hold by chance; the generator's value is all units, those of the best effect first."""
     units = together.units

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
+from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.plainness import oddness, plainer
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confirmed
-from pytest_tarl.searching.together import Joint, Together
 from pytest_tarl.searching.units import NEAR, Unit, best_effects, units
 from tarl_lint.model import Operand, SiteId
 
@@ -239,5 +239,5 @@ class Sweep:
         if ranked and ranked[0][0] > self.slack:
             yield from self._joining({}).unions([(unit, factor) for _, unit, factor in ranked], guard)
 
-    def _joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> Together:
-        return Together(self.units, self.mutate, self.trials, self.goal, gains, self.slack)
+    def _joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> ForwardSelection:
+        return ForwardSelection(self.units, self.mutate, self.trials, self.goal, gains, self.slack)

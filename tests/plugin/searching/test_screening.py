@@ -10,10 +10,10 @@ import pytest
 from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.forward_selection import ForwardSelection
 from pytest_tarl.searching.screening import main_effects, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.sweep import Sweep
-from pytest_tarl.searching.together import Together
 from pytest_tarl.searching.units import units
 from pytest_tarl.seeds import generator
 from tests.plugin.searching.test_together import operand
@@ -59,7 +59,7 @@ def test_a_run_that_holds_by_chance_is_handed_on_without_what_it_does_not_need()
         good = any(m.operand == gains[20] and m.value > 1 for m in candidate.mutations)
         return Outcome(10.0 if good else 0.0, good)
 
-    together = Together(units(gains), mutations, Trials(run, 500), GOAL, {}, 0.1)
+    together = ForwardSelection(units(gains), mutations, Trials(run, 500), GOAL, {}, 0.1)
     found = list(screened(together, ALWAYS, generator(1, "sweep")))
     assert worth_screening(together.units)
     assert {m.operand for candidate in found for m in candidate.mutations} <= {gains[20]}

@@ -8,7 +8,7 @@ from typing import Any
 from pytest_tarl.model import OperandEffect
 from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.repairing.accepting import Accepted
-from pytest_tarl.repairing.sureness import sureness
+from pytest_tarl.repairing.ranking_confidence import ranking_confidence
 from pytest_tarl.searching.accept import Acceptance, Outcome
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.ranking import Ranking
@@ -36,19 +36,19 @@ def ranked(budget: int) -> Ranking:
 
 
 def test_without_a_ranking_it_is_said_what_was_not_looked_at() -> None:
-    told = sureness(ORDER, EFFECTS, accepted(GAIN), None)
+    told = ranking_confidence(ORDER, EFFECTS, accepted(GAIN), None)
     assert told.startswith("the repair of the first held on 12 fresh seeds; 2 of 3 lines were simulated")
     assert "--tarl-localize=full" in told
 
 
 def test_a_ranking_tells_by_how_much_the_first_is_ahead() -> None:
-    told = sureness(ORDER, ranked(300).effects(), accepted(GAIN), ranked(300))
+    told = ranking_confidence(ORDER, ranked(300).effects(), accepted(GAIN), ranked(300))
     assert "1 of 3 lines with constants gain anything alone" in told
     assert "the budget ended" not in told
 
 
 def test_a_line_that_others_beat_is_not_called_the_best() -> None:
-    assert "one line gains more than it in the drifted world (-" in sureness(
+    assert "one line gains more than it in the drifted world (-" in ranking_confidence(
         ORDER, EFFECTS, accepted(BIAS), raced()
     )
 
@@ -61,15 +61,15 @@ def raced() -> Ranking:
 
 
 def test_several_that_were_repaired_together_are_told_as_such() -> None:
-    told = sureness(ORDER, EFFECTS, accepted(GAIN, LIMIT), ranked(300))
+    told = ranking_confidence(ORDER, EFFECTS, accepted(GAIN, LIMIT), ranked(300))
     assert told.startswith("the first 2 were repaired together, which held on 12 fresh seeds; alone, ")
 
 
 def test_without_a_repair_nothing_confirms_the_first_and_a_cut_ranking_says_so() -> None:
-    told = sureness(ORDER, EFFECTS, None, ranked(4))
+    told = ranking_confidence(ORDER, EFFECTS, None, ranked(4))
     assert told.startswith("no repair confirms the first; ")
     assert told.endswith("the budget ended before all were ranked")
 
 
 def test_where_nothing_was_simulated_there_is_nothing_to_say() -> None:
-    assert sureness(ORDER, {}, None, None) == ""
+    assert ranking_confidence(ORDER, {}, None, None) == ""

@@ -43,7 +43,7 @@ class Joint:
         return Joint(tuple(part for part in self.parts if part[0] != unit), self.guard)
 
 
-class Together:
+class ForwardSelection:
     """Joins units; `gains` are those of the single ones by factor, `slack` is the gain that makes a difference."""
 
     def __init__(

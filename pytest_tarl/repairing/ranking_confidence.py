@@ -12,7 +12,7 @@ from pytest_tarl.searching.race import CONFIDENCE
 from pytest_tarl.searching.ranking import Ranking
 
 
-def sureness(
+def ranking_confidence(
     order: Order,
     effects: Mapping[str, Sequence[OperandEffect]],
     accepted: Accepted | None,
