@@ -169,33 +169,36 @@ def of_rate(p: float, repetitions: int) -> list[Row]:
     ]
 
 
-def of_world(name: str, repetitions: int) -> list[Row]:
-    """Return the rows of a distribution of totals."""
+def of_world(name: str, repetitions: int, kinds: str) -> list[Row]:
+    """Return the rows of a distribution of totals, of exact bounds, approximate ones, or both."""
     world = World(name)
     declared, fewer, few = world.declared, repetitions // 2, repetitions // 4
-    exact: list[Row] = []
-    if declared is not None:
-        exact = [
+    found: list[Row] = []
+    if kinds != "approximate":
+        found.append(measured("quantile, order statistics", True, name, world.quantile, repetitions))
+    if kinds != "approximate" and declared is not None:
+        found += [
             measured("mean, betting", True, name, lambda d, n: world.mean(d, n, declared), repetitions),
             measured(
                 "mean, betting, any time", True, name, lambda d, n: world.mean(d, n, declared, True), fewer
             ),
             measured("loss, betting", True, name, lambda d, n: world.loss(d, n, declared), fewer),
         ]
+    if kinds == "exact":
+        return found
     return [
-        *exact,
-        measured("quantile, order statistics", True, name, world.quantile, repetitions),
+        *found,
         measured("mean, Student", False, name, lambda d, n: world.mean(d, n, None), repetitions),
         measured("loss, used", False, name, lambda d, n: world.loss(d, n, None), few, ONLINE),
         measured("loss, Welch alone: not used", False, name, world.welch, few, ONLINE),
     ]
 
 
-def rows(repetitions: int, workers: int) -> Iterator[Row]:
+def rows(repetitions: int, workers: int, kinds: str) -> Iterator[Row]:
     """Yield all rows."""
     with ProcessPoolExecutor(workers) as processes:
-        jobs = [processes.submit(of_rate, p, repetitions) for p in RATES]
-        jobs += [processes.submit(of_world, name, repetitions) for name in DRAWN]
+        jobs = [processes.submit(of_rate, p, repetitions) for p in RATES if kinds != "approximate"]
+        jobs += [processes.submit(of_world, name, repetitions, kinds) for name in DRAWN]
         for job in jobs:
             yield from job.result()
 
@@ -205,8 +208,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--repetitions", type=int, default=2000)
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--kinds", choices=("exact", "approximate", "both"), default="both")
     asked = parser.parse_args()
-    found = sorted(rows(asked.repetitions, asked.workers), key=lambda row: (not row.exact, row.bound))
+    found = sorted(
+        rows(asked.repetitions, asked.workers, asked.kinds), key=lambda row: (not row.exact, row.bound)
+    )
     print(f"| bound | world | {' | '.join(f'n = {n}' for n in EPISODES)} |")
     print(f"|---|---|{'---|' * len(EPISODES)}")
     print(*(row.line() for row in found), sep="\n")

@@ -135,7 +135,7 @@ def _compared_without(
     alike = {online.cells[row]: shorter[0].cells[short[online.cells[row]]] for row in rows}
     cells = tuple(cell for cell in alike if alike[cell] in chosen)
     widened = {cell: changes[one] for cell, one in alike.items() if one in changes}
-    return replace(found, cells=cells, without=tuple(without)), widened
+    return replace(found, cells=cells, left=(), without=tuple(without)), widened
 
 
 def _drift(

@@ -1,0 +1,28 @@
+"""A sensor whose on-line value was never seen off-line makes every situation new: what is said and ranked then."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.plugin.tank import ONLINE, RECORD, changed, result
+
+
+def test_cells_and_lines_are_compared_without_the_sensor_that_makes_them_new(tank: pytest.Pytester) -> None:
+    changed(tank, "test_tank", "bins=10)]", 'bins=10), Sensor("tank")]')
+    changed(
+        tank,
+        "test_tank",
+        'tarl.start("keeper.py")',
+        'tarl.start("keeper.py")\n    tarl.observe(tank=0 if tarl_drift is None else 2)',
+    )
+    tank.runpytest(*RECORD)
+    told = tank.runpytest(*ONLINE)
+    told.stdout.fnmatch_lines(["*where*level *told without tank; never seen off-line: *"])
+    told.stdout.no_fnmatch_line("*no longer visited*")
+    told.stdout.fnmatch_lines(["*no on-line situation was seen off-line, because of tank*"])
+    found = result(tank)
+    scores = [one["score"] for one in found["culprits"]]
+    assert scores
+    assert scores == sorted(scores, reverse=True)
+    assert any(one["difference"] for one in found["sites"])
+    assert all(box["tank"] == [2, 2] for box in (*found["region"], *found["novel"]))
