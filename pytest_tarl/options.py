@@ -140,7 +140,8 @@ def _check_modes(given: Mapping[str, Any]) -> None:
             (name for name in ("drift", "search", "localize", "strict", "log", "bag", "holm") if given[name]),
             "drift",
         )
-        raise SettingsError(f"--tarl-{stray} goes with --tarl-online, and does nothing without it.")
+        also = ", or with --tarl-record for a drift that is for good" if stray == "drift" else ""
+        raise SettingsError(f"--tarl-{stray} goes with --tarl-online{also}, and does nothing without it.")
     if given["record"] and given["online"]:
         raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
     if given["repair"] and not given["online"]:
@@ -151,11 +152,6 @@ def _check_modes(given: Mapping[str, Any]) -> None:
         raise SettingsError(
             "--tarl-holm and --tarl-repair are two runs: a verdict is corrected when all tests have run, a repair is "
             "searched for while its test runs. Compare with --tarl-holm first, then repair the tests that are degraded."
-        )
-    if given["drift"] and not (given["online"] or given["record"]):
-        raise SettingsError(
-            "--tarl-drift goes with --tarl-online, where it chooses one of the marker's drifts, or with --tarl-record, "
-            "where it makes one that is for good the design."
         )
 
 
