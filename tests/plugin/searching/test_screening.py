@@ -16,7 +16,7 @@ from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.searching.units import units
 from pytest_tarl.seeds import generator
-from tests.plugin.searching.test_together import operand
+from tests.plugin.searching.test_forward_selection import operand
 
 GOAL = Goal(tuple(Pair(seed, 0.0) for seed in range(6)), near=9.0, enough=9.0, online=0.0)
 
