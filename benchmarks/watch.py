@@ -20,6 +20,7 @@ from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
+from time import process_time
 
 import numpy as np
 from gate_worlds import WORLDS
@@ -40,6 +41,7 @@ ALPHA = 0.05
 LIFE = 1000  # missions of a stream without drift, and at most after one began
 SIZES = (0.2, 0.5, 1.0)
 STARTS = (0, 1000, 100_000)
+DISTINCT = 5000  # missions that the log of the speed test is made of
 LONG = 2  # streams of each world in which the drift begins after 100,000 missions
 WINDOW, EVERY = 40, 10
 METHODS = ("watch", "bound", "world", "repeated KS", "CUSUM")
@@ -221,21 +223,31 @@ def speed(missions: int) -> None:
         folder = Path(name)
         size = _logged(folder, missions)
         command = [sys.executable, "-m", "pytest_tarl", "watch", "m.log", "--fixture", "f.npz", "--once"]
+        before = _loop()
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         used = resource.getrusage(resource.RUSAGE_CHILDREN)
         state = next((folder / ".tarl/watch").glob("*.npz")).stat().st_size
     print(done.stdout or done.stderr)
     print(
         f"{missions:,} missions, {size / 1e6:.0f} MB of log: {used.ru_utime + used.ru_stime:.1f} s of CPU "
-        f"({used.ru_utime:.1f} user), {used.ru_maxrss / 1024:.0f} MB, state {state / 1000:.0f} kB"
+        f"({used.ru_utime:.1f} user), {used.ru_maxrss / 1024:.0f} MB, state {state / 1000:.0f} kB; ten million "
+        f"additions in a loop took {before:.2f} s before and {_loop():.2f} s after it"
     )
+
+
+def _loop() -> float:
+    """Return the CPU seconds of a plain loop: how fast the machine is at the moment."""
+    begin = process_time()
+    total = 0
+    for number in range(10_000_000):
+        total += number
+    return process_time() - begin
 
 
 def _logged(folder: Path, missions: int) -> int:
     rng = generator(0, "watch/speed")
     sensors = (Sensor("x", topic="/x", field="data", low=0, high=24, bins=24),)
     cells = [[place] for place in range(24)]
-    none = packed(np.empty(0, np.int32))
 
     def drawn(count: int) -> tuple[list[np.ndarray[tuple[int], np.dtype[np.int32]]], Floats]:
         begin = rng.integers(0, 15, count)
@@ -252,25 +264,24 @@ def _logged(folder: Path, missions: int) -> int:
         samples.append(sample(trace, episode_seed(0, "speed", number), True, ()))
     save(Fixture("speed", 0, sensors, (), {}, merge(samples), ()), folder / "f.npz")
     head = {"kind": "start", "format": 1, "time": 0.0, "test": "speed", "sensors": ["x"], "sites": []}
+    some = [encoded(_steps(cells, places, reward)) for places, reward in zip(*drawn(DISTINCT), strict=True)]
     with (folder / "m.log").open("wb") as file:
         file.write(MAGIC + encoded(head))
-        for begin in range(0, missions, 1000):
-            for number, (places, reward) in enumerate(
-                zip(*drawn(min(1000, missions - begin)), strict=True), begin
-            ):
-                steps = {
-                    "kind": "steps",
-                    "cells": cells,
-                    "site": none,
-                    "flow": none,
-                    "cell": none,
-                    "step": none,
-                }
-                steps |= {"thread": none, "step_cell": packed(places), "reward": packed(reward)}
-                file.write(encoded({"kind": "mission", "time": float(number)}))
-                file.write(encoded({**steps, "readings": [], "dropped": 0}))
-                file.write(encoded({"kind": "end", "passed": True, "failure": "", "time": number + 0.5}))
+        for second in range(0, missions, 1000):
+            begin = encoded({"kind": "mission", "time": float(second)})
+            end = encoded({"kind": "end", "passed": True, "failure": "", "time": second + 0.5})
+            for which in rng.integers(DISTINCT, size=min(1000, missions - second)).tolist():
+                file.write(begin + some[which] + end)
         return file.tell()
+
+
+def _steps(
+    cells: list[list[int]], places: np.ndarray[tuple[int], np.dtype[np.int32]], reward: Floats
+) -> dict[str, object]:
+    none = packed(np.empty(0, np.int32))
+    steps: dict[str, object] = dict.fromkeys(("site", "flow", "cell", "step", "thread"), none)
+    steps |= {"kind": "steps", "cells": cells, "step_cell": packed(places), "reward": packed(reward)}
+    return {**steps, "readings": [], "dropped": 0}
 
 
 def main() -> None:

@@ -197,7 +197,7 @@ class LogReader:
         file.seek(self._place)
         while (payload := next_record(file)) is not None:
             before, self._latest = self._latest, (self._place, payload)
-            self._place = file.tell()
+            self._place += HEAD + len(payload)
             mission = self._take(_DECODED(zlib.decompress(payload).decode())[0], before)
             if mission is not None:
                 yield mission
@@ -211,15 +211,17 @@ class LogReader:
                 self._begun[1].append(self._steps(record))
             return None
         begun, self._begun = self._begun, None
-        refused, ended = at.refused, kind == "end" and begun is not None
-        if kind == "start":
-            refused = self.problem = self.expected.problem(record, self.path)
         if kind == "mission":
             time = float(record["time"])
             self._begun = (time if 0.0 <= time < LATEST else 0.0), []
+            if begun is None and (before is None or before[0] == at.last):
+                return None  # it begins where the last one ended
+        refused, ended = at.refused, kind == "end" and begun is not None
+        if kind == "start":
+            refused = self.problem = self.expected.problem(record, self.path)
         last = before if kind == "mission" else self._latest
         offset, place, mark = at.offset, at.last, at.mark
-        if last is not None and last[0] != place:
+        if last is not None:
             place, payload = last
             offset, mark = place + HEAD + len(payload), _mark(payload)
         unfinished = at.unfinished + (begun is not None and not ended and not at.refused)

@@ -42,7 +42,8 @@ class Watch:
         Yields after each portion, with what was counted so far safe on disk whenever `SAVED` seconds have passed and
         at the end.
         """
-        coming = heapq.merge(*(one.missions() for one in self.readers), key=lambda mission: mission.time)
+        logs = [one.missions() for one in self.readers]
+        coming = logs[0] if len(logs) == 1 else heapq.merge(*logs, key=lambda mission: mission.time)
         saved, fresh = monotonic(), False
         while portion := [*islice(coming, PORTION)]:
             self.monitor.observe(joined(portion))
