@@ -16,6 +16,7 @@ import resource
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
@@ -42,7 +43,6 @@ LIFE = 1000  # missions of a stream without drift, and at most after one began
 SIZES = (0.2, 0.5, 1.0)
 STARTS = (0, 1000, 100_000)
 DISTINCT = 5000  # missions that the log of the speed test is made of
-LONG = 2  # streams of each world in which the drift begins after 100,000 missions
 WINDOW, EVERY = 40, 10
 METHODS = ("watch", "bound", "world", "repeated KS", "CUSUM")
 
@@ -131,7 +131,7 @@ def cusum(offline: Floats, online: Floats) -> int | None:
     return None
 
 
-def false_alarms(streams: int) -> None:
+def false_alarms(streams: int, worlds: Sequence[str]) -> None:
     """Print how often each method raises an alarm where there is nothing."""
     print(
         f"{streams} streams of {LIFE} missions without drift, each with a fresh fixture; share with any alarm"
@@ -139,8 +139,8 @@ def false_alarms(streams: int) -> None:
     print("| world | streams | " + " | ".join(METHODS) + " |")
     print("|---|" + "---|" * (len(METHODS) + 1))
     total: list[Alarms] = []
-    each = -(-streams // len(WATCHED))
-    for world in WATCHED:
+    each = -(-streams // len(worlds))
+    for world in worlds:
         found = []
         for number in range(min(each, streams - len(total))):
             rng = generator(number, f"watch/alarms/{world}")
@@ -163,8 +163,8 @@ def _row(name: str, found: list[Alarms]) -> str:
     return f"| {name} | {len(found)} | " + " | ".join(f"{100 * share:.1f} %" for share in shares) + " |"
 
 
-def delays(streams: int) -> None:
-    """Print how many missions pass until each method notices a drift."""
+def delays(streams: int, long: int) -> None:
+    """Print how many missions pass until each method notices a drift; `long` streams have the longest quiet life."""
     print(
         "| drift begins at | size | streams | method | before it | noticed | median missions until | 90 % within |"
     )
@@ -172,7 +172,7 @@ def delays(streams: int) -> None:
     for start in STARTS:
         found: dict[float, list[Alarms]] = {size: [] for size in SIZES}
         for world in WORLDS:
-            for number in range(LONG if start > 10_000 else streams):
+            for number in range(long if start > 10_000 else streams):
                 for size, one in _drifts(world, number, start).items():
                     found[size].append(one)
         for size in SIZES:
@@ -293,12 +293,16 @@ def main() -> None:
     parser.add_argument(
         "--streams", type=int, help="in all (alarms, default 2000) or of each world (delays, 20)"
     )
+    parser.add_argument(
+        "--long", type=int, default=2, help="of each world with a quiet life of 100,000 (default 2)"
+    )
+    parser.add_argument("--worlds", nargs="+", choices=WATCHED, default=WATCHED, help="of the false alarms")
     parser.add_argument("--missions", type=int, default=10**6)
     asked = parser.parse_args()
     if asked.part == "alarms":
-        false_alarms(asked.streams or 2000)
+        false_alarms(asked.streams or 2000, asked.worlds)
     elif asked.part == "delays":
-        delays(asked.streams or 20)
+        delays(asked.streams or 20, asked.long)
     else:
         speed(asked.missions)
 
