@@ -17,10 +17,16 @@ def check(sample: Sample, sensors: int, tables: Sequence[Floats]) -> None:
     """Raise DamagedError where episodes, cells and states that columns name are not there, or counts are none."""
     if not sample.episodes or len(set(sample.seeds)) < sample.episodes:
         raise DamagedError("its seeds are not one for each episode")
-    if any(len(cell) != sensors for cell in sample.cells) or not _rising(sample.cells):
+    whole = all(type(bin_) is int for cell in sample.cells for bin_ in cell)
+    if not whole or any(len(cell) != sensors for cell in sample.cells) or not _rising(sample.cells):
         raise DamagedError("its cells are not those of its sensors")
     _same_length("episodes", sample.episodes, sample.passed, sample.total, sample.steps)
-    if sample.passed.dtype != bool or not np.isfinite(sample.total).all() or (sample.steps < 0).any():
+    kinds = (sample.passed.dtype, sample.total.dtype)
+    if (
+        kinds != (np.dtype(bool), np.dtype(np.float64))
+        or not np.isfinite(sample.total).all()
+        or (sample.steps < 0).any()
+    ):
         raise DamagedError("its episodes have no result, no total or no steps")
     _check_judgements(sample)
     _check_chain(sample.chain, sample)

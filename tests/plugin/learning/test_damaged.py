@@ -195,6 +195,15 @@ def test_columns_that_do_not_belong_together_are_refused_or_can_be_used(data: st
         survived(forged(header, columns))
 
 
+@pytest.mark.parametrize("kind", ["f8", "f4", "i1", "i8", "u8", ">i8", "?"])
+def test_columns_of_another_type_are_refused_or_can_be_used(kind: str) -> None:
+    for name in parts()[1]:
+        header, columns = parts()
+        columns[name] = columns[name].astype(kind)
+        with np.errstate(all="ignore"):
+            survived(forged(header, columns))
+
+
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers(-3, 3) | st.floats() | st.text(max_size=3),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=3), inner, max_size=3),
