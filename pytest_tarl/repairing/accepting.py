@@ -16,11 +16,12 @@ from pytest_tarl.repairing.neighbours import NOTHING_BESIDE, Beside, beside
 from pytest_tarl.repairing.placing import Placing
 from pytest_tarl.repairing.ranges import Ranged, over_the_range
 from pytest_tarl.searching import candidates
-from pytest_tarl.searching.accept import SEEDS, TOO_LITTLE, Acceptance, World, accept, risk_of
+from pytest_tarl.searching.accept import SEEDS, TOO_LITTLE, Acceptance, Outcome, World, accept, risk_of
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 from tarl_lint.model import Operand
 
 QUICK = 3  # seeds on which a guard is looked at before it is tested on fresh ones
+WORLDS = 3  # in which a test runs episodes: drifted, designed, and designed without the candidate
 OLD_WORLD = 8  # episodes that show what a repair for good earns in the old world
 MOST = 5  # candidates that are tested ...
 SHARE = 2  # ... and how many of them may be of the same operands while others wait
@@ -51,6 +52,7 @@ class Examiner:
         ] = []  # they held on known seeds, and their operands have had their share
         self._bisected: set[tuple[frozenset[Operand], Guard]] = set()
         self.tested = 0
+        self._ran = 0  # episodes of the test that is going on
         self.turns = 1  # searches, or kinds of change, that have had their tests
         self.spent = 0
         self.refused = Refused(None, "no operand helps")
@@ -209,6 +211,7 @@ class Examiner:
     def _tested(self, candidate: Candidate) -> Acceptance:
         """Test a candidate on seeds of its own."""
         order, number = self.order, of_fresh_seeds(self.tried) + 1
+        self._ran = 0
         nominal = self._world(candidate, None) if self._firing(candidate) else None
 
         def test(fresh: Sequence[int], designed: bool) -> Acceptance:
@@ -226,8 +229,15 @@ class Examiner:
         return found
 
     def _world(self, candidate: Candidate, drift: str | None) -> World:
+        def run(seed: int) -> Outcome:
+            self._ran += 1
+            self.order.progress(
+                self._ran, WORLDS * SEEDS, f"acceptance of candidate {self.tested + 1}, at most"
+            )
+            return self.mutants.run(candidate, seed, drift)
+
         return World(
-            lambda seed: self.mutants.run(candidate, seed, drift),
+            run,
             lambda chosen: self.mutants.foresee([(candidate, seed) for seed in chosen], drift),
         )
 

@@ -80,6 +80,7 @@ class Field:
 
     def __init__(self, line_up: Sequence[str]) -> None:
         self.line_up = line_up
+        self.shown: list[tuple[int, int, str]] = []
         self.candidates = [
             Candidate((Mutation(operand(at + 1, f"{at}.5", at + 0.5), 1.0),), ALWAYS)
             for at in range(len(line_up))
@@ -96,6 +97,7 @@ class Field:
             reference=Reference(totals.tolist(), 1.0, 0.5, -10.0),
             options=SimpleNamespace(seed=0, alpha=0.05, edit="use"),
             drift="mud",
+            progress=lambda done, total, what: self.shown.append((done, total, what)),
             permanent=False,
             neighbours=tuple,
         )
@@ -142,6 +144,8 @@ def test_one_that_fails_is_dropped_the_next_is_tried_and_the_history_says_why(
     assert [one.reason for one in examiner.tried] == [ENDS[kind] for kind in tried]
     if "good" in line_up:
         assert isinstance(accepted, Accepted)
+        assert len(field.shown) >= accepted.acceptance.episodes
+        assert all(done <= total and "acceptance" in what for done, total, what in field.shown)
         assert field.line_up[field.candidates.index(accepted.candidate)] == "good"
     else:
         assert accepted is None
