@@ -64,15 +64,28 @@ def _deep(ctx: Interpreter, obj: Obj, known: dict[Obj, Nodes], depth: int, *, co
             found |= ctx.settled(value) if name.isidentifier() else value.deps
             if value.pts:
                 found |= _behind(ctx, value, known, depth + 1)
-    for name, sub in list(obj.subs.items()):
-        if sub is not obj and ctx.store.get((obj, name)) is None:
-            found |= _deep(ctx, sub, known, depth + 1, counted=not overwritten)
+    for sub in _parts(ctx, obj, overwritten):
+        found |= _deep(ctx, sub, known, depth + 1, counted=not overwritten)
     inside = frozenset(found)
     if whole:
         known[obj] = inside
     else:
         del known[obj]
     return inside
+
+
+def _parts(ctx: Interpreter, obj: Obj, overwritten: bool) -> list[Obj]:
+    """Return the parts of an object that may hold data of their own.
+
+    An empty one has none beside that of the whole, and a field that appears in it is news for who looked at the whole.
+    """
+    return [
+        sub
+        for name, sub in obj.subs.items()
+        if (sub.fields or sub.subs or overwritten or not sub.laden)
+        and sub is not obj
+        and ctx.store.get((obj, name)) is None
+    ]
 
 
 def defined(ctx: Interpreter, obj: Obj) -> str:

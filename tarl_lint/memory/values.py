@@ -243,6 +243,8 @@ def _plain(base: str) -> bool:
 
 def lineage(cls: Obj) -> list[Obj]:
     """Return the class and its known bases in method resolution order, depth first without repeats."""
+    if not (isinstance(cls.info, ClassInfo) and cls.info.bases):
+        return [cls]
     found: dict[Obj, None] = {}
     pending = [cls]
     while pending:

@@ -2,32 +2,47 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Final
 
 from tarl_lint import __version__
 from tarl_lint.model import Finding, Flow, Sink, Source, Span, Step
+from tarl_lint.report.indented import Written, dumped
 from tarl_lint.report.line import Line, View
 from tarl_lint.runner import Result
 
 FORMAT_VERSION: Final = 1  # 1: first format
+STEP_LEVEL: Final = 5  # containers around a step: document, diagnostics, diagnostic, flow, steps
+
+OfStep = Callable[[Step], object]
 
 
 def report(result: Result, _view: View) -> Iterator[Line]:
     """Yield the document, indented, in ASCII, so that no terminal or pipe can spoil it."""
-    yield ((json.dumps(document(result), indent=1), ""),)
+    known: dict[Step, Written] = {}  # flows share most of their steps
+
+    def written(step: Step) -> Written:
+        text = known.get(step)
+        if text is None:
+            text = known[step] = Written(dumped(_step(step), STEP_LEVEL))
+        return text
+
+    yield ((dumped(_document(result, written)), ""),)
 
 
 def document(result: Result) -> dict[str, Any]:
     """Return everything that was found, accepted flows included, in the frozen order of keys."""
+    return _document(result, _step)
+
+
+def _document(result: Result, of_step: OfStep) -> dict[str, Any]:
     return {
         "format": FORMAT_VERSION,
         "tool": {"name": "tarl-lint", "version": __version__},
         "files": result.statistics.files,
         "errors": [{"path": e.path, "line": e.line, "message": e.message} for e in result.errors],
         **incomplete(result),
-        "diagnostics": [_diagnostic(finding) for finding in result.findings],
+        "diagnostics": [_diagnostic(finding, of_step) for finding in result.findings],
     }
 
 
@@ -38,8 +53,8 @@ def incomplete(result: Result) -> dict[str, Any]:
     return {"incomplete": each} if each else {}
 
 
-def _diagnostic(finding: Finding) -> dict[str, Any]:
-    flow = {"flow": _flow(finding.flow)} if finding.flow else {}
+def _diagnostic(finding: Finding, of_step: OfStep) -> dict[str, Any]:
+    flow = {"flow": _flow(finding.flow, of_step)} if finding.flow else {}
     return {
         "code": finding.code,
         **_extent(finding.span),
@@ -50,12 +65,12 @@ def _diagnostic(finding: Finding) -> dict[str, Any]:
     }
 
 
-def _flow(flow: Flow) -> dict[str, Any]:
+def _flow(flow: Flow, of_step: OfStep) -> dict[str, Any]:
     return {
         "kind": flow.kind,
         "source": _source(flow.source),
         "sink": _sink(flow.sink),
-        "steps": [_step(step) for step in flow.steps],
+        "steps": [of_step(step) for step in flow.steps],
     }
 
 

@@ -1,0 +1,137 @@
+"""The operations of the abstract memory, each by itself."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from tarl_lint.config import Config
+from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.memory import heap, joins, reachable_data, recency, updates
+from tarl_lint.memory.abstract_gc import lasting
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.store import BORN, Root, Store
+from tarl_lint.memory.values import BOTTOM, MAX_CONSTS, Value, const, join, pointer
+from tarl_lint.source import Module
+
+DATA = frozenset([1])
+OTHER = frozenset([2])
+
+
+@pytest.fixture
+def ctx() -> Interpreter:
+    text = "def f():\n    return 1\n"
+    made = Linker([Module("node.py", "node", text, ast.parse(text))], Config())
+    made.store = Store(made.shared, Root("test", "test"))
+    return made
+
+
+@pytest.fixture
+def frame(ctx) -> Frame:
+    (program,) = ctx.programs.values()
+    return Frame("frame", 1, program.function, program, ctx.module_objects[program.name])
+
+
+def instance(ctx, key):
+    obj = recency.intern(ctx, "sequence", key)
+    ctx.store.put((obj, BORN), BOTTOM)
+    return obj
+
+
+def test_a_store_through_a_pointer_to_one_object_is_a_strong_update(ctx):
+    obj = instance(ctx, "a")
+    updates.write_field(ctx, pointer(obj), "x", Value(DATA))
+    updates.write_field(ctx, pointer(obj), "x", Value(OTHER))
+    assert heap.read_field(ctx, obj, "x").deps == OTHER
+
+
+def test_a_store_through_a_pointer_to_one_of_two_is_a_weak_update(ctx):
+    one, two = instance(ctx, "a"), instance(ctx, "b")
+    updates.write_field(ctx, pointer(one), "x", Value(DATA))
+    updates.write_field(ctx, Value(pts=frozenset([one, two])), "x", Value(OTHER))
+    assert heap.read_field(ctx, one, "x").deps == DATA | OTHER
+    assert heap.read_field(ctx, two, "x").deps == OTHER
+
+
+def test_an_object_that_stands_for_many_is_never_updated_strongly(ctx):
+    obj = instance(ctx, "a")
+    obj.many = True
+    for deps in (DATA, OTHER):
+        updates.write_field(ctx, pointer(obj), "x", Value(deps))
+    assert heap.read_field(ctx, obj, "x").deps == DATA | OTHER
+
+
+def test_a_store_to_an_unknown_element_may_be_to_any(ctx):
+    obj = instance(ctx, "a")
+    updates.write_item(ctx, pointer(obj), const(0), Value(DATA))
+    updates.add_element(ctx, pointer(obj), Value(OTHER))
+    assert heap.read_field(ctx, obj, heap.item_field(0)).deps == DATA | OTHER
+    assert heap.read_any(ctx, obj).deps == DATA | OTHER
+
+
+def test_what_a_branch_stored_is_gone_when_its_layer_is_closed(ctx):
+    obj = instance(ctx, "a")
+    updates.write_field(ctx, pointer(obj), "x", Value(DATA))
+    ctx.store.push()
+    updates.write_field(ctx, pointer(obj), "x", Value(OTHER))
+    delta = ctx.store.pop()
+    assert heap.read_field(ctx, obj, "x").deps == DATA
+    joins.merge(ctx, [delta, {}])
+    assert heap.read_field(ctx, obj, "x").deps == DATA | OTHER
+
+
+def test_the_newest_object_of_a_site_stands_apart_from_older_ones(ctx, frame):
+    newest = recency.allocate(ctx, "lib", frame, "site")
+    ctx.store.put((newest, "x"), Value(DATA))
+    holder = instance(ctx, "holder")
+    updates.write_field(ctx, pointer(holder), "held", pointer(newest))
+    again = recency.allocate(ctx, "lib", frame, "site")
+    (older,) = heap.read_field(ctx, holder, "held").pts
+    assert again is newest
+    assert older is not newest
+    assert older.many
+    assert heap.read_field(ctx, older, "x").deps == DATA
+    assert heap.read_field(ctx, newest, "x").deps == frozenset()
+
+
+def test_data_is_found_at_any_depth_and_only_there(ctx):
+    outer, inner, empty = (instance(ctx, key) for key in "abc")
+    updates.write_field(ctx, pointer(inner), "x", Value(DATA))
+    updates.write_field(ctx, pointer(outer), "inner", pointer(inner))
+    assert reachable_data.deep(ctx, frozenset([outer])) == DATA
+    assert reachable_data.deep(ctx, frozenset([empty])) == frozenset()
+
+
+def test_an_empty_part_of_a_message_counts_with_its_whole(ctx):
+    message = recency.intern(ctx, "message", "m")
+    message.info = 7
+    message.sub("pose").sub("position")
+    assert reachable_data.deep(ctx, frozenset([message])) == frozenset([7])
+    ctx.store.put((message.sub("pose"), "x"), Value(DATA))
+    assert reachable_data.deep(ctx, frozenset([message])) == frozenset([7]) | DATA
+
+
+def test_what_nothing_leads_to_is_dropped_when_a_function_returns(ctx, frame):
+    kept, gone = (recency.allocate(ctx, "sequence", frame, key) for key in ("kept", "gone"))
+    ctx.store.put((kept, "[0]"), Value(DATA))
+    ctx.store.put((gone, "[0]"), Value(DATA))
+    ctx.store.put((frame, "local"), pointer(gone))
+    delta = lasting(ctx.store.since(0), frame, [kept], frozenset())
+    assert (kept, "[0]") in delta
+    assert not any(owner in (gone, frame) for owner, _ in delta)
+
+
+def test_too_many_constants_are_anything():
+    values = [const(n) for n in range(MAX_CONSTS + 1)]
+    whole = BOTTOM
+    for value in values[:-1]:
+        whole = join(whole, value)
+    assert whole.consts == frozenset(range(MAX_CONSTS))
+    assert join(whole, values[-1]).consts is None
+
+
+def test_a_join_that_brings_nothing_new_is_the_same_value():
+    value = Value(DATA | OTHER)
+    assert join(value, Value(DATA)) is value
