@@ -64,6 +64,56 @@ def test_fills(tarl, tarl_drift):
         tarl.reward(-abs(1.0 - level))
     assert abs(1.0 - level) < 0.15, "tank not full"
 """
+FOLLOWER = """\
+import rospy
+from geometry_msgs.msg import Twist, Vector3
+
+
+class Follower:
+    def __init__(self):
+        self.command = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+        rospy.Subscriber("/offset", Vector3, self.on_offset)
+
+    def on_offset(self, msg):
+        cmd = Twist()
+        cmd.linear.x = msg.x
+        cmd.linear.y = msg.y
+        self.command.publish(cmd)
+
+
+if __name__ == "__main__":
+    rospy.init_node("follower")
+    Follower()
+    rospy.spin()
+"""
+FOLLOWS = """\
+import pytest
+from pytest_tarl import Drift, Sensor
+from pytest_tarl.ros import message_type
+
+Vector3 = message_type("geometry_msgs/msg/Vector3")
+
+
+@pytest.mark.tarl(
+    nodes=["follower.py"],
+    sensors=[Sensor("x", topic="/offset", field="x", low=-2, high=2, bins=8)],
+    drifts={"turned": Drift(True, permanent=True)},
+    tolerance=0.5,
+)
+def test_follows(tarl, tarl_drift):
+    draws = tarl.rng("world")
+    x, y = draws.uniform(0.5, 1.5), draws.uniform(-1.5, -0.5)
+    tarl.start("follower.py")
+    for _ in range(30):
+        seen = (y, x) if tarl_drift else (x, y)
+        tarl.bus.publish("/offset", Vector3(x=float(seen[0]), y=float(seen[1]), z=0.0))
+        tarl.step(0.1)
+        cmd = tarl.bus.latest("/cmd_vel")
+        if cmd:
+            x, y = x - 0.2 * cmd.linear.x, y - 0.2 * cmd.linear.y
+        tarl.reward(-min(abs(x) + abs(y), 5.0))
+    assert abs(x) + abs(y) < 0.2
+"""
 CASES = {
     "sign": ("-told if tarl_drift else told", "0.15 * flow"),
     "limit": ("told", "0.0 if tarl_drift and flow > 1.5 else 0.15 * flow"),
@@ -120,3 +170,14 @@ def test_a_template_of_the_project_is_tried(pytester: pytest.Pytester) -> None:
     (folder / "mirrored.toml").write_text("summary = 3")
     done = pytester.runpytest(*REPAIR)
     assert "mirrored.toml: this is no template" in " ".join(done.stdout.str().split())
+
+
+def test_axes_that_were_turned_are_swapped(pytester: pytest.Pytester) -> None:
+    pytester.makefile(".py", follower=FOLLOWER, test_follow=FOLLOWS)
+    pytester.makeini("[pytest]\naddopts = -p no:randomly -p no:asyncio -p no:rerunfailures\n")
+    pytester.runpytest(*RECORD).assert_outcomes(passed=1)
+    done = pytester.runpytest(*REPAIR)
+    assert "accepted: swap msg.x and msg.y at follower.py:12" in " ".join(done.stdout.str().split())
+    (patch,) = pytester.path.glob(".tarl/patches/*.patch")
+    added = [line for line in patch.read_text().splitlines() if line.startswith("+  ")]
+    assert added == ["+        cmd.linear.x = msg.y", "+        cmd.linear.y = msg.x"]
