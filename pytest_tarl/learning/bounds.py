@@ -13,7 +13,7 @@ hold together at the sum of their risks. What else they assume:
 
 "Exact" means at least the stated confidence, for any number of episodes that was fixed beforehand. Where it was not,
 because recording went on until something was settled, `rate_sequence`, and `mean_of` with `anytime`, hold at all times.
-benchmarks/coverage.py measures how often each of them holds.
+benchmarks/bound_coverage.py measures how often each of them holds.
 """
 
 from __future__ import annotations
