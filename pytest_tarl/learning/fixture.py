@@ -92,7 +92,8 @@ def save(fixture: Fixture, path: Path) -> None:
     header["digest"] = _digest(header, columns)
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, allow_pickle=False, **{HEADER: text}, **columns)
+    arrays: dict[str, Any] = {HEADER: text, **columns}
+    np.savez_compressed(buffer, **arrays)  # numpy before 2.1 takes any option for an array
     try:
         write_atomically(path, buffer.getvalue())
     except OSError as problem:

@@ -62,7 +62,8 @@ def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: st
     header["digest"] = _digest(header, columns)
     buffer = io.BytesIO()
     text = np.frombuffer(json.dumps(header).encode(), np.uint8)
-    np.savez_compressed(buffer, allow_pickle=False, **{HEADER: text}, **columns)
+    arrays: dict[str, Any] = {HEADER: text, **columns}
+    np.savez_compressed(buffer, **arrays)  # numpy before 2.1 takes any option for an array
     try:
         write_atomically(path, buffer.getvalue())
     except OSError as problem:

@@ -1,0 +1,38 @@
+"""Print the lowest versions that pyproject.toml allows, one `name==version` a line, as constraints for pip.
+
+`python .ci/lower_bounds.py [EXTRA ...]` tells the requirements of the distribution and of the extras named.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+try:
+    import tomllib
+except ImportError:
+    import tomli as tomllib
+
+_REQUIREMENT = re.compile(r"([A-Za-z0-9._-]+)(?:\[[^]]*\])?>=([0-9.]+)")
+
+
+def bounds(extras: list[str]) -> list[str]:
+    """Return the constraints; markers of the interpreter are kept."""
+    project = tomllib.loads(Path(__file__).parent.parent.joinpath("pyproject.toml").read_text())["project"]
+    lines = [
+        *project["dependencies"],
+        *(one for extra in extras for one in project["optional-dependencies"][extra]),
+    ]
+    found = []
+    for line in lines:
+        requirement, _, marker = line.partition(";")
+        match = _REQUIREMENT.fullmatch(requirement.strip())
+        if match is None:
+            sys.exit(f"pyproject.toml: {line!r} names no lower bound.")
+        found.append(f"{match[1]}=={match[2]}" + (f" ; {marker.strip()}" if marker else ""))
+    return found
+
+
+if __name__ == "__main__":
+    print("\n".join(bounds(sys.argv[1:])))
