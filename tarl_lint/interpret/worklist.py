@@ -35,7 +35,7 @@ def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - one signatur
             mine = store.mine(key, value)
             if mine is not None:
                 ctx.shared.leave(ctx.shared.pauses, root, key, mine)
-        news = ctx.shared.others(key, root) if key in root.heeds else None
+        news = store.others(key) if key in root.heeds else None
         if news is not None:
             former = ctx.ops.default(ctx, *key) if value is ABSENT else value  # a field of a new object
             both = store.admit(key, former, news)

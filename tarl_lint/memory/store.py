@@ -144,6 +144,9 @@ class Store:
     hidden: list[dict[Key, Value | None]] = field(default_factory=lambda: [{}])
     insides: dict[frozenset[Obj], frozenset[int]] = field(default_factory=dict)  # data inside objects now
     looked: object = None  # what else that was true of when somebody looked
+    elsewhere: dict[Key, Value | None] = field(
+        default_factory=dict
+    )  # what other roots may store while this one waits
     waited: bool = False  # so that others may have stored meanwhile
 
     def get(self, key: Key) -> Value | None:
@@ -162,9 +165,15 @@ class Store:
     def _heed(self, key: Key, value: Value) -> None:
         """From now on, take in what others store here meanwhile; run again if they have."""
         self.root.heeds.add(key)
-        news = self.shared.others(key, self.root)
+        news = self.others(key)
         if news is not None and (value is ABSENT or join(value, news) is not value):
             self.shared.dirty.add(self.root)
+
+    def others(self, key: Key) -> Value | None:
+        """Return what other roots may store here, which does not change while this one runs."""
+        if key not in self.elsewhere:
+            self.elsewhere[key] = self.shared.others(key, self.root)
+        return self.elsewhere[key]
 
     def stored(self, key: Key) -> bool:
         """Tell whether this run has stored here."""

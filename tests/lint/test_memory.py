@@ -135,3 +135,13 @@ def test_too_many_constants_are_anything():
 def test_a_join_that_brings_nothing_new_is_the_same_value():
     value = Value(DATA | OTHER)
     assert join(value, Value(DATA)) is value
+
+
+def test_what_others_store_is_asked_once_in_a_run_and_again_in_the_next(ctx):
+    obj = instance(ctx, "a")
+    key, other = (obj, "x"), Root("other", "other")
+    ctx.shared.leave(ctx.shared.ends, other, key, Value(DATA))
+    assert ctx.store.others(key) is ctx.store.others(key)
+    ctx.shared.leave(ctx.shared.ends, other, key, Value(OTHER))
+    assert ctx.store.root in ctx.shared.dirty
+    assert Store(ctx.shared, ctx.store.root).others(key) == Value(DATA | OTHER)
