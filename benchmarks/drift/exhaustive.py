@@ -21,10 +21,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain, combinations, product
 from math import log
+from pathlib import Path
 from statistics import fmean
 from typing import Any
 
-from stage import HERE, TASKS, Stage, visit
+from stage import HERE, Stage, tasks_in, visit
 
 from pytest_tarl.errors import RepairError, TarlError
 from pytest_tarl.model import Conjunct, Guard
@@ -227,16 +228,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("tasks", nargs="*")
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--folder", type=Path, default=HERE, help="that holds the tasks")
     parser.add_argument("--here", action="store_true", help="one task, in this process")
     arguments = parser.parse_args()
-    tasks = arguments.tasks or TASKS
+    home = arguments.folder.resolve()
+    tasks = arguments.tasks or tasks_in(home)
     if arguments.here:
-        answer = visit(tasks[0], answered)
-        (HERE / tasks[0] / "answer.json").write_text(json.dumps(answer, indent=1, ensure_ascii=False) + "\n")
+        answer = visit(tasks[0], answered, home=home)
+        (home / tasks[0] / "answer.json").write_text(json.dumps(answer, indent=1, ensure_ascii=False) + "\n")
         print(json.dumps(answer, indent=1, ensure_ascii=False))
         return
     with ThreadPoolExecutor(arguments.workers) as pool:
-        commands = [[sys.executable, __file__, task, "--here"] for task in tasks]
+        commands = [[sys.executable, __file__, task, "--here", "--folder", str(home)] for task in tasks]
         for done in pool.map(lambda command: subprocess.run(command, check=False), commands):
             if done.returncode:
                 sys.exit(done.returncode)

@@ -1,9 +1,10 @@
 """Run the benchmark: every method on every task with every seed, side by side, and print the tables.
 
     python benchmarks/drift/run.py [--seeds 10] [--methods ours;random;…] [--tasks TASK,…] [--workers 2]
+        [--folder benchmarks/drift]
 
-Results are kept in `results.json` beside this file, one entry per method, task and seed: what is there is not run
-again (`--fresh` forgets the methods and tasks that are asked for), so that a run can be interrupted and carried on.
+Results are kept in `results.json` of the folder of the tasks, one entry per method, task and seed: what is there is not
+run again (`--fresh` forgets the methods and tasks that are asked for), so that a run can be interrupted and carried on.
 `--table` prints the tables from what is there. CMA-ES and Optuna need `pip install cma optuna`; FauxPy, which pins
 other plugins of pytest, is run by the Python of an environment of its own that has tarl as well: `--fauxpy PYTHON`.
 """
@@ -22,21 +23,20 @@ from pathlib import Path
 from typing import Any
 
 from fauxpy_peer import FAUXPY, localised
-from stage import HERE, TASKS, Stage, visit
+from stage import HERE, Stage, answers_in, tasks_in, visit
 from table import tables
 
 OURS = ("ours", "ours, halving")
 PEERS = ("random", "CMA-ES", "Optuna")
 METHODS = ("ours", *(f"{name}{guard}" for name in PEERS for guard in ("", ", our guard")), *FAUXPY)
-RESULTS = HERE / "results.json"
 
 
-def one(methods: Sequence[str], task: str, seed: int, python: str | None) -> dict[str, Any]:
+def one(home: Path, methods: Sequence[str], task: str, seed: int, python: str | None) -> dict[str, Any]:
     """Run methods on one task with one seed, on a copy of the task; what they have in common is done once."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder).resolve() / task
-        shutil.copytree(HERE / task, copy, ignore=shutil.ignore_patterns("__pycache__"))
-        found: dict[str, Any] = visit(task, lambda stage: _found(stage, methods, seed, python), copy)
+        shutil.copytree(home / task, copy, ignore=shutil.ignore_patterns("__pycache__"))
+        found: dict[str, Any] = visit(task, lambda stage: _found(stage, methods, seed, python), copy, home)
     return found
 
 
@@ -57,25 +57,28 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--seeds", type=int, default=10)
     parser.add_argument("--methods", default=";".join(METHODS), help="separated by semicolons")
-    parser.add_argument("--tasks", default=",".join(TASKS))
+    parser.add_argument("--folder", type=Path, default=HERE, help="that holds the tasks")
+    parser.add_argument("--tasks", help="separated by commas; all of the folder where nothing is given")
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--results", type=Path, default=RESULTS)
+    parser.add_argument("--results", type=Path, help="results.json of the folder where nothing is given")
     parser.add_argument("--fresh", action="store_true", help="forget earlier results of what is asked for")
     parser.add_argument("--table", action="store_true", help="run nothing")
     parser.add_argument("--fauxpy", metavar="PYTHON", help="of an environment that has fauxpy and tarl")
     parser.add_argument("--one", nargs=3, metavar=("METHODS", "TASK", "SEED"), help="print results as JSON")
     arguments = parser.parse_args()
+    home = arguments.folder = arguments.folder.resolve()
+    arguments.results = arguments.results or home / "results.json"
     if arguments.one:
         methods, task, seed = arguments.one
-        found = one(methods.split(";"), task, int(seed), arguments.fauxpy)
+        found = one(home, methods.split(";"), task, int(seed), arguments.fauxpy)
         print("\n" + json.dumps(found, ensure_ascii=False))
         return
-    tasks = arguments.tasks.split(",")
+    tasks = arguments.tasks.split(",") if arguments.tasks else tasks_in(home)
     results = json.loads(arguments.results.read_text()) if arguments.results.exists() else {}
     if not arguments.table:
         _run(_jobs(arguments, tasks, {} if arguments.fresh else results), results, arguments)
     kept = {key: found for key, found in results.items() if key.split("/")[1] in tasks}
-    print(tables(kept))
+    print(tables(kept, answers_in(home)))
 
 
 Job = tuple[tuple[str, ...], str, int]  # methods, task, seed
@@ -98,7 +101,9 @@ def _jobs(arguments: argparse.Namespace, tasks: Sequence[str], results: Mapping[
 
 def _run(jobs: Sequence[Job], results: dict[str, Any], arguments: argparse.Namespace) -> None:
     """Run jobs; every result is written down as soon as it is there."""
-    more = ["--fauxpy", arguments.fauxpy] if arguments.fauxpy else []
+    more = ["--folder", str(arguments.folder)]
+    if arguments.fauxpy:
+        more += ["--fauxpy", arguments.fauxpy]
     with ThreadPoolExecutor(arguments.workers) as pool:
         started = pool.map(lambda job: _started(job, more), jobs)
         for (methods, task, seed), done in zip(jobs, started, strict=True):

@@ -21,7 +21,19 @@ from tarl_lint.api import Analysis, analyse
 
 HERE = Path(__file__).resolve().parent
 REWRITTEN = "ignore:Module already imported"
-TASKS = tuple(sorted(path.name for path in HERE.iterdir() if list(path.glob("test_*.py"))))
+
+
+def tasks_in(folder: Path) -> tuple[str, ...]:
+    """Return the names of a folder's tasks: its directories that hold a test."""
+    return tuple(sorted(path.name for path in folder.iterdir() if list(path.glob("test_*.py"))))
+
+
+def answers_in(folder: Path) -> dict[str, Any]:
+    """Return what is known of each task of a folder."""
+    return {task: json.loads((folder / task / "answer.json").read_text()) for task in tasks_in(folder)}
+
+
+TASKS = tasks_in(HERE)
 
 
 @dataclass(frozen=True)
@@ -35,6 +47,7 @@ class Stage:
     analysis: Analysis
     sites: Plan
     test: str
+    home: Path = HERE  # that holds the tasks
 
     @property
     def drift(self) -> str:
@@ -42,10 +55,15 @@ class Stage:
         (drift,) = self.marked.drifts
         return drift
 
+    @property
+    def permanent(self) -> bool:
+        """Tell whether the drift is a change for good, so that the designed world is asked no longer."""
+        return self.marked.drifts[self.drift].permanent
+
     @cached_property
     def answer(self) -> dict[str, Any]:
         """Return what is known of the task."""
-        found: dict[str, Any] = json.loads((HERE / self.task / "answer.json").read_text())
+        found: dict[str, Any] = json.loads((self.home / self.task / "answer.json").read_text())
         return found
 
 
@@ -55,6 +73,7 @@ class _Visit:
 
     task: str
     visitor: Callable[[Stage], Any]
+    home: Path
     found: list[Any] = field(default_factory=list)
 
     @pytest.hookimpl(tryfirst=True)
@@ -66,15 +85,16 @@ class _Visit:
         sites = plan(analysis)
         instruments = Instruments({root / p: at for p, at in sites.positions.items()}, sites.publishes)
         rollout = ItemRollout(item, marked, instruments)
-        self.found.append(self.visitor(Stage(self.task, root, rollout, marked, analysis, sites, item.nodeid)))
+        stage = Stage(self.task, root, rollout, marked, analysis, sites, item.nodeid, self.home)
+        self.found.append(self.visitor(stage))
         finish(item, nextitem)
         return True
 
 
-def visit(task: str, visitor: Callable[[Stage], Any], folder: Path | None = None) -> Any:
-    """Return what the visitor makes of a task; `folder` is a copy of the task's directory to work in."""
-    where = folder or HERE / task
-    guest = _Visit(task, visitor)
+def visit(task: str, visitor: Callable[[Stage], Any], folder: Path | None = None, home: Path = HERE) -> Any:
+    """Return what the visitor makes of a task of `home`; `folder` is a copy of the task's directory to work in."""
+    where = folder or home / task
+    guest = _Visit(task, visitor, home)
     arguments = [
         "-q",
         "-p",

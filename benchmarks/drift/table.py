@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from statistics import fmean
 from typing import Any
 
-from stage import HERE
-
 Result = Mapping[str, Any]
+Answers = Mapping[str, Mapping[str, Any]]  # task → what is known of it
 
 
-def tables(results: Mapping[str, Result]) -> str:
+def tables(results: Mapping[str, Result], answers: Answers) -> str:
     """Return the comparison of the methods, and our own figures by task."""
     methods = list(dict.fromkeys(key.split("/")[0] for key in sorted(results, key=_ours_first)))
-    rows = [row for method in methods for row in _rows(method, _of(results, method))]
-    slices = _slices(_of(results, "ours"))
-    return "\n".join([*_head(COLUMNS), *rows[:1], *slices, *rows[1:], "", *_by_task(_of(results, "ours"))])
+    rows = [row for method in methods for row in _rows(method, _of(results, method), answers)]
+    slices = _slices(_of(results, "ours"), answers)
+    return "\n".join(
+        [*_head(COLUMNS), *rows[:1], *slices, *rows[1:], "", *_by_task(_of(results, "ours"), answers)]
+    )
 
 
 COLUMNS = (
@@ -51,11 +51,11 @@ def _head(columns: Sequence[str]) -> list[str]:
     return [f"| {' | '.join(columns)} |", "|---" * len(columns) + "|"]
 
 
-def _rows(method: str, found: Sequence[tuple[str, Result]]) -> list[str]:
+def _rows(method: str, found: Sequence[tuple[str, Result]], answers: Answers) -> list[str]:
     """Return a method's row, or one for each metric of a localiser, and why it did not complete."""
     if not any("ranks" in result for _, result in found):
-        return [_row(method, found)]
-    asked = [(task, result) for task, result in found if _repairable(task)]
+        return [_row(method, found, answers)]
+    asked = [(task, result) for task, result in found if _repairable(answers[task])]
     metrics = dict.fromkeys(metric for _, result in asked for metric in result["ranks"])
     rows = []
     for metric in metrics:
@@ -72,19 +72,19 @@ def _rows(method: str, found: Sequence[tuple[str, Result]]) -> list[str]:
     return rows
 
 
-def _row(method: str, found: Sequence[tuple[str, Result]]) -> str:
-    repairable = [(task, result) for task, result in found if _repairable(task)]
-    others = [result for task, result in found if not _repairable(task)]
+def _row(method: str, found: Sequence[tuple[str, Result]], answers: Answers) -> str:
+    repairable = [(task, result) for task, result in found if _repairable(answers[task])]
+    others = [result for task, result in found if not _repairable(answers[task])]
     spent = [
         _mean(result["episodes"].get(kind, 0) for _, result in repairable)
         for kind in ("search", "comparison", "acceptance")
     ]
     cells = [
         method,
-        _share(_within(task, result["ranked"], 1) for task, result in repairable)
+        _share(_within(answers[task], result["ranked"], 1) for task, result in repairable)
         if method.startswith("ours")
         else "–",
-        _share(_within(task, result["ranked"], 3) for task, result in repairable)
+        _share(_within(answers[task], result["ranked"], 3) for task, result in repairable)
         if method.startswith("ours")
         else "–",
         _share(result["drifted restored"] for _, result in repairable),
@@ -96,27 +96,27 @@ def _row(method: str, found: Sequence[tuple[str, Result]]) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def _slices(found: Sequence[tuple[str, Result]]) -> list[str]:
+def _slices(found: Sequence[tuple[str, Result]], answers: Answers) -> list[str]:
     """Return the row of the slices: the ranking that the paper ends with."""
-    ranked = [(task, result["slices"]) for task, result in found if _repairable(task)]
+    ranked = [(task, result["slices"]) for task, result in found if _repairable(answers[task])]
     if not ranked:
         return []
-    first, third = (_share(_within(task, sites, most) for task, sites in ranked) for most in (1, 3))
+    first, third = (_share(_within(answers[task], sites, most) for task, sites in ranked) for most in (1, 3))
     return [f"| utility slices, as in the paper | {first} | {third} | – | – | – | – | 0 | 40 | 0 | 40 |"]
 
 
-def _by_task(found: Sequence[tuple[str, Result]]) -> list[str]:
+def _by_task(found: Sequence[tuple[str, Result]], answers: Answers) -> list[str]:
     """Return our figures by task."""
     rows = _head(OUR_COLUMNS)
     for task in dict.fromkeys(task for task, _ in found):
-        seen, known = [result for name, result in found if name == task], answer(task)
+        seen, known = [result for name, result in found if name == task], answers[task]
         cells = [
             task,
             str(known.get("sites")),
             str(known.get("operands")),
             _right(known),
-            _share(_within(task, result["ranked"], 1) for result in seen),
-            _share(_within(task, result["ranked"], 3) for result in seen),
+            _share(_within(answers[task], result["ranked"], 1) for result in seen),
+            _share(_within(answers[task], result["ranked"], 3) for result in seen),
             _share(both(result) for result in seen),
             *(
                 f"{_mean(result['episodes'].get(kind, 0) for result in seen):.0f}"
@@ -162,21 +162,16 @@ def both(result: Result) -> bool:
     return bool(result["accepted"] and result["drifted restored"] and result["nominal restored"])
 
 
-def answer(task: str) -> Any:
-    """Return what is known of a task."""
-    return json.loads((HERE / task / "answer.json").read_text())
-
-
-def _repairable(task: str) -> bool:
-    return bool(answer(task)["known"])
+def _repairable(answer: Mapping[str, Any]) -> bool:
+    return bool(answer["repairable"])
 
 
 def _of(results: Mapping[str, Result], method: str) -> list[tuple[str, Result]]:
     return [(key.split("/")[1], result) for key, result in results.items() if key.split("/")[0] == method]
 
 
-def _within(task: str, sites: Sequence[str], most: int) -> bool:
-    found = rank(sites, answer(task))
+def _within(answer: Mapping[str, Any], sites: Sequence[str], most: int) -> bool:
+    found = rank(sites, answer)
     return found is not None and found <= most
 
 
