@@ -60,6 +60,7 @@ def ours(stage: Stage, seed: int, search: str = "sweep") -> dict[str, Any]:
         "accepted": fixed.accepted,
         "reason": fixed.reason,
         "guard": fixed.guard,
+        "permanent": stage.permanent,
         "edits": [f"{edit.path}:{edit.line} {edit.code} → {edit.value:g}" for edit in fixed.edits],
         "episodes": {"comparison": order.online.recorded.sample.episodes, **outcome.episodes},
         **judged(order, overlay if fixed.accepted else None),

@@ -158,8 +158,9 @@ def rank(sites: Sequence[str], answer: Mapping[str, Any]) -> int | None:
 
 
 def both(result: Result) -> bool:
-    """Tell whether a repair was accepted and holds in both worlds."""
-    return bool(result["accepted"] and result["drifted restored"] and result["nominal restored"])
+    """Tell whether a repair was accepted and holds in both worlds; after a change for good the old one is not asked."""
+    nominal = result["nominal restored"] or result.get("permanent", False)
+    return bool(result["accepted"] and result["drifted restored"] and nominal)
 
 
 def _repairable(answer: Mapping[str, Any]) -> bool:
