@@ -40,7 +40,18 @@ def prepared(stage: Stage, seed: int, budget: int = Options.budget, search: str 
     options = Options(mode="repair", seed=seed, budget=budget, searches=(search,))
     online = run_online(stage.rollout, fixture, marked, options, stage.sites, stage.drift, quiet)
     patches = stage.folder / ".tarl" / "patches"
-    return Order(stage.rollout, stage.analysis, stage.folder, fixture, online, options, quiet, patches)
+    return Order(
+        stage.rollout,
+        stage.analysis,
+        stage.folder,
+        fixture,
+        online,
+        options,
+        quiet,
+        patches,
+        world=marked.drifts[stage.drift],
+        declared=marked.total_range,
+    )
 
 
 def ours(stage: Stage, seed: int, search: str = "sweep") -> dict[str, Any]:
