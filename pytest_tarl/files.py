@@ -6,6 +6,7 @@ import errno
 import os
 import re
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC))  # Windows has no quota error
@@ -21,14 +22,20 @@ def advice_on(problem: OSError) -> str:
     return "something else is in its place, or the disk fails: look there and run it again."
 
 
-def make_room(path: Path) -> None:
-    """Make the folders above a file that is to be written. Raises OSError where that or the file cannot be."""
+def check_writable(path: Path) -> None:
+    """Find out whether a file can be written later, and leave nothing behind. Raises OSError where it cannot."""
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    os.close(handle)
-    Path(name).unlink()
+    made = [folder for folder in path.parents if not folder.exists()]  # the innermost first
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        os.close(handle)
+        Path(name).unlink()
+    finally:
+        for folder in made:
+            with suppress(OSError):  # another run has put something there, or the folder was never made
+                folder.rmdir()
 
 
 def slug(text: str) -> str:

@@ -24,7 +24,7 @@ from zipfile import ZipFile
 import numpy as np
 
 from pytest_tarl.errors import FixtureError
-from pytest_tarl.files import advice_on, make_room, write_atomically
+from pytest_tarl.files import advice_on, check_writable, write_atomically
 from pytest_tarl.formulas.signals import Signal
 from pytest_tarl.learning.archive import DamagedError, numbers, read_arrays
 from pytest_tarl.learning.packing import (
@@ -103,7 +103,7 @@ def save(fixture: Fixture, path: Path) -> None:
 def prepare(path: Path) -> None:
     """Raise FixtureError unless a fixture can be written, before the episodes are run that would be lost."""
     try:
-        make_room(path)
+        check_writable(path)
     except OSError as problem:
         raise _unwritable(path, problem) from problem
 

@@ -4,7 +4,9 @@ import os
 import stat
 import threading
 
-from pytest_tarl.files import write_atomically
+import pytest
+
+from pytest_tarl.files import check_writable, write_atomically
 
 
 def test_a_file_is_replaced_whole(tmp_path):
@@ -26,3 +28,18 @@ def test_a_pipe_or_device_is_written_to_and_stays_what_it_is(tmp_path):
     assert read == [b"report"]
     assert stat.S_ISFIFO(pipe.stat().st_mode)
     assert [p.name for p in tmp_path.iterdir()] == ["pipe"]
+
+
+@pytest.mark.parametrize("there", ["", "a", "a/b"])
+def test_asking_whether_a_file_can_be_written_leaves_nothing_behind(tmp_path, there):
+    (tmp_path / there).mkdir(parents=True, exist_ok=True)
+    before = sorted(tmp_path.rglob("*"))
+    check_writable(tmp_path / "a" / "b" / "c.npz")
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_what_keeps_a_file_from_being_written_is_raised_and_nothing_is_left(tmp_path):
+    (tmp_path / "a").write_text("a file")
+    with pytest.raises(OSError, match="a"):
+        check_writable(tmp_path / "a" / "b" / "c.npz")
+    assert [path.name for path in tmp_path.rglob("*")] == ["a"]
