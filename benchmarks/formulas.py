@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import random
 from time import process_time
 
@@ -44,6 +45,7 @@ def milliseconds(text: str, steps: int, *, rewarding: bool) -> float:
 
 def main() -> None:
     """Print a table."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
     print(f"{'ms of CPU time per episode':<52}" + "".join(f"{steps:>8} steps" for steps in STEPS))
     for text in FORMULAS:
         for rewarding in (False, True):

@@ -7,13 +7,15 @@ import traceback
 from pathlib import Path
 from types import TracebackType
 
+from pytest_tarl.errors import NodeError
+
 _PACKAGE = str(Path(__file__).parent.parent)
 
 
 def account(error: BaseException, test: Path) -> str:
     """Return what to show of an error that a test got; one that no node's exception caused is its sentence alone."""
     cause = error.__cause__
-    if cause is None or cause.__traceback__ is None:
+    if not isinstance(error, NodeError) or cause is None or cause.__traceback__ is None:
         return str(error)
     lines = traceback.format_exception(type(cause), cause, of_node(cause.__traceback__))
     parts = [str(error), "".join(lines).rstrip(), _called(error.__traceback__, test)]

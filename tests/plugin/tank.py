@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import io
 import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+
+from pytest_tarl.learning.fixture import HEADER
 
 RECORD = ("--tarl-record", "--tarl-episodes=16")
 ONLINE = ("--tarl-online", "--tarl-episodes=12")
@@ -86,6 +90,12 @@ def fixture_file(tank: pytest.Pytester) -> Path:
     """Return the one utility fixture."""
     (found,) = (tank.path / ".tarl" / "utility").glob("*.npz")
     return found
+
+
+def columns_of(fixture: bytes) -> dict[str, list[object]]:
+    """Return what was recorded, without the header, which also holds a digest of the test's own modules."""
+    with np.load(io.BytesIO(fixture), allow_pickle=False) as arrays:
+        return {name: arrays[name].tolist() for name in arrays.files if name != HEADER}
 
 
 def result(tank: pytest.Pytester) -> dict[str, Any]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
@@ -13,6 +15,6 @@ def test_a_threshold_serves_from_recording_to_patch(tank: pytest.Pytester) -> No
     told = tank.runpytest(*ONLINE, "--tarl-repair", "--tarl-seed=3")
     told.stdout.fnmatch_lines(["*where*level below 0.5*"])
     assert list((tank.path / ".tarl" / "report").glob("*.html"))
-    tank.run("tarl", "show", fixture_file(tank)).stdout.fnmatch_lines(
+    tank.run(sys.executable, "-m", "pytest_tarl", "show", fixture_file(tank)).stdout.fnmatch_lines(
         ["*level: /level data, below and above 0.5*"]
     )

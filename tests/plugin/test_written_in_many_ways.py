@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import io
 import os
 import signal
 import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from pytest_tarl.learning.fixture import HEADER
-from tests.plugin.tank import RECORD, changed, fixture_file
+from tests.plugin.tank import RECORD, changed, columns_of, fixture_file
 
 FEW = ("--tarl-record", "--tarl-episodes=6")
 HEAD = "def test_fills(tarl, tarl_drift):\n"
@@ -23,12 +20,6 @@ MARK = "@pytest.mark.tarl("
 def fixture_of(tank: pytest.Pytester, *flags: str) -> bytes:
     tank.runpytest(*FEW, *flags).assert_outcomes(passed=1, deselected=1)
     return fixture_file(tank).read_bytes()
-
-
-def columns_of(fixture: bytes) -> dict[str, list[object]]:
-    """Return what was recorded, without the header, which also holds a digest of the test's own modules."""
-    with np.load(io.BytesIO(fixture), allow_pickle=False) as arrays:
-        return {name: arrays[name].tolist() for name in arrays.files if name != HEADER}
 
 
 def lines_of(path: Path) -> list[str]:
