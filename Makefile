@@ -5,6 +5,10 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+PROCESSES ?= 2
+
+# Tests start hundreds of Python processes: without cached bytecode each one compiles pytest and tarl again
+unexport PYTHONDONTWRITEBYTECODE
 INSTALLED := $(VENV)/.installed
 
 .PHONY: demo test check unit setup clean bench-paper bench-drift
@@ -21,7 +25,7 @@ check: setup
 	$(BIN)/lint-imports
 
 unit: setup
-	$(BIN)/python -m pytest -q --timeout 240
+	$(BIN)/python -m pytest -q --timeout 240 --numprocesses $(PROCESSES)
 
 setup: $(INSTALLED)
 
