@@ -15,9 +15,9 @@ from math import log
 from statistics import fmean
 
 from pytest_tarl.formulas.judging import Judged
+from pytest_tarl.learning.betting import Bet, bet
 from pytest_tarl.model import Reason
 from pytest_tarl.searching.acceptance_numbers import acceptance_numbers
-from pytest_tarl.searching.betting import Bet, bet
 
 SCREEN = 8  # episodes before the test
 EARLY = (8, 16, 32)  # episodes after which the test can end in a refusal ...

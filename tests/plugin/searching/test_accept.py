@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pytest_tarl.learning.betting import bet
 from pytest_tarl.learning.bounds import rate
 from pytest_tarl.searching.accept import (
     LOOKS,
@@ -23,7 +24,6 @@ from pytest_tarl.searching.accept import (
     risk_of,
 )
 from pytest_tarl.searching.acceptance_numbers import NEVER, acceptance_numbers
-from pytest_tarl.searching.betting import Bet, bet
 
 DESIGNED, LOWEST, MARGIN = 10.0, -10.0, 0.5
 RISK = risk_of(0.05, 0)
@@ -179,13 +179,3 @@ def test_a_bet_against_a_true_claim_is_rarely_won_whatever_the_totals_look_like(
     won = float(np.mean(money.max(axis=1) >= 1 / RISK))
     assert won <= RISK + 4 * np.sqrt(RISK / 400) + 0.01
     assert stake.wealth(runs[0].tolist()) == pytest.approx(float(np.log(money[0, -1])), abs=1e-6)
-
-
-def test_the_loss_that_a_bet_shows_covers_the_true_one() -> None:
-    stake = Bet(MARGIN, -20.0, (0.04, 0.02))
-    draws = np.random.default_rng(2)
-    missed = 0
-    for _ in range(300):
-        totals = np.where(draws.random(150) < 0.02, -20.0, 0.1)
-        missed += stake.loss(totals.tolist(), 0.05) < 0.02 * 20.0 - 0.98 * 0.1
-    assert missed <= 300 * 0.05 + 3 * np.sqrt(300 * 0.05)
