@@ -34,7 +34,8 @@ from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Floats, Sample
 from pytest_tarl.monitoring.monitor import Monitor, begun
 from pytest_tarl.observing.frames import MAGIC, encoded
-from pytest_tarl.observing.observer import packed
+from pytest_tarl.observing.observer import steps_record
+from pytest_tarl.observing.stream import Chunk
 from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
@@ -278,10 +279,10 @@ def _logged(folder: Path, missions: int) -> int:
 def _steps(
     cells: list[list[int]], places: np.ndarray[tuple[int], np.dtype[np.int32]], reward: Floats
 ) -> dict[str, object]:
-    none = packed(np.empty(0, np.int32))
-    steps: dict[str, object] = dict.fromkeys(("site", "flow", "cell", "step", "thread"), none)
-    steps |= {"kind": "steps", "cells": cells, "step_cell": packed(places), "reward": packed(reward)}
-    return {**steps, "readings": [], "dropped": 0}
+    """Return the record that an observer writes of a node in which nothing is recorded."""
+    none, nothing = np.empty(0, np.int32), np.empty(0)
+    chunk = Chunk(tuple(map(tuple, cells)), none, nothing, none, none, none, places, reward)
+    return steps_record(chunk, [], 0)
 
 
 def main() -> None:

@@ -25,7 +25,8 @@ FORMAT = 1
 MAGIC = b"tarl log 1\n"
 _HEAD = struct.Struct("<II")
 HEAD = _HEAD.size  # bytes before a record's payload
-_LARGEST = 1 << 26  # bytes of a record; a longer one is a damaged length
+unpack_head = _HEAD.unpack_from  # length and checksum of the payload, from a buffer and an offset
+LARGEST = 1 << 26  # bytes of a record; a longer one is a damaged length
 
 Record = dict[str, Any]
 
@@ -119,7 +120,7 @@ def next_record(file: BinaryIO) -> bytes | None:
     if len(head) < HEAD:
         return None
     length, checksum = _HEAD.unpack(head)
-    if length > _LARGEST:
+    if length > LARGEST:
         return None
     payload = file.read(length)
     return payload if len(payload) == length and zlib.crc32(payload) == checksum else None
