@@ -13,7 +13,7 @@ class Flag(NamedTuple):
     asks: bool = False  # whether it asks for a run of ours; the others say how such a run goes
     metavar: str | None = None
     type: type = str
-    default: Any = None
+    default: Any = None  # where neither the command line nor the ini file has a value
     many: bool = False  # whether it may be given several times
 
     @property
@@ -27,7 +27,7 @@ class Flag(NamedTuple):
             return {"action": "store_true", "help": self.help}
         if self.many:
             return {"action": "append", "metavar": self.metavar, "help": self.help}
-        return {"metavar": self.metavar, "type": self.type, "default": self.default, "help": self.help}
+        return {"metavar": self.metavar, "type": self.type, "help": self.help}
 
 
 FLAGS = (

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from _pytest.runner import runtestprotocol
 
+from pytest_tarl import ini
 from pytest_tarl.designation import Designation, designation
 from pytest_tarl.errors import NodeError, RequirementError, SettingsError, StuckNodeError, TarlError
 from pytest_tarl.printable import printable
@@ -93,7 +94,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         bind=recorder.bind,
     )
     replay = _replay(episode)
-    kind = check_kind(item.config.getoption("--tarl-ros"))
+    kind = check_kind(ini.value_of(item.config, "ros"))
     tarl = Tarl(
         episode.plan.seed,
         episode.designation.sensors,
@@ -179,7 +180,7 @@ def _episode(item: pytest.Item) -> Episode:
         raise SettingsError(
             f"{item.nodeid} uses the fixture `tarl` without the marker: add @pytest.mark.tarl(nodes=[…], sensors=[…])."
         )
-    seed = episode_seed(item.config.getoption("--tarl-seed"), "offline", 0)
+    seed = episode_seed(ini.value_of(item.config, "seed"), "offline", 0)
     return Episode(EpisodePlan(seed), marked)
 
 

@@ -10,12 +10,17 @@ from importlib.metadata import version
 from pathlib import Path
 
 from pytest_tarl.errors import RefusedError, TarlError
+from pytest_tarl.extras import missing_extra
 from pytest_tarl.printable import printable, printable_line
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; return 0, 1 where it found what it was told to fail on or refused, 2 for what cannot be done."""
     arguments = _parser().parse_args(argv)
+    sentence = missing_extra(f"tarl {arguments.command}")
+    if sentence is not None:
+        print(f"tarl: {sentence}", file=sys.stderr)
+        return 2
     try:
         return int(arguments.run(arguments))
     except RefusedError as refused:
@@ -42,7 +47,7 @@ def _parser() -> argparse.ArgumentParser:
         prog="tarl", description="Look at what TARL recorded, apply what it found."
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {version('tarl')}")
-    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND", dest="command")
     show = commands.add_parser("show", help="tell in a screenful what a fixture holds")
     show.add_argument("fixture", type=Path, help="a file below .tarl/utility or .tarl/online")
     show.add_argument(
