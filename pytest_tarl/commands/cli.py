@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
+from pytest_tarl.commands.parser import Parser
 from pytest_tarl.errors import RefusedError, TarlError
 from pytest_tarl.extras import missing_extra
 from pytest_tarl.printable import printable, printable_line
@@ -16,7 +17,7 @@ from pytest_tarl.printable import printable, printable_line
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; return 0, 1 where it found what it was told to fail on or refused, 2 for what cannot be done."""
-    arguments = _parser().parse_args(argv)
+    arguments = parser().parse_args(argv)
     sentence = missing_extra(f"tarl {arguments.command}")
     if sentence is not None:
         print(f"tarl: {sentence}", file=sys.stderr)
@@ -42,10 +43,9 @@ def _print(lines: Iterable[str]) -> None:
     print("\n".join(map(printable_line, lines)))
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="tarl", description="Look at what TARL recorded, apply what it found."
-    )
+def parser() -> Parser:
+    """Return the parser of the command line."""
+    parser = Parser(prog="tarl", description="Look at what TARL recorded, apply what it found.")
     parser.add_argument("--version", action="version", version=f"%(prog)s {version('tarl')}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND", dest="command")
     show = commands.add_parser("show", help="tell in a screenful what a fixture holds")
@@ -81,10 +81,12 @@ def _parser() -> argparse.ArgumentParser:
     _add_observe(commands)
     _add_watch(commands)
     _add_patches(commands)
+    for command in commands.choices.values():
+        command.set_defaults(parser=command)
     return parser
 
 
-def _add_patches(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def _add_patches(commands: argparse._SubParsersAction[Parser]) -> None:
     apply = commands.add_parser("apply", help="apply patches of repairs, after checking that they still fit")
     apply.add_argument(
         "--force", action="store_true", help="where the file has changed, or has changes to lose"
@@ -143,7 +145,7 @@ def _suggest(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _add_observe(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def _add_observe(commands: argparse._SubParsersAction[Parser]) -> None:
     observe = commands.add_parser(
         "observe", help="run a node on a robot and log its missions for pytest --tarl-online --tarl-log"
     )
@@ -193,7 +195,7 @@ def _observe(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _add_watch(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def _add_watch(commands: argparse._SubParsersAction[Parser]) -> None:
     watch = commands.add_parser(
         "watch",
         help="judge logged missions as they come: is the stated bound kept, is the world as off-line?",
