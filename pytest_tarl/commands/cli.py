@@ -157,6 +157,20 @@ def _add_observe(commands: argparse._SubParsersAction[Parser]) -> None:
         "--log", type=Path, default=Path(".tarl/missions.log"), help="default .tarl/missions.log; appended to"
     )
     flag(
+        "--log-size",
+        type=float,
+        default=0.0,
+        metavar="MB",
+        help="set the log aside as LOG.1, LOG.2, … when a mission begins and it is longer (default: never)",
+    )
+    flag(
+        "--log-keep",
+        type=int,
+        default=0,
+        metavar="N",
+        help="remove the oldest of more than N that were set aside (default: keep all)",
+    )
+    flag(
         "--fixture", type=Path, help="the utility fixture whose sensors are watched; found where there is one"
     )
     flag("--module", type=Path, action="append", default=[], help="a further file of the node; repeatable")
@@ -190,6 +204,8 @@ def _observe(arguments: argparse.Namespace) -> int:
         mission=arguments.mission_topic,
         idle=arguments.idle,
         step=arguments.step,
+        log_size=round(arguments.log_size * 1e6),
+        log_keep=arguments.log_keep,
     )
     print(printable(observe(order)), file=sys.stderr)
     return 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,9 +13,9 @@ from pytest_tarl.errors import AnalysisError, LogError
 from pytest_tarl.instrumentation.importhook import NodeImports
 from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.learning.fixture import Fixture, load
-from pytest_tarl.observing.frames import LogFile
 from pytest_tarl.observing.observer import Observer
 from pytest_tarl.observing.watching import Topics, watched
+from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.realros.choice import libraries
 from pytest_tarl.ros.argv import command_line
 from pytest_tarl.sensors import binning_digest
@@ -35,6 +36,8 @@ class Order:
     mission: str = ""
     idle: float | None = None
     step: float | None = None
+    log_size: int = 0  # bytes at which the log is set aside; 0 for never
+    log_keep: int = 0  # how many that were set aside stay; 0 for all
 
 
 def observe(order: Order) -> str:
@@ -56,8 +59,9 @@ def observe(order: Order) -> str:
     _warn_of_mute_sensors(fixture)
     observer = Observer(
         fixture.sensors,
-        LogFile(order.log),
+        order.log,
         about,
+        rotation=Rotation(order.log_size, order.log_keep),
         idle=order.idle,
         signals=[signal for signal in fixture.signals if signal.topic is not None],
         following=fixture.sample.judgements is not None,
@@ -79,7 +83,7 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
     imports = NodeImports(Path.cwd(), positions, stream.hook, publishes=sites.publishes, bind=stream.bind)
     if not order.mission and order.idle is None:
         observer.begin()
-    with imports, command_line([str(order.node), *order.argv]):
+    with imports, _collected_before(), command_line([str(order.node), *order.argv]):
         try:
             imports.run(order.node.resolve(), order.entry)
         except SystemExit as ended:
@@ -91,6 +95,17 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
             observer.end(passed=False, failure=f"{type(error).__name__}: {error}")
             raise
         observer.end(passed=True)
+
+
+@contextmanager
+def _collected_before() -> Iterator[None]:
+    """Keep what was imported and analysed so far out of the garbage collections that the node pays for."""
+    gc.collect()
+    gc.freeze()
+    try:
+        yield
+    finally:
+        gc.unfreeze()
 
 
 def _check(order: Order) -> None:

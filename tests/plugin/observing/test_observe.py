@@ -14,7 +14,7 @@ from pytest_tarl.errors import LogError
 from pytest_tarl.learning.fixture import load
 from pytest_tarl.logged import missions
 from pytest_tarl.observing.command import Order, observe
-from pytest_tarl.observing.observer import unpacked
+from pytest_tarl.observing.writer import unpacked
 from pytest_tarl.ros import Ros, message_type
 from tests.plugin.tank import NODE, RECORD, TEST
 
@@ -83,6 +83,14 @@ def test_a_log_of_another_world_is_degraded_and_one_of_the_same_is_not(
     result = pytester.runpytest_inprocess("--tarl-online", "--tarl-log=clogged.log")
     result.stdout.fnmatch_lines(["*test_fills[[]online[]]: degraded*"])
     assert result.ret == 1
+
+
+def test_missions_of_logs_that_were_set_aside_are_compared_as_well(recorded: Path) -> None:
+    drive(order(recorded, log_size=1), [1.0, 0.1, 1.0])
+    assert len(list(recorded.glob(".tarl/missions.log.*"))) == 3
+    fixture = load(next(recorded.glob(".tarl/utility/*.npz")))
+    found = missions(recorded / ".tarl/missions.log", fixture)
+    assert [(one.ended, one.passed) for one in found] == [(True, True), (True, False), (True, True)]
 
 
 def test_a_mission_without_an_end_takes_no_part_and_is_told(
