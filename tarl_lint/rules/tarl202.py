@@ -1,13 +1,16 @@
 """TARL202: a command follows a sensor without limit.
 
-A number of a received message is computed into a command for actuators (a velocity, a throttle, an angle) and nothing
-on the way bounds it: no `min`, `max`, `clip` or function of such a name, no angle or sine, no comparison that replaces
-the value when it is too large. Sensors send infinity, jumps and nonsense sometimes, and the command then follows.
-Clamp it where it is computed; that is the line that is named. Conditions that only ask whether the value is large
-enough (`while distance > tolerance`) do not bound it. What passes through code that is not here is not reported, nor
-speeds that may be measurements: a Float64 on `/speed` made from ticks, from `twist`, or from a way and a time. Sensors
-are known by their messages (`LaserScan`, `Odometry`, `Imu` …), and numbers by their topic (`/range`, `/cte`); what is
-neither may be decided by somebody, as commands, goals and parameters are, and is not reported.
+A command for actuators (a velocity, a throttle, an angle) is computed from a number in a received message, and nothing
+on the way bounds it: no `min`, `max`, `clip` or function with such a name, no angle or sine, no comparison that
+replaces a value that is too large. Sensors sometimes send infinity, jumps or invalid values, and the command follows them.
+Clamp the value at the reported line, where it is computed.
+
+A condition that only checks whether a value is large enough (`while distance > tolerance`) does not bound it.
+
+A message counts as sensor data by its type (`LaserScan`, `Odometry`, `Imu` …), a plain number by its topic (`/range`,
+`/cte`). Other messages may be decisions, such as commands, goals and parameters, and are not reported. Neither
+are values that pass through code outside the analysed files, nor speeds that may be measurements: a Float64 on `/speed`
+computed from ticks, from `twist`, or from a distance and a time.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""TARL203: what is subscribed to reaches nothing.
+"""TARL203: a subscription has no effect.
 
-The callback does nothing with its messages: it neither keeps, publishes, passes on, logs nor returns anything, or
-what it keeps is never read. The subscription costs bandwidth and time for nothing, and often a line is missing that
-somebody believes to be there. Not meant are callbacks that ignore the message but do something when it arrives, and
-those that are written to do nothing: `lambda msg: None`, or a parameter whose name starts with an underscore.
+The callback ignores its messages: it does not store, publish, pass on, log or return anything, or nothing ever reads
+what it stores. The subscription wastes bandwidth and time, and often a line is missing that its author believes to be
+there. Not reported are callbacks that ignore the message but do something when it arrives, and callbacks that
+intentionally do nothing: `lambda msg: None`, or a parameter whose name starts with an underscore.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tarl_lint.rules.wording import end
 from tarl_lint.trees import walk
 
 CODE: Final = "TARL203"
-SUMMARY: Final = "what is subscribed to reaches nothing"
+SUMMARY: Final = "a subscription has no effect"
 
 INVALID: Final = (
     """

@@ -1,7 +1,7 @@
 """TARL204: a publisher never publishes.
 
-The topic is advertised, so other nodes see it and may wait for it, but no publish call anywhere uses the publisher,
-and it is not handed to anyone who could. Usually a line was lost, or the publisher was left over.
+The topic is advertised, so other nodes see it and may wait for it. But no publish call uses the publisher, and it is
+not passed to code that could. Usually a line was lost, or the publisher is left over.
 """
 
 from __future__ import annotations
