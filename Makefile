@@ -41,9 +41,9 @@ $(INSTALLED): pyproject.toml
 # The same test bodies on a real ROS, each in an environment of its own; see docs/real-ros.md
 ROS1_PYTHON ?= /usr/bin/python3
 ROS1_VENV ?= .venv-ros1
-ROS1_PACKAGES := python3-rospy python3-rosmaster python3-std-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-rosgraph-msgs
+ROS1_PACKAGES := python3-rospy python3-rosmaster python3-std-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-rosgraph-msgs python3-diagnostic-msgs
 ROS2_VENV ?= .venv-ros2
-ROS2_WHEELS := 'ros-rclpy[fastrtps]==9.1.2' ros-geometry-msgs==5.5.1 ros-nav-msgs==5.5.1 ros-sensor-msgs==5.5.1
+ROS2_WHEELS := 'ros-rclpy[fastrtps]==9.1.2' ros-geometry-msgs==5.5.1 ros-nav-msgs==5.5.1 ros-sensor-msgs==5.5.1 ros-diagnostic-msgs==5.5.1
 ROS_TOOLS := --editable ".[ros,report]" pymunk hypothesis pytest-xdist
 # Sockets that rospy leaves to the garbage collector are no failure of a test
 ROS_LEAVES := -W "ignore:Exception ignored in:pytest.PytestUnraisableExceptionWarning" \
@@ -63,7 +63,7 @@ test-ros2: setup-ros2
 	$(ROS2_VENV)/bin/python -m pytest -q $(ROS_LEAVES) tests/realros
 
 $(ROS1_VENV)/.installed: pyproject.toml
-	@$(ROS1_PYTHON) -c 'import rospy, rosmaster, nav_msgs' || \
+	@$(ROS1_PYTHON) -c 'import rospy, rosmaster, nav_msgs, diagnostic_msgs' || \
 		{ echo "$(ROS1_PYTHON) has no rospy; on Debian: apt-get install $(ROS1_PACKAGES)"; exit 1; }
 	@$(ROS1_PYTHON) -m venv --system-site-packages $(ROS1_VENV)
 	$(ROS1_VENV)/bin/python $(PIP_INSTALL) $(ROS_TOOLS)
