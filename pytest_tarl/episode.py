@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl import seeds
-from pytest_tarl.errors import RecordingError, RequirementError, SettingsError, TarlError
-from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements, check_texts
-from pytest_tarl.formulas.judging import Judge, Judged
+from pytest_tarl.errors import RecordingError, SettingsError
+from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
+from pytest_tarl.formulas.episode import EpisodeFormulas
+from pytest_tarl.formulas.judging import Judged
 from pytest_tarl.formulas.signals import Signal
 from pytest_tarl.sensors import Cell, Sensor, as_number, reading
 
@@ -66,8 +67,7 @@ class Tarl:
         self._origin = 0  # of virtual time, in ns
         self._requirements = requirements
         self._alone = alone  # whether it is the only episode of a plain test run
-        self._judge = Judge(requirements.names, requirements.formulas) if requirements.followed else None
-        self.judged: tuple[Judged, ...] = ()
+        self._formulas = EpisodeFormulas(requirements, self._sensors, lambda: self._now)
         self._open = ExitStack()
         self._open.enter_context(imports)
 
@@ -96,6 +96,11 @@ class Tarl:
     def bus(self) -> Bus:
         """The topics, as the world sees them: `publish` to the nodes, `latest` from them."""
         return self.ros.bus
+
+    @property
+    def judged(self) -> tuple[Judged, ...]:
+        """What the formulas came to, once the episode is concluded."""
+        return self._formulas.judged
 
     @property
     def now(self) -> float:
@@ -172,7 +177,7 @@ class Tarl:
             if name in declared:
                 self._read(declared[name], value)
             elif name in signals:
-                self._give(name, value)
+                self._formulas.give(name, value)
             else:
                 known = [*declared, *sorted(signals)]
                 close = difflib.get_close_matches(name, known, 1)
@@ -188,15 +193,7 @@ class Tarl:
 
         Raises SettingsError for what is no formula over the test's signals.
         """
-        check_texts("tarl.require", formula, self._sensors)
-        if self._judge is None:
-            if self._bins or self._now:
-                raise SettingsError(
-                    "tarl.require: the episode has begun and its signals were not followed until now: call it before "
-                    "the world moves, or say requires=[] in the marker."
-                )
-            self._judge = Judge(self._requirements.names, ())
-        self._judge.require(formula)
+        self._formulas.require(formula, begun=bool(self._bins))
 
     def reward(self, total: float | None = None, /, **parts: float) -> None:
         """Give the monitor's judgement of this simulation step, once a step; parts are summed and reported apart."""
@@ -219,31 +216,16 @@ class Tarl:
 
         A body that failed by itself fails for its own reason.
         """
-        if self._judge is None:
-            return
         whole = ended is None or (self._replay is not None and self._replay.done)
-        try:
-            self.judged = self._judge.conclude(self._now)
-        except TarlError:
-            if whole:
-                raise
-            return
-        if not whole:
-            return
-        too_short = self._judge.unjudged(self._now) if self._alone else ""
-        if too_short:
-            raise SettingsError(too_short)
-        violation = self._judge.violation(self.judged)
-        if violation:
-            raise RequirementError(violation)
+        self._formulas.conclude(whole=whole, alone=self._alone)
 
     def rewarded(self, trace: Trace) -> Trace:
         """Return the trace with the rewards that formulas give, where they do."""
-        if not self._requirements.rewarding or self._judge is None:
+        rewards = self._formulas.rewards()
+        if rewards is None:
             return trace
         import numpy as np
 
-        rewards = self._judge.rewards(self._now, self._requirements.cap)
         return replace(trace, reward=np.array(rewards, np.float64))
 
     def close(self) -> None:
@@ -314,7 +296,7 @@ class Tarl:
                 changed = True
         for signal in self._requirements.signals:
             if signal.topic is not None and same_topic(signal.topic, topic):
-                self._give(signal.name, _value(signal, message))
+                self._formulas.give(signal.name, _value(signal, message))
                 self.topics[signal.topic] = message_type_name(message)
         if changed:
             self._latch_cell()
@@ -324,22 +306,14 @@ class Tarl:
         """Return the virtual nanoseconds since the episode, or the recorded mission, began."""
         return 0 if self._ros is None else self._ros.scheduler.time - self._origin
 
-    def _give(self, name: str, value: Any) -> None:
-        if self._judge is not None:
-            self._judge.give(name, value, self._now)
-
     def _stepped(self) -> None:
-        """Close a step for the formulas; what it earns by them is known when the episode is over."""
-        if self._judge is None:
-            return
-        self._judge.steps.append(self._now)
-        if self._requirements.rewarding:
+        if self._formulas.stepped():
             self._recorder.reward(0.0, {})
             self._rewards += 1
 
     def _read(self, sensor: Sensor, value: Any) -> None:
-        if self._judge is not None and not sensor.categories:
-            self._give(sensor.name, value)
+        if not sensor.categories:
+            self._formulas.give(sensor.name, value)
         self._bins[sensor.name] = sensor.bin(value)
         if sensor.to_learn:
             self.values.setdefault(sensor.name, []).append(float(value))

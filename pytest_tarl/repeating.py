@@ -23,6 +23,7 @@ from pytest_tarl.designation import Designation, designation
 from pytest_tarl.errors import NodeError, RequirementError, SettingsError, StuckNodeError, TarlError
 from pytest_tarl.printable import printable
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
+from pytest_tarl.sayings import said
 from pytest_tarl.scenarios import without_drift
 from pytest_tarl.seeds import episode_seed
 
@@ -71,7 +72,9 @@ INTERRUPTS = (pytest.exit.Exception, KeyboardInterrupt)  # what ends the whole r
 def designated(item: pytest.Item) -> Designation | None:
     """Return the item's marker, checked; None without one. Raises SettingsError."""
     marker = item.get_closest_marker("tarl")
-    return designation(item.nodeid, marker.args, marker.kwargs) if marker else None
+    if marker is None:
+        return None
+    return designation(item.nodeid, marker.args, marker.kwargs, said(item.nodeid, item.config.rootpath))
 
 
 @contextmanager
