@@ -75,6 +75,11 @@ $(ROS2_VENV)/.installed: pyproject.toml
 	$(ROS2_VENV)/bin/python $(PIP_INSTALL) $(ROS_TOOLS)
 	@touch $@
 
+# Small faults sown into pytest_tarl, ten in each package: how many do the tests catch? Hours; nightly
+.PHONY: mutants
+mutants: setup
+	$(BIN)/python benchmarks/mutants.py --seed $${SEED:-0}
+
 bench-paper: setup
 	$(BIN)/python benchmarks/paper.py
 
