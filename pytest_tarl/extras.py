@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from importlib.util import find_spec
 
 INSTALL = 'pip install "tarl[pytest]"'
@@ -14,12 +15,23 @@ def missing_packages() -> list[str]:
 
 
 def missing_extra(what: str) -> str | None:
-    """Return a sentence saying that `what` needs the extra `pytest`, or None where all of it is installed."""
+    """Return a sentence saying what `what` needs of this environment, or None where all of it is there."""
     missing = missing_packages()
     if not missing:
-        return None
+        return no_lock(what)
     verb = "is" if len(missing) == 1 else "are"
     return f"{what} needs {_listed(missing)}, which {verb} not installed: run {INSTALL}."
+
+
+def no_lock(what: str) -> str | None:
+    """Return a sentence where Python runs without its global interpreter lock (3.13t, 3.14t), else None.
+
+    Recording relies on it: events are appended by one thread while another one takes them off.
+    """
+    enabled = getattr(sys, "_is_gil_enabled", None)  # from 3.13 on
+    if enabled is None or enabled():
+        return None
+    return f"{what} needs the global interpreter lock, which is off in this Python: set PYTHON_GIL=1 and run it again."
 
 
 def _listed(names: list[str]) -> str:
