@@ -149,5 +149,5 @@ def failure(path: str, error: Exception) -> SourceError:
 
 
 def debugging() -> bool:
-    """Tell whether mistakes of ours are to be shown with their traceback."""
+    """Return whether mistakes of ours are to be shown with their traceback."""
     return os.environ.get("TARL_DEBUG", "") not in ("", "0")

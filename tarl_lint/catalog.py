@@ -275,7 +275,7 @@ LOGGING: Final = LEVELS | {"get_logger", "exception", "log"}
 
 
 def on_topic(api: str) -> bool:
-    """Tell whether a source or sink is one of topics, not of services, actions or transforms."""
+    """Return whether a source or sink is one of topics, not of services, actions or transforms."""
     return not api.startswith(OTHER_KINDS)
 
 
@@ -292,6 +292,6 @@ def written(qualified: str) -> int | None:
 
 
 def scalar(qualified: str) -> bool:
-    """Tell whether a function returns a plain value, not an object that could be changed later."""
+    """Return whether a function returns a plain value, not an object that could be changed later."""
     name = qualified.removeprefix("builtins.")
     return name in SCALAR_FUNCTIONS or qualified.startswith(SCALAR_MODULES)

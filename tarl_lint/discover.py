@@ -180,7 +180,7 @@ def _absolute(path: Path) -> str:
 
 
 def _not_ours(path: str, name: str) -> bool:
-    """Tell whether a directory holds what tools made or installed: hidden, environments, colcon's."""
+    """Return whether a directory holds what tools made or installed: hidden, environments, colcon's."""
     if name.startswith(".") or name in _NEVER:
         return True
     if name in _COLCON and not os.path.exists(f"{path}/__init__.py"):
@@ -189,14 +189,14 @@ def _not_ours(path: str, name: str) -> bool:
 
 
 def _leads_above_itself(path: str) -> bool:
-    """Tell whether a link leads to a directory that it lies in, which would go round for ever."""
+    """Return whether a link leads to a directory that it lies in, which would go round for ever."""
     parent = os.path.realpath(os.path.dirname(path))
     target = os.path.realpath(path)
     return parent == target or parent.startswith(target.rstrip("/") + "/")
 
 
 def _exists(path: Path) -> bool:
-    """Tell whether something is there, whatever it is; a link that leads round in a circle is not."""
+    """Return whether something is there, whatever it is; a link that leads round in a circle is not."""
     try:
         return path.exists()
     except OSError:  # Python 3.12 and older on circles of links
@@ -211,7 +211,7 @@ def _is_directory(entry: os.DirEntry[str]) -> bool:
 
 
 def _is_python(entry: os.DirEntry[str]) -> bool:
-    """Tell whether a file is Python by its name, or by its first line where it has no extension."""
+    """Return whether a file is Python by its name, or by its first line where it has no extension."""
     try:
         if not entry.is_file():
             return False

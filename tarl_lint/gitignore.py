@@ -20,7 +20,7 @@ class Pattern:
     directories_only: bool
 
     def matches(self, path: str) -> bool:
-        """Tell whether a relative path is meant. Takes time in proportion to path times pattern at most."""
+        """Return whether a relative path is meant. Takes time in proportion to path times pattern at most."""
         names = path.split("/")
         at = place = 0
         retry: tuple[int, int] | None = None  # where the last `**` goes on with one directory more
@@ -48,7 +48,7 @@ class Ignore:
     patterns: tuple[Pattern, ...]
 
     def verdict(self, path: str, *, is_directory: bool) -> bool | None:
-        """Tell whether an absolute path is left out; None when no pattern speaks of it. The last one wins."""
+        """Return whether an absolute path is left out; None when no pattern speaks of it. The last one wins."""
         prefix = self.directory.rstrip("/") + "/"
         if not path.startswith(prefix):
             return None
@@ -60,7 +60,7 @@ class Ignore:
 
 
 def ignored(path: str, ignores: Sequence[Ignore], *, is_directory: bool) -> bool:
-    """Tell whether a path is left out: the nearest to speak of it decides (`ignores`: nearest last)."""
+    """Return whether a path is left out: the nearest to speak of it decides (`ignores`: nearest last)."""
     verdicts = (ignore.verdict(path, is_directory=is_directory) for ignore in reversed(ignores))
     return next((v for v in verdicts if v is not None), False)
 

@@ -24,7 +24,7 @@ FAILS: Final = re.compile(
 
 
 def changes(method: str, *, dropped: bool) -> bool:
-    """Tell whether a method changes its object by what it is given.
+    """Return whether a method changes its object by what it is given.
 
     `dropped`: the result is not used, so the call is there for what it does.
     """
@@ -32,7 +32,7 @@ def changes(method: str, *, dropped: bool) -> bool:
 
 
 def keeps_callables(name: str) -> bool:
-    """Tell whether a class or method keeps the callables that it is given, for later."""
+    """Return whether a class or method keeps the callables that it is given, for later."""
     return name[:1].isupper() or REGISTERS.match(name) is not None
 
 

@@ -157,5 +157,5 @@ class Operand:
 
     @property
     def literal(self) -> bool:
-        """Tell whether the constant is written at its use."""
+        """Return whether the constant is written at its use."""
         return self.definition == self.span

@@ -38,7 +38,7 @@ class Named(Protocol):
 
     @property
     def is_package(self) -> bool:
-        """Tell whether it is a package's `__init__.py`."""
+        """Return whether it is a package's `__init__.py`."""
 
 
 M = TypeVar("M", bound=Named)

@@ -29,7 +29,7 @@ def _names_node(cls: ast.ClassDef) -> bool:
 
 
 def _super(call: ast.Call) -> bool:
-    """Tell whether it is `super().__init__(...)`."""
+    """Return whether it is `super().__init__(...)`."""
     function = call.func
     return (
         isinstance(function, ast.Attribute)

@@ -1,4 +1,4 @@
-"""The command line: what can be typed, what it means, and what to say when it is mistyped."""
+"""The command line: options, their meaning, and messages for mistakes."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ _EPILOG: Final = (
     "the baseline cannot be used, 130 interrupted. Settings are read from [tool.tarl-lint] in pyproject.toml."
 )
 _DASH: Final = Path("-")
-MOST_SHOWN: Final = 100  # flows one by one in a report for people, some ten screens
+MOST_SHOWN: Final = 100  # flows shown individually in a text report, about ten screens
 
 
 class _Help(argparse.HelpFormatter):
-    """Asks for the width itself: argparse imports shutil for that, with every option that is added."""
+    """Determines the terminal width itself: argparse would import shutil whenever an option is added."""
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, width=max(40, _columns() - 2))
@@ -49,7 +49,7 @@ def _columns() -> int:
 
 
 class _Parser(argparse.ArgumentParser):
-    """Raises UsageError with a sentence instead of printing the usage and leaving."""
+    """Raises UsageError with a sentence instead of printing the usage and exiting."""
 
     def error(self, message: str) -> NoReturn:
         known = [option for action in self._actions for option in action.option_strings]
@@ -57,7 +57,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _sentence(message: str, known: Sequence[str]) -> str:
-    """Say what argparse says in words of ours, with what was probably meant."""
+    """Return argparse's message as a sentence, with a suggestion."""
     if found := re.fullmatch(r"unrecognized arguments: (.*)", message):
         option = found[1].split()[0].split("=")[0]
         return f"There is no option {option}{suggestion(option, [k for k in known if k.startswith('--')])}"
@@ -76,7 +76,7 @@ def _codes(text: str) -> tuple[str, ...]:
 
 
 def _patterns(text: str) -> tuple[str, ...]:
-    """Split at commas, except in braces and brackets, which patterns may hold."""
+    """Split at commas, except inside the braces and brackets of patterns."""
     return tuple(_pattern(p.strip()) for p in re.split(r",(?![^\[{]*[\]}])", text) if p.strip())
 
 
@@ -88,7 +88,7 @@ def _pattern(text: str) -> str:
 
 
 def _per_file(text: str) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """Read `PATTERN:CODES PATTERN:CODES …`, as flake8 writes them."""
+    """Parse `PATTERN:CODES PATTERN:CODES …`, the syntax of flake8."""
     return tuple(_pair(part) for part in re.split(r"(?<=[A-Za-z0-9])\s+(?=\S+:)", text.strip()))
 
 
@@ -227,7 +227,7 @@ def _jobs(text: str) -> int | None:
 
 
 def options(typed: argparse.Namespace) -> Options:
-    """Return what the user typed, as far as it decides what is found. Raises UsageError for contradictions."""
+    """Return the options that determine findings. Raises UsageError for contradictions."""
     if typed.no_baseline and (typed.write_baseline or typed.baseline):
         other = "--write-baseline" if typed.write_baseline else "--baseline"
         raise UsageError(f"--no-baseline and {other} contradict each other: leave one out.")
@@ -257,7 +257,7 @@ def _given(values: list[T] | None) -> tuple[T, ...] | None:
 
 
 def _stdin(typed: argparse.Namespace) -> Stdin | None:
-    """Return the text that came through the standard input, where it is asked for."""
+    """Return the text from standard input, if requested."""
     if _DASH not in typed.paths:
         if typed.stdin_filename:
             raise UsageError("--stdin-filename is for text on the standard input: add - to the paths.")

@@ -20,7 +20,7 @@ class FileIgnores:
         self._codes: dict[str, tuple[str, ...]] = {}
 
     def silences(self, finding: Finding) -> bool:
-        """Tell whether a finding's rule is not wanted in its file."""
+        """Return whether a finding's rule is not wanted in its file."""
         if not self._rules:
             return False
         path = finding.span.path

@@ -29,7 +29,7 @@ class Suppression:
     code: str = ""
 
     def covers(self, finding: Finding) -> bool:
-        """Tell whether the comment stands on a line of the finding and speaks of its rule."""
+        """Return whether the comment stands on a line of the finding and speaks of its rule."""
         span = finding.span
         on_it = self.path == span.path and span.line <= self.line <= span.end_line
         return on_it and self.code in ("", *_beginnings(finding.code))

@@ -30,7 +30,7 @@ def _names(config: Config) -> Iterator[tuple[str, str]]:
 
 
 def _mentions(text: str, name: str) -> bool:
-    """Tell whether a file defines the last part of a name, or uses it and names where it comes from."""
+    """Return whether a file defines the last part of a name, or uses it and names where it comes from."""
     first, last = re.escape(name.partition(".")[0]), re.escape(name.rpartition(".")[2])
     if not re.search(rf"\b{last}\b", text):
         return False

@@ -171,7 +171,7 @@ def _all(body: Sequence[ir.Stmt]) -> Iterator[ir.Stmt]:
 
 
 def _breaks(body: Sequence[ir.Stmt]) -> bool:
-    """Tell whether a loop's body can leave the loop."""
+    """Return whether a loop's body can leave the loop."""
     for s in body:
         if isinstance(s, (ir.Return, ir.Raise)) or (isinstance(s, ir.Jump) and s.kind == "break"):
             return True

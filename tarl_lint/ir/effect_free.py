@@ -38,7 +38,7 @@ ACTING: Final = (ast.Await, ast.Yield, ast.YieldFrom, ast.NamedExpr)
 
 
 def only_tells(expr: ast.expr, prints: bool) -> bool:
-    """Tell whether an expression for its effect writes a message for people, made without any other effect.
+    """Return whether an expression for its effect writes a message for people, made without any other effect.
 
     `prints` tells whether `print` is Python's own.
     """

@@ -1,4 +1,4 @@
-"""A picture for Graphviz: `tarl-lint --format dot | dot -Tsvg -o flows.svg`."""
+"""Diagram for Graphviz: `tarl-lint --format dot | dot -Tsvg -o flows.svg`."""
 
 from __future__ import annotations
 

@@ -47,11 +47,11 @@ VALID: Final = (
 
 
 def own_response(flow: Flow) -> bool:
-    """Tell whether a flow leads from a request to the response of the same service or action server."""
+    """Return whether a flow leads from a request to the response of the same service or action server."""
     source, sink = flow.source, flow.sink
     if on_topic(source.api) or not sink.api.startswith(f"{source.api}."):
         return False
-    # Two servers of one type whose names are unknown are told apart by what handles the request
+    # Two servers of one type with unknown names are distinguished by their request handlers
     handled = source.topics or source.callback.rpartition(".")[2] == sink.qualname.rpartition(".")[2]
     return bool(handled) and (source.topics, source.type) == (sink.topics, sink.type)
 

@@ -144,12 +144,12 @@ VALID: Final = (
 
 
 def ruled_out(side: Side) -> bool:
-    """Tell whether nothing makes a lock."""
+    """Return whether the group creates no lock."""
     return not any(map(MADE.search, side.texts))
 
 
 def findings(evidence: Evidence) -> Iterator[Finding]:
-    """Yield a hazard for each function that uses shared state without its lock, beside another thread."""
+    """Yield a hazard for each function that uses shared state without its lock while another thread uses it."""
     every = Locking(evidence).uses()
     harm = Harm(every)
     for state, uses in every.items():
@@ -167,7 +167,7 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _conflict(use: Use, uses: Sequence[Use]) -> Use | None:
-    """Return an access in another thread that holds a lock, when one of the two writes."""
+    """Return an access in another thread that holds a lock, if at least one of the two writes."""
     others = (u for u in uses if u.locks and u.thread != use.thread and (u.writes or use.writes))
     return min(others, key=lambda u: (not u.writes, u.spots[0].path, u.spots[0].pos), default=None)
 

@@ -123,7 +123,7 @@ VALID: Final = (
 )
 
 COMMAND_TYPES: Final = re.compile(r"^(Ackermann\w*|\w*(Cmd|Command|Control|Thrust)\w*)$")
-# Of these types measurements are published, too: the topic has to tell.
+# Measurements are published with these types too, so the topic must contain a word for a command.
 PLAIN_TYPES: Final = frozenset(
     ["Float32", "Float64", "Int16", "Int32", "Int64", "Twist", "TwistStamped", "Wrench", "WrenchStamped"]
 )
@@ -161,11 +161,11 @@ ASKED_FOR: Final = re.compile(
     r"cmd|command|setpoint|set_point|target|goal|desired|wish|reference|joy|teleop|key|param|request|plan|waypoint|mode"
     r"|drive|control|ctrl|throttle|steer",
     re.I,
-)  # what somebody decided
+)  # topics of decisions, not of measurements
 
 
 def ruled_out(side: Side) -> bool:  # noqa: ARG001 - one signature for all
-    """Tell that there is nothing: a command that follows a sensor is a flow."""
+    """Return True: a command that follows a sensor is a flow, and the group has none."""
     return True
 
 
@@ -208,12 +208,12 @@ def _add(
 
 
 def _hazardous(flow: Flow) -> bool:
-    """Tell whether a sensor's numbers would act on a robot here."""
+    """Return whether the flow leads from sensor data to a command for actuators."""
     return _sensor(flow.source) and _command(flow)
 
 
 def _sensor(source: Source) -> bool:
-    """Tell whether messages are measured: by their type, of mere numbers by the topic."""
+    """Return whether a source is a sensor, by its message type or, for plain numbers, by its topic."""
     if not on_topic(source.api) or not ("ubscri" in source.api or "wait_for_message" in source.api):
         return False
     types = (source.type or "").split(" | ")
@@ -226,7 +226,7 @@ def _sensor(source: Source) -> bool:
 
 
 def _command(flow: Flow) -> bool:
-    """Tell whether what is published makes actuators move."""
+    """Return whether the published message is a command for actuators."""
     sink, topic = flow.sink, ", ".join(flow.sink.topics)
     if not on_topic(sink.api) or NO_COMMAND.search(topic):
         return False
@@ -239,6 +239,6 @@ def _command(flow: Flow) -> bool:
 
 
 def _measured(flow: Flow) -> bool:
-    """Tell whether a speed may be what was measured: speeds and ticks come in, or a way is divided by a time."""
+    """Return whether a speed may be a measurement: from speeds or ticks, or a distance divided by a time."""
     code = " ".join(step.code for step in flow.steps if step.dependence == "data")
     return not PLACE_TYPES & set((flow.source.type or "").split(" | ")) or bool(SPEEDS.search(code))
