@@ -179,14 +179,22 @@ class Tarl:
             elif name in signals:
                 self._formulas.give(name, value)
             else:
-                known = [*declared, *sorted(signals)]
-                close = difflib.get_close_matches(name, known, 1)
-                hint = (
-                    f"; did you mean {close[0]!r}?" if close else f"; the marker declares {', '.join(known)}."
-                )
-                raise SettingsError(f"tarl.observe: no sensor and no signal is named {name!r}{hint}")
-        if not signals.issuperset(values):
+                self._check_unused(name, [*declared, *sorted(signals)])
+        if declared.keys() & values.keys():
             self._latch_cell()
+
+    def _check_unused(self, name: str, known: Sequence[str]) -> None:
+        """Raise SettingsError for a name that is a typing error, as far as can be told.
+
+        Beside formulas a test may observe more than they name; what is close to a name that is never observed itself
+        is none of that.
+        """
+        said = self._requirements.said
+        close = difflib.get_close_matches(name, known, 1)
+        if self._requirements.followed and name in said.observed and (not close or close[0] in said.observed):
+            return
+        hint = f"; did you mean {close[0]!r}?" if close else f"; the marker declares {', '.join(known)}."
+        raise SettingsError(f"tarl.observe: no sensor and no signal is named {name!r}{hint}")
 
     def require(self, formula: str) -> None:
         """Require a formula of this episode, judged with those of the marker when the body is over.

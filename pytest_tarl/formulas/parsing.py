@@ -94,9 +94,9 @@ def _unknown(name: str, names: Sequence[str], said: Said) -> str:
         return f"{name!r}, which is no signal; write a division with spaces, {name.replace('/', ' / ')}."
     known = [*dict.fromkeys((*names, *said.observed))]
     close = difflib.get_close_matches(name, [*known, *WORDS], 1)
-    if close:
-        return f"{name!r}, which is no signal; did you mean {close[0]!r}?"
     told = ", ".join(known) or "there is none"
+    if close:
+        return f"{name!r}, which is no signal; did you mean {close[0]!r}? The signals are: {told}."
     first = name.partition(".")[0]
     if said.computed:
         return (

@@ -70,7 +70,8 @@ def compare(
     if without:
         region, changes = _compared_without(without, offline, online, alpha, generator, sensors, region)
     detectable = max(margin, detectable_loss(offline.total, online.total, alpha))
-    interval = LossInterval(*loss_bounds(offline.total, online.total, alpha, declared), 1 - 2 * alpha)
+    bounds = loss_bounds(offline.total, online.total, alpha, declared)
+    interval = LossInterval(*bounds, 1 - 2 * alpha, declared is not None)
     verdict = judged(Verdict("no difference", p_drift, p_loss, loss, detectable, margin, interval), alpha)
     found = region if verdict.result != "no difference" else Region()
     return Difference(verdict, found, changes)

@@ -11,7 +11,17 @@ from statistics import fmean
 
 from pytest_tarl.learning.bounds import mean_of
 from pytest_tarl.learning.effect_size import effect_size
-from pytest_tarl.model import Attempt, Comparison, Edit, OperandEffect, Partial, Reason, Repair, Slice
+from pytest_tarl.model import (
+    Attempt,
+    Comparison,
+    Edit,
+    LossInterval,
+    OperandEffect,
+    Partial,
+    Reason,
+    Repair,
+    Slice,
+)
 from pytest_tarl.report.regions import Vocabulary
 
 SIGNIFICANT = 0.05  # p from which a loss is not spoken of
@@ -140,12 +150,13 @@ def loss_words(comparison: Comparison) -> str:
     size = "" if math.isnan(effect) else f"{deviations(effect)} standard deviations"
     interval = loss_interval(comparison)
     verdict = comparison.verdict
-    known = (
-        f"{100 * verdict.interval.confidence:.3g}% confidence {interval}"
-        if verdict.interval and interval
-        else ""
-    )
+    known = f"{_sure(verdict.interval)} {interval}" if verdict.interval and interval else ""
     return "; ".join(filter(None, (known, size)))
+
+
+def _sure(interval: LossInterval) -> str:
+    """Tell the confidence of an interval; without a declared range of totals it is approximate."""
+    return f"{'' if interval.exact else 'about '}{100 * interval.confidence:.3g}% confidence"
 
 
 def deviations(effect: float) -> str:

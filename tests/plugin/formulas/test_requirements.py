@@ -46,6 +46,7 @@ def told(result: pytest.RunResult) -> str:
 HOLD = {
     "of a signal that the test observes": 'requires=["always (gap > 0.15)"], signals=["gap"]',
     "of a sensor": 'requires=["eventually[0:3] (wet > 0)"], signals=["gap"]',
+    "beside an observation that no formula names": 'requires=["eventually wet"]',
     "of a name that is observed and not declared": 'requires=["always (gap > 0.15)", "eventually wet"]',
     "of a field of a message": (
         'requires=["always (dry > 0) or eventually wet"], '
@@ -130,10 +131,15 @@ MISTAKES = {
         OBSERVE + "\n\n\ndef test_other(tarl):\n    tarl.observe(ahead=1)",
         "names 'ahead', which is no signal (wet, gap): it is no sensor and the test never observes it",
     ),
-    "an observation that no formula names": (
-        'requires=["always wet"]',
+    "an observation without any formula": (
+        "drifts={}",
         "tarl.observe(gap=gap)",
-        "no sensor and no signal is named 'gap'",
+        "no sensor and no signal is named 'gap'; the marker declares wet, mode.",
+    ),
+    "an observation that is a typing error of a sensor": (
+        'requires=["always wet"]',
+        "tarl.observe(wett=gap)",
+        "no sensor and no signal is named 'wett'; did you mean 'wet'?",
     ),
     "an unknown signal in the body": (
         "",
