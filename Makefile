@@ -11,7 +11,7 @@ PROCESSES ?= 2
 unexport PYTHONDONTWRITEBYTECODE
 INSTALLED := $(VENV)/.installed
 
-.PHONY: demo test check unit setup clean bench-paper bench-drift
+.PHONY: demo test check unit test-editor setup clean bench-paper bench-drift
 
 demo: setup
 	@BIN="$(abspath $(BIN))" sh examples/demo.sh
@@ -24,8 +24,12 @@ check: setup
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-unit: setup
+unit: setup test-editor
 	$(BIN)/python -m pytest -q --timeout 240 --numprocesses $(PROCESSES)
+
+# The language server is tested by itself: its tests need asyncio, which the others run without
+test-editor: setup
+	$(BIN)/python -m pytest -q -c tests/editor/pytest.ini --rootdir . --timeout 120 tests/editor
 
 setup: $(INSTALLED)
 

@@ -1,12 +1,12 @@
-"""The extra `pytest`: what the plugin and the commands need beyond the linter, and what to say where it is missing."""
+"""What the plugin and the commands need beyond the linter, and what to say where that is not installed."""
 
 from __future__ import annotations
 
 import sys
 from importlib.util import find_spec
 
-INSTALL = 'pip install "tarl[pytest]"'
 NEEDED = ("greenlet", "libcst", "numpy", "pytest")
+SERVER = ("pygls",)
 
 
 def missing_packages() -> list[str]:
@@ -16,11 +16,19 @@ def missing_packages() -> list[str]:
 
 def missing_extra(what: str) -> str | None:
     """Return a sentence saying what `what` needs of this environment, or None where all of it is there."""
-    missing = missing_packages()
+    return _sentence(what, missing_packages(), "pytest") or no_lock(what)
+
+
+def missing_server(what: str) -> str | None:
+    """Return a sentence saying that `what` needs the extra `lsp`, or None where it is installed."""
+    return _sentence(what, [name for name in SERVER if find_spec(name) is None], "lsp")
+
+
+def _sentence(what: str, missing: list[str], extra: str) -> str | None:
     if not missing:
-        return no_lock(what)
+        return None
     verb = "is" if len(missing) == 1 else "are"
-    return f"{what} needs {_listed(missing)}, which {verb} not installed: run {INSTALL}."
+    return f'{what} needs {_listed(missing)}, which {verb} not installed: run pip install "tarl[{extra}]".'
 
 
 def no_lock(what: str) -> str | None:

@@ -8,12 +8,13 @@ from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final
 
 from tarl_lint import baseline, batch, cache, discover, installed, names, source, suppress
 from tarl_lint.baseline import Accepted, Baseline
 from tarl_lint.cache import Cache, Report
-from tarl_lint.config import Config, Options, Stdin
+from tarl_lint.config import Config, Options
 from tarl_lint.discover import Notes, SourceFile
 from tarl_lint.errors import AnalysisBug, UsageError
 from tarl_lint.fingerprints import Fingerprint, of_finding
@@ -26,6 +27,7 @@ from tarl_lint.suppress import Suppression
 from tarl_lint.unmatched import unmatched
 
 UNREADABLE: Final = "TARL001"
+NO_BUFFERS: Final[Mapping[Path, bytes]] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
@@ -77,20 +79,33 @@ class Result:
         return tuple(f for f in self.findings if f.status == "new")
 
 
-def run(options: Options, config: Config, tell: Tell = silent) -> Result:
+def run(
+    options: Options,
+    config: Config,
+    tell: Tell = silent,
+    buffers: Mapping[Path, bytes] = NO_BUFFERS,
+    known: Cache | None = None,
+) -> Result:
     """Lint the files at and below the paths, telling what it is at.
 
-    Raises UsageError when there is nothing to lint, BaselineError when the baseline is unusable, AnalysisBug
-    when the analysis crashed.
+    `buffers` holds the text of files that an editor has not saved, by their absolute path; `known` is a cache to use
+    in place of the one on disk.
+
+    Raises UsageError when there is nothing to lint, BaselineError when the baseline is unusable, AnalysisBug when the
+    analysis crashed.
     """
     tell("Looking for files")
     discovery = discover.find(options.paths, config, options.stdin)
     if not discovery.files:
         raise UsageError(_nothing(options.paths, discovery.notes))
-    known = _accepted(options, config)
-    scripts, unread = read(discovery.files, options.stdin, tell)
+    accepted = _accepted(options, config)
+    if options.stdin is not None:
+        buffers = {**buffers, options.stdin.path.absolute(): options.stdin.data}
+    scripts, unread = read(discovery.files, buffers, tell)
     followed = installed.follow(scripts, config)
-    report = installed.without(_examine((*scripts, *followed.scripts), options, config, tell), followed)
+    report = installed.without(
+        _examine((*scripts, *followed.scripts), options, config, tell, known), followed
+    )
     errors = tuple(sorted((*unread, *report.errors), key=lambda e: (e.path, e.line)))
     found_in = {finding.span.path for finding in report.findings}
     broken = {error.path for error in errors if not error.bug} - found_in
@@ -102,10 +117,10 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
     heard, silenced, unused = suppress.apply(wanted, texts)
     elsewhere = FileIgnores(config.root or Path.cwd(), config.per_file_ignores)
     reported = [f for f in heard if not elsewhere.silences(f)]
-    findings = baseline.subtract(reported, known.counts())
+    findings = baseline.subtract(reported, accepted.counts())
     unasked = {f.fingerprint for f in marked if f.code in OFF_BY_DEFAULT and not config.enabled(f.code)}
     judged = _judge(discovery.files, errors, config, unasked)
-    vanished, kept = baseline.missing(known, Counter(f.fingerprint for f in wanted), judged)
+    vanished, kept = baseline.missing(accepted, Counter(f.fingerprint for f in wanted), judged)
     lines = sum(text.count("\n") for text in texts.values())
     return Result(
         findings=tuple(sorted(findings, key=_place)),
@@ -120,7 +135,7 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
         ended=names.unfollowed(report.ended),
         texts={**texts, **beside},
         statistics=Statistics(len(texts), lines, discovery.notes, report.cut),
-        baseline=config.baseline if known.entries else None,
+        baseline=config.baseline if accepted.entries else None,
         names_errors=config.enabled(UNREADABLE),
         left_out=len(heard) - len(reported),
         off_by_default=sum(f.fingerprint in unasked for f in marked),
@@ -155,18 +170,17 @@ def failing(findings: Sequence[Finding], config: Config) -> frozenset[str]:
 
 
 def read(
-    files: Sequence[SourceFile], stdin: Stdin | None = None, tell: Tell = silent
+    files: Sequence[SourceFile], buffers: Mapping[Path, bytes] = NO_BUFFERS, tell: Tell = silent
 ) -> tuple[tuple[Script, ...], tuple[SourceError, ...]]:
     """Read the files. One that cannot be read becomes an error."""
     tell(f"Reading {len(files)} {'file' if len(files) == 1 else 'files'}")
-    found = [_read(file, stdin) for file in files]
+    found = [_read(file, buffers) for file in files]
     scripts = tuple(f for f in found if isinstance(f, Script))
     return scripts, tuple(f for f in found if isinstance(f, SourceError))
 
 
-def _read(file: SourceFile, stdin: Stdin | None) -> Script | SourceError:
-    typed = stdin is not None and stdin.path.absolute() == file.path
-    data = source.contents(file.path, file.shown, stdin.data if stdin is not None and typed else None)
+def _read(file: SourceFile, buffers: Mapping[Path, bytes]) -> Script | SourceError:
+    data = source.contents(file.path, file.shown, buffers.get(file.path))
     if isinstance(data, SourceError):
         return data
     found = source.read(file.shown, data, file.name)
@@ -175,10 +189,13 @@ def _read(file: SourceFile, stdin: Stdin | None) -> Script | SourceError:
     return found
 
 
-def _examine(scripts: Sequence[Script], options: Options, config: Config, tell: Tell) -> Report:
+def _examine(
+    scripts: Sequence[Script], options: Options, config: Config, tell: Tell, known: Cache | None
+) -> Report:
     keeps = options.cache and options.stdin is None
     try:
-        known = cache.opened(options.paths, config) if keeps else Cache(None)
+        if known is None:
+            known = cache.opened(options.paths, config) if keeps else Cache(None)
         return batch.examine(scripts, config, known, options.jobs, tell)
     except Exception as error:
         if batch.debugging():

@@ -190,6 +190,14 @@ def test_a_command_names_the_extra(alone: Run, project: Path, command: str, argu
     assert alone("pytest_tarl", command, "--help", cwd=project).returncode == 0
 
 
+def test_the_server_names_its_extra(alone: Run, project: Path) -> None:
+    ended = alone("pytest_tarl", "lsp", cwd=project)
+    assert ended.returncode == 2
+    assert (
+        ended.stderr == 'tarl: tarl lsp needs pygls, which is not installed: run pip install "tarl[lsp]".\n'
+    )
+
+
 def test_other_pytest_runs_stay_untouched(beside_pytest: Run, project: Path) -> None:
     (project / "test_broken.py").write_text("import no_such_package\n")
     ended = beside_pytest("pytest", "-q", "test_plain.py", cwd=project)

@@ -11,14 +11,14 @@ from pathlib import Path
 
 from pytest_tarl.commands.parser import Parser
 from pytest_tarl.errors import RefusedError, TarlError
-from pytest_tarl.extras import missing_extra
+from pytest_tarl.extras import missing_extra, missing_server
 from pytest_tarl.printable import printable, printable_line
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; return 0, 1 where it found what it was told to fail on or refused, 2 for what cannot be done."""
     arguments = parser().parse_args(argv)
-    sentence = missing_extra(f"tarl {arguments.command}")
+    sentence = arguments.needs(f"tarl {arguments.command}")
     if sentence is not None:
         print(f"tarl: {sentence}", file=sys.stderr)
         return 2
@@ -82,8 +82,27 @@ def parser() -> Parser:
     _add_watch(commands)
     _add_patches(commands)
     for command in commands.choices.values():
-        command.set_defaults(parser=command)
+        command.set_defaults(parser=command, needs=missing_extra)
+    lsp = commands.add_parser(
+        "lsp", help="serve an editor by the Language Server Protocol, on standard streams"
+    )
+    lsp.set_defaults(run=_lsp, parser=lsp, needs=missing_server)
     return parser
+
+
+def _lsp(_: argparse.Namespace) -> int:
+    from tarl_lint import import_path
+
+    import_path.restrict()  # nothing of the workspace is imported, also where the server was started in it
+    from pytest_tarl.editor.server import main as serve
+
+    return serve(_applied)
+
+
+def _applied(patch: Path) -> list[str]:
+    from pytest_tarl.commands import applying
+
+    return list(applying.apply([patch], None, force=False, partial=False))
 
 
 def _add_patches(commands: argparse._SubParsersAction[Parser]) -> None:
