@@ -79,15 +79,17 @@ def load(path: Path) -> Baseline:
         )  # names may be no text
     except FileNotFoundError:
         raise BaselineError(
-            f"The baseline {shown(path)} does not exist: write it with --write-baseline, "
-            "or leave it out with --no-baseline."
+            f"The baseline {shown(path)} does not exist: create it with --write-baseline, "
+            "or ignore it with --no-baseline."
         ) from None
     except OSError as error:
         raise BaselineError(f"The baseline {shown(path)} cannot be read: {error.strerror}.") from None
     except ValueError as error:
         raise BaselineError(f"The baseline {shown(path)} is damaged ({error}): {_REMEDY}") from None
     if not isinstance(document, dict) or document.get("tool") != "tarl-lint":
-        raise BaselineError(f"{shown(path)} is no baseline of tarl-lint: name another with --baseline.")
+        raise BaselineError(
+            f"{shown(path)} is not a baseline of tarl-lint: name another file with --baseline."
+        )
     version = document.get("format")
     if version != FORMAT_VERSION:
         raise BaselineError(
@@ -127,7 +129,7 @@ def _hazard(entry: Any) -> Accepted:
 def _texts(entry: Any, fields: Mapping[str, str]) -> dict[str, Any]:
     texts = {field: entry[key] for key, field in fields.items()}
     if not all(isinstance(text, str) for text in (*texts.values(), *entry["files"])):
-        raise ValueError("an entry has something else where a text should be")
+        raise ValueError("an entry has a value that is not a string")
     return texts
 
 

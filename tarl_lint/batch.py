@@ -142,9 +142,9 @@ def failure(path: str, error: Exception) -> SourceError:
     if isinstance(error, RecursionError):
         return SourceError(path, 1, TOO_DEEP.format("analysed"))
     what = f"{type(error).__name__}: {error}".rstrip(": ")
-    advice = "Report it with the traceback that TARL_DEBUG=1 shows, please; --exclude leaves the file out."
+    advice = "Please report it with the traceback from TARL_DEBUG=1; --exclude skips the file."
     return SourceError(
-        path, 1, f"tarl-lint failed on this file ({what}), which is our fault. {advice}", bug=True
+        path, 1, f"tarl-lint failed on this file ({what}), which is a bug in tarl-lint. {advice}", bug=True
     )
 
 

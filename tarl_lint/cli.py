@@ -148,7 +148,7 @@ def _print(lines: Iterable[Line]) -> None:
         _give_up_output()
     except OSError as error:
         _give_up_output()
-        raise OutputError(f"The report cannot be written to the standard output: {error.strerror}.") from None
+        raise OutputError(f"Cannot write the report to standard output: {error.strerror}.") from None
 
 
 def _give_up_output() -> None:
@@ -170,9 +170,9 @@ def _accept(result: Result, config: Config) -> Iterator[Line]:
     path = config.baseline or Path(BASELINE_NAME)
     written = baseline.merged(result.found, result.kept)
     baseline.save(path, written)
-    parts = [f"{len(result.new)} new", f"{sum(e.count for e in result.vanished)} forgotten"]
+    parts = [f"{len(result.new)} new", f"{sum(e.count for e in result.vanished)} removed"]
     if kept := sum(e.count for e in result.kept):
-        parts.append(f"{kept} kept that this run did not look at")
+        parts.append(f"{kept} kept that this run did not analyse")
     yield ((f"{shown(path)}: {summary.numbers(written)} accepted ({', '.join(parts)}).", "strong"),)
     if result.errors:
         yield from summary.not_analysed(result)

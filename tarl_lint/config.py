@@ -202,7 +202,7 @@ def read_settings(path: Path, *, required: bool) -> Mapping[str, Any]:
         raise ConfigError(f"The settings file {shown(path)} cannot be read: {error.strerror}.") from None
     table = _table(path, data)
     if table is None and required:
-        raise ConfigError(f"{shown(path)} has no [tool.{TABLE}] table: add one, or leave out --config.")
+        raise ConfigError(f"{shown(path)} has no [tool.{TABLE}] table: add one, or omit --config.")
     return {key: _check(path, key, value) for key, value in (table or {}).items()}
 
 

@@ -257,15 +257,15 @@ def _above(directory: str) -> Iterator[str]:
 
 
 def _missing(path: Path) -> str:
-    """Say that a path does not exist, and which neighbour may have been meant."""
-    import difflib  # only mistakes need it
+    """Return the message for a missing path, with a suggestion."""
+    import difflib  # imported only for mistakes
 
     if path.is_symlink():
         target = path.readlink()
-        return f"{path.as_posix()} is a link to {target}, which leads nowhere: name the file itself."
+        return f"{path.as_posix()} is a broken link to {target}: name the file itself."
     parent = path.parent
     if not parent.is_dir():
-        return f"There is no {path.as_posix()}: the directory {parent.as_posix()} does not exist either."
+        return f"{path.as_posix()}: no such file or directory, and no directory {parent.as_posix()} either."
     close = difflib.get_close_matches(path.name, [p.name for p in parent.iterdir()], n=1)
-    hint = f"did you mean {(parent / close[0]).as_posix()}?" if close else "check the path."
-    return f"There is no {path.as_posix()}: {hint}"
+    hint = f": did you mean {(parent / close[0]).as_posix()}?" if close else "."
+    return f"{path.as_posix()}: no such file or directory{hint}"

@@ -32,7 +32,9 @@ def check_codes(codes: Sequence[str], where: str) -> None:
     for code in codes:
         if not any(k.startswith(code) for k in known):
             meant = suggestion(code, known, ALIKE)
-            raise UsageError(f"{where} names {code!r}, which is no rule{meant} Rules are {', '.join(known)}.")
+            raise UsageError(
+                f"{where} names {code!r}, which is not a rule{meant} Rules are {', '.join(known)}."
+            )
 
 
 def explanation(code: str) -> Iterator[Line]:

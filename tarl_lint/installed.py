@@ -55,8 +55,8 @@ def follow(scripts: Sequence[Script], config: Config) -> Followed:
         files = [script for site in sites for script in _scripts(site, name)][:MOST_FILES]
         if not files:
             missing.append(
-                f"'follow-installed' names {name!r}, of which {shown(home)} holds no Python source: install it there, "
-                "or take the name out."
+                f"'follow-installed' names {name!r}, but {shown(home)} contains no Python source of it: install it "
+                "there, or remove the name."
             )
             continue
         found += files
@@ -93,7 +93,7 @@ def search_path(home: Path) -> list[Path]:
         text = (home / "pyvenv.cfg").read_text("utf-8", errors="replace")
     except OSError:
         raise ConfigError(
-            f"'python' is {shown(home)}, which is no virtual environment: there is no pyvenv.cfg in it."
+            f"'python' is {shown(home)}, which is not a virtual environment: it contains no pyvenv.cfg."
         ) from None
     settings = dict(re.findall(r"^\s*([\w-]+)\s*=\s*(.*?)\s*$", text, re.MULTILINE))
     sites = [site for pattern in SITES for site in sorted(home.glob(pattern))]

@@ -137,7 +137,7 @@ class Cut:
     def message(self) -> str:
         """Say what that means."""
         node = f" (node {self.node})" if self.node else ""
-        return f"{self.path}{node}: too large to follow in every detail; flows may be missing"
+        return f"{self.path}{node}: too large to analyse completely; flows may be missing"
 
 
 @dataclass(frozen=True, slots=True)

@@ -76,7 +76,9 @@ def contents(place: Path, path: str, typed: bytes | None = None) -> bytes | Sour
         reason = error.strerror or type(error).__name__
         return SourceError(path, 1, f"This file cannot be read: {reason}. Make it readable, or exclude it.")
     if data is None:
-        return SourceError(path, 1, "This is no regular file: leave it out, or pipe its text to tarl-lint -.")
+        return SourceError(
+            path, 1, "This is not a regular file: exclude it, or pipe its text to tarl-lint -."
+        )
     if len(data) > LARGEST:
         return SourceError(
             path,
@@ -98,7 +100,7 @@ def read(path: str, data: bytes, name: str) -> Script | SourceError:
     """Decode as PEP 263 says. Never raises."""
     if path.endswith(".ipynb"):
         return SourceError(
-            path, 1, "This is a notebook: lint what jupyter nbconvert --to script makes of it."
+            path, 1, "This is a notebook: convert it with jupyter nbconvert --to script and lint the result."
         )
     decoded = _decode(path, data)
     if isinstance(decoded, SourceError):
@@ -106,7 +108,7 @@ def read(path: str, data: bytes, name: str) -> Script | SourceError:
     if "\0" in decoded:
         line = decoded.count("\n", 0, decoded.index("\0")) + 1
         return SourceError(
-            path, line, "The file holds a null byte, so it is not Python source: leave it out."
+            path, line, "The file contains a null byte, so it is not Python source: exclude it."
         )
     return Script(path, name, decoded, path.rpartition("/")[2] == "__init__.py")
 
@@ -123,7 +125,7 @@ def parsed(script: Script) -> Module | SourceError:
     except (RecursionError, MemoryError):
         return SourceError(path, 1, TOO_DEEP.format("parsed"))
     except ValueError as error:
-        return SourceError(path, 1, f"The file cannot be parsed ({error}): mend it, or exclude it.")
+        return SourceError(path, 1, f"The file cannot be parsed ({error}): fix it, or exclude it.")
     return Module(path, script.name, script.text, tree, script.is_package, script.started, script.installed)
 
 
@@ -133,7 +135,7 @@ def _decode(path: str, data: bytes) -> str | SourceError:
         encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
         text = data.decode(encoding)
     except SyntaxError as error:
-        return SourceError(path, 1, f"The encoding is not known: {error}. Save the file as UTF-8.")
+        return SourceError(path, 1, f"Unknown encoding: {error}. Save the file as UTF-8.")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         return SourceError(
@@ -142,7 +144,7 @@ def _decode(path: str, data: bytes) -> str | SourceError:
             f"The bytes are not valid {error.encoding}: name the encoding in the first line or save as UTF-8.",
         )
     except (LookupError, UnicodeError) as error:  # such as rot13, which makes no text of bytes
-        return SourceError(path, 1, f"The encoding is not known: {error}. Save the file as UTF-8.")
+        return SourceError(path, 1, f"Unknown encoding: {error}. Save the file as UTF-8.")
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -153,5 +155,5 @@ def _syntax_error(path: str, text: str, error: SyntaxError) -> SourceError:
         return SourceError(path, line, "This is Python 2, which is not analysed: port the file to Python 3.")
     reason = (error.msg or "invalid syntax").rstrip(".")
     return SourceError(
-        path, line, f"The file is not valid Python ({reason}): mend this line, or exclude the file."
+        path, line, f"The file is not valid Python ({reason}): fix this line, or exclude the file."
     )

@@ -97,7 +97,7 @@ def taint_list(flow: Flow, view: View) -> Iterator[Line]:
         code = crop(_one_line(step.code), room, view.glyphs.dots)
         yield ((start, "quiet"), (_mark(step.dependence, view.glyphs), style), (" ", ""), (code, text))
     if left := len(flow.steps) - len(steps):
-        words = f"{view.glyphs.dots} the shortest way; {left} more statements take part (--all-steps)"
+        words = f"{view.glyphs.dots} shortest path; {left} more statements (--all-steps)"
         yield ((f"      {words}", "quiet"),)
 
 
@@ -132,8 +132,8 @@ def legend(view: View) -> Line:
     return (
         ("      ", ""),
         (glyphs.data, "data"),
-        (" carries the value   ", "quiet"),
+        (" passes on the value   ", "quiet"),
         (glyphs.control, "control"),
-        (" decides   ", "quiet"),
-        (f"{glyphs.context} surroundings", "quiet"),
+        (" condition   ", "quiet"),
+        (f"{glyphs.context} context", "quiet"),
     )

@@ -54,7 +54,7 @@ def _errors(result: Result) -> Iterator[_Case]:
 
 def _incomplete(result: Result) -> Iterator[_Case]:
     for cut in result.statistics.cut:
-        yield _Case(cut.path, "followed in every detail", "skipped", cut.message, "")
+        yield _Case(cut.path, "analysed completely", "skipped", cut.message, "")
 
 
 def _case(finding: Finding, result: Result) -> _Case:

@@ -24,7 +24,7 @@ def report(result: Result, _view: View) -> Iterator[Line]:
 
 def _graph(drawn: Picture) -> Iterator[str]:
     yield "flowchart LR"
-    yield "  %% solid: data of the topic is published; dotted: it only decides; each way through a box is a flow"
+    yield "  %% solid: data is published; dotted: used only in conditions; each path through a box is a flow"
     numbers = drawn.numbers()
     for topic in drawn.topics:
         yield f"  {numbers[topic.key]}([{_quoted(topic.label)}]):::topic"

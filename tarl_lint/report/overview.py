@@ -19,7 +19,7 @@ def overview(flows: Sequence[Flow], view: View) -> Iterator[Line]:
     """Yield published topics with the topics whose data they carry and those used only in conditions."""
     if len({flow.sink.span for flow in flows}) < MANY:
         return
-    yield (("Published, and what reaches it:", "strong"),)
+    yield (("Published topics, and the topics that reach them:", "strong"),)
     by_name: dict[str, list[Flow]] = {}
     for flow in flows:
         by_name.setdefault(_few(flow.sink.topics), []).append(flow)

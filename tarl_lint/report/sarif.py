@@ -55,7 +55,7 @@ def document(result: Result, cut: Cut = EVERYTHING) -> dict[str, Any]:
     run = {
         "tool": {"driver": driver},
         "columnKind": "unicodeCodePoints",
-        "originalUriBaseIds": {ROOT: {"description": {"text": "The directory that tarl-lint ran in."}}},
+        "originalUriBaseIds": {ROOT: {"description": {"text": "The working directory of tarl-lint."}}},
         "invocations": [{"executionSuccessful": True, "toolExecutionNotifications": notes}],
         "results": errors[: cut.results] + found,
     }
@@ -73,7 +73,7 @@ def _left_out(count: int) -> list[dict[str, Any]]:
         return []
     return [
         _notification(
-            "left-out", f"{summary.many(count, 'finding')} left out: servers limit the size of a report."
+            "left-out", f"{summary.many(count, 'finding')} omitted: servers limit the size of a report."
         )
     ]
 
@@ -83,7 +83,7 @@ def _shortened(findings: Sequence[Finding], most: int) -> list[dict[str, Any]]:
     if not count:
         return []
     shown = summary.many(count, "flow")
-    text = f"{shown} shown by the shortest chain of statements: servers limit the size of a report."
+    text = f"{shown} reduced to the shortest chain of statements: servers limit the size of a report."
     return [_notification("shortened", text)]
 
 

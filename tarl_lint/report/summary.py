@@ -34,10 +34,10 @@ def hints(result: Result, view: View) -> Iterator[Line]:
         return
     flows = [f.flow for f in result.new if f.flow]
     if len(flows) > 1 and not view.show_paths:
-        yield (("--show-paths lists the statements on the way of each flow.", "quiet"),)
+        yield (("--show-paths shows the statements of each flow.", "quiet"),)
     if 0 < view.most_flows < len(flows):
-        yield ((f"--max-paths 0 shows all {len(flows)} flows one by one.", "quiet"),)
-    yield (("--write-baseline accepts all this: from then on only what is new is reported.", "quiet"),)
+        yield ((f"--max-paths 0 shows all {len(flows)} flows.", "quiet"),)
+    yield (("--write-baseline accepts these findings: later runs report only new ones.", "quiet"),)
 
 
 def is_single(result: Result) -> bool:
@@ -61,7 +61,12 @@ def _beyond(result: Result) -> Iterator[Line]:
         setting = "follow-installed = [" + ", ".join(f'"{name}"' for name in packages) + "]"
         named = ", ".join(result.ended[:_CLASSES])
         more = f" and {len(result.ended) - _CLASSES} more" if len(result.ended) > _CLASSES else ""
-        yield ((f"Not followed: what goes into {named}{more}, which are not here ({setting}).", "quiet"),)
+        yield (
+            (
+                f"Not followed: data passed to classes outside the files: {named}{more} ({setting}).",
+                "quiet",
+            ),
+        )
 
 
 def _silenced(result: Result) -> Iterator[Line]:
@@ -79,7 +84,7 @@ def _count_files(result: Result) -> str:
     """Return the summary of a run with neither flow nor hazard rules enabled."""
     if result.kinds or result.reports_hazards:
         return ""
-    return f"{many(result.statistics.files, 'file')} read; no rule about flows or hazards is in use."
+    return f"{many(result.statistics.files, 'file')} read; no rule for flows or hazards is enabled."
 
 
 def _count_flows(result: Result) -> str:
@@ -141,7 +146,7 @@ def _missed(result: Result) -> Iterator[str]:
         verb = "is" if len(result.errors) == 1 else "are"
         yield f"{many(len(result.errors), 'file')} that {verb} not readable as Python 3 ({UNREADABLE})"
     if cut := result.statistics.cut:
-        yield f"all details of {many(len(cut), 'large program')} ({_named(cut)})"
+        yield f"parts of {many(len(cut), 'large program')} ({_named(cut)})"
     if notes.unreadable:
         yield f"{many(len(notes.unreadable), 'unreadable place')} ({', '.join(notes.unreadable[:3])})"
     if notes.cpp_nodes:
@@ -170,23 +175,23 @@ def vanished(result: Result, view: View) -> Iterator[Line]:
     """Yield the accepted findings that are gone."""
     if not result.vanished or not result.baseline:
         return
-    yield ((f"No longer there, though accepted in {shown(result.baseline)}:", "strong"),)
+    yield ((f"Gone, but accepted in {shown(result.baseline)}:", "strong"),)
     for entry in result.vanished[:_SHOWN]:
         yield ((f"  {in_words(entry, view.glyphs.arrow)}", ""),)
     if len(result.vanished) > _SHOWN:
         yield ((f"  and {len(result.vanished) - _SHOWN} more", "quiet"),)
-    yield (("  Run --write-baseline to forget them.", "quiet"),)
+    yield (("  Run --write-baseline to remove them.", "quiet"),)
     yield ()
 
 
 def in_words(entry: Accepted, arrow: str) -> str:
-    """Return an entry in words: `odom → cmd_vel, explicit, heard by callback, published in travel (shuttle)`."""
+    """Return an entry in words: `odom → cmd_vel, explicit, received by callback, published in travel (shuttle)`."""
     key = entry.fingerprint
     times = f", {entry.count} times" if entry.count > 1 else ""
     if isinstance(key, OfHazard):
         where = f" in {key.place}" if key.place else ""
         return f"{key.rule} {key.about.replace('→', arrow)}{where} ({key.package}){times}"
-    by = f", heard by {key.callback}" if key.callback else ""
+    by = f", received by {key.callback}" if key.callback else ""
     place = f", published in {key.place}" if key.place else ""
     return f"{key.source} {arrow} {key.sink}, {key.kind}{by}{place} ({key.package}){times}"
 
@@ -209,9 +214,9 @@ def unused(result: Result) -> Iterator[Line]:
 def in_vain(comment: Suppression) -> str:
     """Return why a comment silences nothing."""
     if not comment.rules:
-        return f"there is no rule {comment.code}: correct this comment, or take it out."
+        return f"there is no rule {comment.code}: correct or remove this comment."
     what = f"no {comment.code}" if comment.code else "no finding"
-    return f"there is {what} here for this comment to silence: take it out."
+    return f"there is {what} here for this comment to silence: remove it."
 
 
 def statistics(result: Result) -> Iterator[Line]:
@@ -227,8 +232,8 @@ def statistics(result: Result) -> Iterator[Line]:
         ("accepted in the baseline", sum(f.status == "accepted" for f in result.findings)),
         ("subscriptions that reach a publish call", len({flow.source.id for flow in flows})),
         ("publish calls reached", len({flow.sink.id for flow in flows})),
-        ("steps that carry the value", steps["data"]),
-        ("steps that decide", steps["control"]),
+        ("steps that pass on the value", steps["data"]),
+        ("steps that are conditions", steps["control"]),
         ("steps of a flow, median", lengths[len(lengths) // 2] if lengths else 0),
         ("files analysed", result.statistics.files),
         ("lines analysed", result.statistics.lines),

@@ -120,9 +120,9 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
         if any(stores is None for stores in kept) or (names and not _unread(names, functions, evidence)):
             continue
         source = evidence.tracer.source(record)
-        reason = "does nothing with it"
+        reason = "ignores it"
         if names:
-            reason = f"keeps it in {', '.join(sorted(names))}, which nothing reads"
+            reason = f"stores it in {', '.join(sorted(names))}, which nothing reads"
         message = f"{end(source)}: {source.callback} {reason}"
         about = f"{topic_text(source.topics)}, heard by {source.callback}"
         yield evidence.finding(CODE, source.span, message, about)
