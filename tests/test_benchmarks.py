@@ -22,6 +22,7 @@ SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 # What makes each script do the least that it can; {tmp} is a folder of the test.
 SMALLEST = {
     "bags": ["--seconds", "1"],
+    "editing": ["{tmp}"],
     "episodes": ["--episodes", "2"],
     "gate": ["--repetitions", "2", "--workers", "1", "--worlds", "corridor", "--sizes", "0"],
     "lint_speed": ["--repetitions", "1", "--growth", "1", "--", "{tmp}"],
