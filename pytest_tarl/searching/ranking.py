@@ -45,7 +45,7 @@ class Ranking:
         self.units = units(operands)
         self.guard = guard
         self.goal = goal
-        self.slack = SLACK * max(goal.enough - goal.online, 0.0)
+        self.slack = SLACK * goal.wanted
         self.race = Race(mutate, trials, goal.pairs)
         self.whole = False
 
