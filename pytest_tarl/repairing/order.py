@@ -90,7 +90,7 @@ class Order:
             return found
         part = next(iter(self.comparison.sizes))
         drawn = [(sizes(self.world, self.drift, pair.seed)[part], at) for at, pair in enumerate(found.pairs)]
-        return replace(found, pairs=tuple(found.pairs[at] for at in spread(drawn)))
+        return replace(found, pairs=tuple(found.pairs[at] for at in spread(drawn)), ranged=True)
 
     @cached_property
     def worst(self) -> float:

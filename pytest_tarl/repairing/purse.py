@@ -22,7 +22,7 @@ class Purse:
     seconds: float | None = None
     spent: int = 0
     late: bool = False
-    begun: float = field(default_factory=monotonic)
+    begun: float = field(default_factory=lambda: monotonic())  # looked up late, as tests replace it
 
     def phase(self, mutants: Mutants, method: str, watch: Watch, share: float = 1.0) -> Trials:
         """Return the trials of a phase; `settle` has to be told of them when it is over."""

@@ -106,7 +106,7 @@ def _search(
     watch: Watch,
 ) -> None:
     """Run one search; once a repair is accepted, for its curve only."""
-    share = CONSTANTS if mutants.order.options.structure else 1.0
+    share = CONSTANTS if mutants.order.options.structure and method == "sweep" else 1.0
     trials = purse.phase(mutants, method, watch, share)
     strategy = strategies.strategy(mutants, method, searched, trials)
     try:

@@ -60,6 +60,7 @@ class Goal:
     passing: bool = False
     harder: Mapping[int, float] = field(default_factory=dict)
     controls: tuple[Pair, ...] = ()
+    ranged: bool = False  # whether missions differ in size, so that one that fails may fail for its size
 
     @property
     def wanted(self) -> float:
@@ -181,7 +182,7 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
     for seed in seeds:
         outcomes.append(trials(candidate, seed))
         missed += not goal.reached(outcomes[-1], seed)
-        if missed > 1 or goal.lost(outcomes[-1]):
+        if missed > 1 or (goal.lost(outcomes[-1]) and not goal.ranged):
             return False
         if trials.falls_short(candidate, goal.pairs, goal.enough):
             return False
