@@ -128,7 +128,7 @@ def environment(folder: Path) -> Path:
     """Make an environment with this checkout in it and return its interpreter."""
     venv.create(folder / "venv", with_pip=True)
     python = folder / "venv" / "bin" / "python"
-    install(python, "--editable", str(ROOT), *TOOLS)
+    install(python, "--editable", f"{ROOT}[pytest]", *TOOLS)
     return python
 
 
