@@ -1,0 +1,151 @@
+"""The commands that run beside a robot: `tarl observe` logs its missions, `tarl watch` judges them as they come."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from pytest_tarl.commands.parser import Parser
+from pytest_tarl.printable import printable
+
+
+def add_observe(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Declare `tarl observe`."""
+    observe = commands.add_parser(
+        "observe", help="run a node on a robot and log its missions for pytest --tarl-online --tarl-log"
+    )
+    flag = observe.add_argument
+    flag("node", type=Path, help="the node's script")
+    flag("argv", nargs="*", metavar="-- ARGUMENT", help="what the node itself is given, after --")
+    flag("--entry", metavar="FUNCTION", help="call this function of it, as the entry point in setup.py does")
+    flag(
+        "--log", type=Path, default=Path(".tarl/missions.log"), help="default .tarl/missions.log; appended to"
+    )
+    flag(
+        "--log-size",
+        type=float,
+        default=0.0,
+        metavar="MB",
+        help="set the log aside as LOG.1, LOG.2, … when a mission begins and it is longer (default: never)",
+    )
+    flag(
+        "--log-keep",
+        type=int,
+        default=0,
+        metavar="N",
+        help="remove the oldest of more than N that were set aside (default: keep all)",
+    )
+    flag(
+        "--fixture", type=Path, help="the utility fixture whose sensors are watched; found where there is one"
+    )
+    flag("--module", type=Path, action="append", default=[], help="a further file of the node; repeatable")
+    flag("--reward-topic", default="", metavar="TOPIC[:TYPE]", help="the monitor's reward (std_msgs/Float64)")
+    flag(
+        "--step", type=float, metavar="SECONDS", help="close a step this often; the marker's judge rewards it"
+    )
+    flag(
+        "--mission-topic",
+        default="",
+        metavar="TOPIC[:TYPE]",
+        help="begin, succeeded, failed (std_msgs/String)",
+    )
+    flag(
+        "--idle", type=float, metavar="SECONDS", help="a mission ends when nothing was published for so long"
+    )
+    observe.set_defaults(run=_observe)
+
+
+def _observe(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.observing.command import Order, observe
+
+    order = Order(
+        node=arguments.node,
+        argv=tuple(arguments.argv),
+        entry=arguments.entry,
+        log=arguments.log,
+        fixture=arguments.fixture,
+        modules=tuple(arguments.module),
+        reward=arguments.reward_topic,
+        mission=arguments.mission_topic,
+        idle=arguments.idle,
+        step=arguments.step,
+        log_size=round(arguments.log_size * 1e6),
+        log_keep=arguments.log_keep,
+    )
+    print(printable(observe(order)), file=sys.stderr)
+    return 0
+
+
+def add_watch(commands: argparse._SubParsersAction[Parser]) -> None:
+    """Declare `tarl watch`."""
+    watch = commands.add_parser(
+        "watch",
+        help="judge logged missions as they come: is the stated bound kept, is the world as off-line?",
+    )
+    flag = watch.add_argument
+    flag("logs", type=Path, nargs="+", metavar="LOG", help="logs of `tarl observe`, which may still grow")
+    flag("--fixture", type=Path, required=True, help="the utility fixture that the missions are held against")
+    flag("--once", action="store_true", help="read what is there, tell it and end")
+    flag("--until-alarm", action="store_true", help="end with the first alarm")
+    flag(
+        "--alpha",
+        metavar="P",
+        type=float,
+        default=0.05,
+        help="probability of ever a false alarm (default 0.05)",
+    )
+    flag(
+        "--seed",
+        metavar="N",
+        type=int,
+        default=0,
+        help="decides how ties between missions are broken (default 0)",
+    )
+    flag(
+        "--state",
+        type=Path,
+        metavar="FILE",
+        help="default .tarl/watch/FIXTURE.npz; goes on from it where it exists",
+    )
+    flag(
+        "--json",
+        type=Path,
+        metavar="FILE",
+        help="keep the account there for other programs; - for standard output",
+    )
+    flag(
+        "--interval",
+        metavar="SECONDS",
+        type=float,
+        default=1.0,
+        help="between two looks at the logs (default 1)",
+    )
+    flag(
+        "--every",
+        metavar="SECONDS",
+        type=float,
+        default=60.0,
+        help="between two lines of output (default 60)",
+    )
+    flag("--diagnostics", choices=("rclpy", "rospy"), help="be a ROS node that publishes on /diagnostics")
+    watch.set_defaults(run=_watch)
+
+
+def _watch(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.commands import watch
+
+    order = watch.Order(
+        logs=tuple(arguments.logs),
+        fixture=arguments.fixture,
+        state=arguments.state or watch.default_state(arguments.fixture),
+        json=arguments.json,
+        alpha=arguments.alpha,
+        seed=arguments.seed,
+        interval=arguments.interval,
+        every=arguments.every,
+        once=arguments.once,
+        until_alarm=arguments.until_alarm,
+        ros=arguments.diagnostics or "",
+    )
+    return watch.run(order)
