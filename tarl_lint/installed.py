@@ -36,7 +36,7 @@ class Followed:
 
 
 def follow(scripts: Sequence[Script], config: Config) -> Followed:
-    """Return the files of the named packages that `scripts` import, directly or ignored.
+    """Return the files of the named packages that `scripts` import, directly or indirectly.
 
     Raises ConfigError if no virtual environment is named, or the named directory is not one.
     """
