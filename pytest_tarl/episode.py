@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import reprlib
 from collections.abc import Mapping, Sequence
@@ -16,8 +15,8 @@ from pytest_tarl.errors import RecordingError, SettingsError
 from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
 from pytest_tarl.formulas.episode import EpisodeFormulas
 from pytest_tarl.formulas.judging import Judged
-from pytest_tarl.formulas.signals import Signal
-from pytest_tarl.sensors import Cell, Sensor, as_number, reading
+from pytest_tarl.sensors import Sensor, as_number
+from pytest_tarl.situation import Situation
 
 if TYPE_CHECKING:
     import numpy as np
@@ -49,12 +48,7 @@ class Tarl:
         alone: bool = False,
     ) -> None:
         self.seed = seed
-        self.topics: dict[str, str] = {}
         self.drives_ros = False
-        self._sensors = tuple(sensors)
-        self.values: dict[str, list[float]] = {}  # of sensors whose bins are yet to be learned
-        self._bins: dict[str, int | None] = {}
-        self._situated = False  # whether there ever was a cell
         self._folder = folder
         self._kind = kind
         self._nodes = tuple(nodes)
@@ -67,7 +61,10 @@ class Tarl:
         self._origin = 0  # of virtual time, in ns
         self._requirements = requirements
         self._alone = alone  # whether it is the only episode of a plain test run
-        self._formulas = EpisodeFormulas(requirements, self._sensors, lambda: self._now)
+        self._formulas = EpisodeFormulas(requirements, tuple(sensors), lambda: self._now)
+        self._situation = Situation(tuple(sensors), requirements, self._formulas, recorder)
+        self.topics = self._situation.topics
+        self.values = self._situation.values
         self._open = ExitStack()
         self._open.enter_context(imports)
 
@@ -86,7 +83,7 @@ class Tarl:
             self._ros = make_ros(self._kind, [self._folder / node for node in self._nodes])
             self._open.enter_context(self._ros.installed())
             self._open.callback(self._ros.close)
-            self._ros.on_delivery(self._latch)
+            self._ros.on_delivery(self._situation.hear)
             if self._replay is not None:
                 self._replay.begin(self._ros)
             self._origin = self._ros.scheduler.time
@@ -158,7 +155,7 @@ class Tarl:
             elif judgement is not None:
                 self.reward(judgement)
 
-        replay.run(self.ros, dt, lambda: self._situated, close, self.observe)
+        replay.run(self.ros, dt, lambda: self._situation.known, close, self.observe)
         raise MissionReplayed("The recorded mission is over.")
 
     def message(self, topic: str, message: Any) -> None:
@@ -167,41 +164,18 @@ class Tarl:
             raise SettingsError(
                 f"tarl.message got {topic!r} as topic: it takes the name first, tarl.message('/odom', message)."
             )
-        self._latch(topic, message)
+        self._situation.hear(topic, message)
 
     def observe(self, **values: Any) -> None:
         """Give the values of sensors that have no topic, and of signals that formulas name."""
-        declared = {sensor.name: sensor for sensor in self._sensors}
-        signals = {signal.name for signal in self._requirements.signals}
-        for name, value in values.items():
-            if name in declared:
-                self._read(declared[name], value)
-            elif name in signals:
-                self._formulas.give(name, value)
-            else:
-                self._check_unused(name, [*declared, *sorted(signals)])
-        if declared.keys() & values.keys():
-            self._latch_cell()
-
-    def _check_unused(self, name: str, known: Sequence[str]) -> None:
-        """Raise SettingsError for a name that is a typing error, as far as can be told.
-
-        Beside formulas a test may observe more than they name; what is close to a name that is never observed itself
-        is none of that.
-        """
-        said = self._requirements.said
-        close = difflib.get_close_matches(name, known, 1)
-        if self._requirements.followed and name in said.observed and (not close or close[0] in said.observed):
-            return
-        hint = f"; did you mean {close[0]!r}?" if close else f"; the marker declares {', '.join(known)}."
-        raise SettingsError(f"tarl.observe: no sensor and no signal is named {name!r}{hint}")
+        self._situation.observe(values)
 
     def require(self, formula: str) -> None:
         """Require a formula of this episode, judged with those of the marker when the body is over.
 
         Raises SettingsError for what is no formula over the test's signals.
         """
-        self._formulas.require(formula, begun=bool(self._bins))
+        self._formulas.require(formula, begun=self._situation.begun)
 
     def reward(self, total: float | None = None, /, **parts: float) -> None:
         """Give the monitor's judgement of this simulation step, once a step; parts are summed and reported apart."""
@@ -265,14 +239,9 @@ class Tarl:
                 "The test never called tarl.reward: call it once a simulation step with the monitor's judgement, "
                 "for instance tarl.reward(world.monitor())."
             )
-        silent = [sensor for sensor in self._sensors if sensor.name not in self._bins]
-        if silent:
-            return RecordingError(_silence(silent[0]))
-        if not self._situated:
-            return RecordingError(
-                f"Sensor {next(name for name, value in self._bins.items() if value is None)!r} was NaN whenever the "
-                "others were known, which tells nothing: look at what the world gives it."
-            )
+        problem = self._situation.problem()
+        if problem is not None:
+            return problem
         if self.drives_ros and not self.ros.published:
             heard = ", ".join(sorted(self.ros.subscribed)) or "no topic"
             return RecordingError(
@@ -294,21 +263,6 @@ class Tarl:
             )
         return None
 
-    def _latch(self, topic: str, message: Any) -> None:
-        """Hold the sensors' bins until the next message on their topic."""
-        changed = False
-        for sensor in self._sensors:
-            if sensor.topic is not None and same_topic(sensor.topic, topic):
-                self._read(sensor, _value(sensor, message))
-                self.topics[sensor.topic] = message_type_name(message)
-                changed = True
-        for signal in self._requirements.signals:
-            if signal.topic is not None and same_topic(signal.topic, topic):
-                self._formulas.give(signal.name, _value(signal, message))
-                self.topics[signal.topic] = message_type_name(message)
-        if changed:
-            self._latch_cell()
-
     @property
     def _now(self) -> int:
         """Return the virtual nanoseconds since the episode, or the recorded mission, began."""
@@ -318,25 +272,6 @@ class Tarl:
         if self._formulas.stepped():
             self._recorder.reward(0.0, {})
             self._rewards += 1
-
-    def _read(self, sensor: Sensor, value: Any) -> None:
-        if not sensor.categories:
-            self._formulas.give(sensor.name, value)
-        self._bins[sensor.name] = sensor.bin(value)
-        if sensor.to_learn:
-            self.values.setdefault(sensor.name, []).append(float(value))
-
-    def _latch_cell(self) -> None:
-        bins = [self._bins.get(sensor.name) for sensor in self._sensors]
-        known = [value for value in bins if value is not None]
-        cell: Cell | None = tuple(known) if len(known) == len(bins) else None
-        self._situated = self._situated or cell is not None
-        self._recorder.latch(cell)
-
-
-def same_topic(first: str, second: str) -> bool:
-    """Compare topic names; a leading slash makes no difference."""
-    return first.lstrip("/") == second.lstrip("/")
 
 
 def _reward(value: Any) -> float:
@@ -349,31 +284,3 @@ def _reward(value: Any) -> float:
             "squares overflow. Scale the monitor's judgement."
         )
     return number
-
-
-def message_type_name(message: Any) -> str:
-    """Name a message's type as ROS 2 does: `std_msgs/msg/Bool`. Empty for what is no ROS message."""
-    kind = type(message)
-    package = kind.__module__.split(".")[0]
-    return f"{package}/msg/{kind.__name__}" if hasattr(kind, "__slots__") or hasattr(kind, "_type") else ""
-
-
-def _value(sensor: Sensor | Signal, message: Any) -> Any:
-    if callable(sensor.field):
-        return sensor.field(message)
-    try:
-        return reading(message, sensor.field or "")
-    except (AttributeError, IndexError, KeyError, TypeError) as problem:
-        raise SettingsError(
-            f"{type(sensor).__name__} {sensor.name!r}: a message on {sensor.topic} ({type(message).__name__}) has no "
-            f"field {sensor.field!r}. Mend the field in the marker."
-        ) from problem
-
-
-def _silence(sensor: Sensor) -> str:
-    if sensor.topic is None:
-        return f"Sensor {sensor.name!r} was never observed: call tarl.observe({sensor.name}=…) in each step."
-    return (
-        f"Sensor {sensor.name!r} heard nothing on {sensor.topic}: publish it with tarl.bus.publish({sensor.topic!r}, "
-        f"…), or tell its message with tarl.message({sensor.topic!r}, message), or mend the topic in the marker."
-    )
