@@ -64,7 +64,7 @@ class Fault:
     @property
     def name(self) -> str:
         """Name it so that it is found again after edits elsewhere in the file."""
-        return f"{self.path}: {self.kind}: {self.was} → {self.now}"
+        return f"{self.path}: {self.kind}: {' '.join(self.was.split())} → {' '.join(self.now.split())}"
 
     def sown(self, text: bytes) -> bytes:
         """Return the text of the file with the fault."""
@@ -155,9 +155,9 @@ class _Finder:
         elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
             yield self._fault(node, "negation dropped", self._text(node.operand))
         elif isinstance(node, ast.Constant) and isinstance(node.value, bool):
-            yield self._fault(node, "truth", repr(not node.value))
+            yield self._fault(node, f"truth in {self._line(node)}", repr(not node.value))
         elif isinstance(node, ast.Constant) and isinstance(node.value, int | float):
-            yield self._fault(node, "number", repr(node.value + 1))
+            yield self._fault(node, f"number in {self._line(node)}", repr(node.value + 1))
 
     def _between(
         self,
@@ -186,6 +186,9 @@ class _Finder:
         return self._lines[node.lineno - 1] + node.col_offset, self._lines[
             node.end_lineno - 1
         ] + node.end_col_offset
+
+    def _line(self, node: ast.expr) -> str:
+        return self._data.split(b"\n")[node.lineno - 1].decode().strip()
 
     def _text(self, node: ast.expr | ast.stmt) -> str:
         start, end = self._offsets(node)
