@@ -1,4 +1,4 @@
-"""The command line of `tarl`: fixtures to look at, robots to observe and watch, patches to apply."""
+"""The command line of `tarl`: inspect recordings, observe and watch robots, apply patches."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.printable import printable, printable_line
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command; return 0, 1 where it found what it was told to fail on or refused, 2 for what cannot be done."""
+    """Run a command. Return 0; 1 if it refuses or finds what it should fail on; 2 if it cannot be done."""
     arguments = parser().parse_args(argv)
     sentence = arguments.needs(f"tarl {arguments.command}")
     if sentence is not None:
@@ -32,7 +32,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(printable(f"tarl: {problem}"), file=sys.stderr)
         return 2
     except BrokenPipeError:
-        sys.stdout = open(os.devnull, "w")  # noqa: PTH123, SIM115 - what is left to print goes nowhere
+        sys.stdout = open(os.devnull, "w")  # noqa: PTH123, SIM115 - discard the remaining output
         return 0
     except KeyboardInterrupt:
         print("tarl: interrupted.", file=sys.stderr)
@@ -40,35 +40,35 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _print(lines: Iterable[str]) -> None:
-    """Print lines that hold texts of others: code, topics, headers of patches."""
+    """Print lines that contain untrusted text: code, topics, headers of patches."""
     print("\n".join(map(printable_line, lines)))
 
 
 def parser() -> Parser:
     """Return the parser of the command line."""
-    parser = Parser(prog="tarl", description="Look at what TARL recorded, apply what it found.")
+    parser = Parser(prog="tarl", description="Inspect recordings, watch robots, and apply repairs of TARL.")
     parser.add_argument("--version", action="version", version=f"%(prog)s {version('tarl')}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND", dest="command")
-    show = commands.add_parser("show", help="tell in a screenful what a fixture holds")
-    show.add_argument("fixture", type=Path, help="a file below .tarl/utility or .tarl/online")
+    show = commands.add_parser("show", help="show a summary of a recording")
+    show.add_argument("fixture", type=Path, help="a file in .tarl/utility or .tarl/online")
     show.add_argument(
-        "--sites", action="store_true", help="list the statements of every taint list, however many"
+        "--sites", action="store_true", help="list the statements of every taint list, even if there are many"
     )
     show.set_defaults(run=_show)
-    diff = commands.add_parser("diff", help="compare two fixtures")
+    diff = commands.add_parser("diff", help="compare two recordings")
     diff.add_argument("first", type=Path)
     diff.add_argument("second", type=Path)
     diff.add_argument(
         "--fail-if-worse",
         action="store_true",
-        help="exit with 1 when the second one earns significantly less",
+        help="exit with 1 if the second one earns significantly less",
     )
     diff.add_argument(
         "--max-loss",
         metavar="R",
         type=float,
         default=0.0,
-        help="with --fail-if-worse: a loss of reward per episode that nobody minds (default 0)",
+        help="with --fail-if-worse: tolerated loss of reward per episode (default 0)",
     )
     diff.add_argument(
         "--alpha", metavar="P", type=float, help="with --fail-if-worse: rate of false alarms (default 0.05)"
@@ -76,7 +76,7 @@ def parser() -> Parser:
     diff.add_argument(
         "--fail-if-changed",
         action="store_true",
-        help="exit with 1 when a recorded statement was edited or the sensors are others",
+        help="exit with 1 if a recorded statement was edited or the sensors differ",
     )
     diff.set_defaults(run=_diff)
     summary = commands.add_parser("summary", help="print the results of the last comparisons as Markdown")
@@ -89,9 +89,7 @@ def parser() -> Parser:
     _add_patches(commands)
     for command in commands.choices.values():
         command.set_defaults(parser=command, needs=missing_extra)
-    lsp = commands.add_parser(
-        "lsp", help="serve an editor by the Language Server Protocol, on standard streams"
-    )
+    lsp = commands.add_parser("lsp", help="run the language server for editors, on standard streams")
     lsp.set_defaults(run=_lsp, parser=lsp, needs=missing_server)
     return parser
 
@@ -106,7 +104,7 @@ def _summary(arguments: argparse.Namespace) -> int:
 def _lsp(_: argparse.Namespace) -> int:
     from tarl_lint import import_path
 
-    import_path.restrict()  # nothing of the workspace is imported, also where the server was started in it
+    import_path.restrict()  # import nothing from the workspace, even if the server was started there
     from pytest_tarl.editor.server import main as serve
 
     return serve(_applied)
@@ -119,30 +117,30 @@ def _applied(patch: Path) -> list[str]:
 
 
 def _add_patches(commands: argparse._SubParsersAction[Parser]) -> None:
-    apply = commands.add_parser("apply", help="apply patches of repairs, after checking that they still fit")
+    apply = commands.add_parser("apply", help="apply patches, after checking that they still fit")
     apply.add_argument(
-        "--force", action="store_true", help="where the file has changed, or has changes to lose"
+        "--force", action="store_true", help="apply even if the file has changed or has uncommitted changes"
     )
-    apply.add_argument("--partial", action="store_true", help="a partial repair, too, which was not accepted")
-    revert = commands.add_parser("revert", help="undo patches of repairs, and nothing else")
-    suggest = commands.add_parser(
-        "suggest", help="print a patch as suggestions for a review, or as a SARIF fix"
+    apply.add_argument(
+        "--partial", action="store_true", help="also apply a partial repair, which was not accepted"
     )
+    revert = commands.add_parser("revert", help="undo patches and keep other edits")
+    suggest = commands.add_parser("suggest", help="print a patch as review suggestions or as a SARIF fix")
     suggest.add_argument(
         "--format",
         choices=("markdown", "github", "sarif"),
         default="markdown",
-        help="suggestion blocks to read and paste (default), a review for GitHub's API, or SARIF 2.1.0",
+        help="suggestion blocks to paste (default), a review for GitHub's API, or SARIF 2.1.0",
     )
     for command in (apply, revert):
-        command.add_argument("patch", type=Path, nargs="+", help="a file below .tarl/patches")
+        command.add_argument("patch", type=Path, nargs="+", help="a file in .tarl/patches")
         command.add_argument(
             "--directory",
             type=Path,
             metavar="DIR",
-            help="where the paths of a patch begin; known as long as the patch is below .tarl",
+            help="folder that the paths of a patch are relative to; known if the patch is in .tarl",
         )
-    suggest.add_argument("patch", type=Path, help="a file below .tarl/patches")
+    suggest.add_argument("patch", type=Path, help="a file in .tarl/patches")
     apply.set_defaults(run=_apply)
     revert.set_defaults(run=_revert)
     suggest.set_defaults(run=_suggest)

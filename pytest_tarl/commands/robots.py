@@ -1,4 +1,4 @@
-"""The commands that run beside a robot: `tarl observe` logs its missions, `tarl watch` judges them as they come."""
+"""Commands for robots: `tarl observe` logs missions, `tarl watch` judges them as they arrive."""
 
 from __future__ import annotations
 
@@ -17,41 +17,56 @@ def add_observe(commands: argparse._SubParsersAction[Parser]) -> None:
     )
     flag = observe.add_argument
     flag("node", type=Path, help="the node's script")
-    flag("argv", nargs="*", metavar="-- ARGUMENT", help="what the node itself is given, after --")
-    flag("--entry", metavar="FUNCTION", help="call this function of it, as the entry point in setup.py does")
+    flag("argv", nargs="*", metavar="-- ARGUMENT", help="arguments of the node, after --")
     flag(
-        "--log", type=Path, default=Path(".tarl/missions.log"), help="default .tarl/missions.log; appended to"
+        "--entry", metavar="FUNCTION", help="call this function of the node, like an entry point in setup.py"
+    )
+    flag(
+        "--log",
+        type=Path,
+        default=Path(".tarl/missions.log"),
+        help="log to append to (default .tarl/missions.log)",
     )
     flag(
         "--log-size",
         type=float,
         default=0.0,
         metavar="MB",
-        help="set the log aside as LOG.1, LOG.2, … when a mission begins and it is longer (default: never)",
+        help="rename a longer log to LOG.1, LOG.2, … when a mission begins (default: never)",
     )
     flag(
         "--log-keep",
         type=int,
         default=0,
         metavar="N",
-        help="remove the oldest of more than N that were set aside (default: keep all)",
+        help="keep only the newest N renamed logs (default: keep all)",
     )
     flag(
-        "--fixture", type=Path, help="the utility fixture whose sensors are watched; found where there is one"
+        "--fixture",
+        type=Path,
+        help="the recording whose sensors are observed; found automatically if there is one",
     )
     flag("--module", type=Path, action="append", default=[], help="a further file of the node; repeatable")
-    flag("--reward-topic", default="", metavar="TOPIC[:TYPE]", help="the monitor's reward (std_msgs/Float64)")
     flag(
-        "--step", type=float, metavar="SECONDS", help="close a step this often; the marker's judge rewards it"
+        "--reward-topic",
+        default="",
+        metavar="TOPIC[:TYPE]",
+        help="topic of the monitor's reward (std_msgs/Float64)",
+    )
+    flag(
+        "--step",
+        type=float,
+        metavar="SECONDS",
+        help="length of a step; the marker's judge computes its reward",
     )
     flag(
         "--mission-topic",
         default="",
         metavar="TOPIC[:TYPE]",
-        help="begin, succeeded, failed (std_msgs/String)",
+        help="topic with begin, succeeded, failed (std_msgs/String)",
     )
     flag(
-        "--idle", type=float, metavar="SECONDS", help="a mission ends when nothing was published for so long"
+        "--idle", type=float, metavar="SECONDS", help="end a mission when nothing was published for this time"
     )
     observe.set_defaults(run=_observe)
 
@@ -81,54 +96,54 @@ def add_watch(commands: argparse._SubParsersAction[Parser]) -> None:
     """Declare `tarl watch`."""
     watch = commands.add_parser(
         "watch",
-        help="judge logged missions as they come: is the stated bound kept, is the world as off-line?",
+        help="judge logged missions as they arrive, and raise an alarm if performance or world change",
     )
     flag = watch.add_argument
     flag("logs", type=Path, nargs="+", metavar="LOG", help="logs of `tarl observe`, which may still grow")
-    flag("--fixture", type=Path, required=True, help="the utility fixture that the missions are held against")
-    flag("--once", action="store_true", help="read what is there, tell it and end")
-    flag("--until-alarm", action="store_true", help="end with the first alarm")
+    flag("--fixture", type=Path, required=True, help="the recording to compare the missions with")
+    flag("--once", action="store_true", help="read the logs once, print the result and exit")
+    flag("--until-alarm", action="store_true", help="exit at the first alarm")
     flag(
         "--alpha",
         metavar="P",
         type=float,
         default=0.05,
-        help="probability of ever a false alarm (default 0.05)",
+        help="probability of ever raising a false alarm (default 0.05)",
     )
     flag(
         "--seed",
         metavar="N",
         type=int,
         default=0,
-        help="decides how ties between missions are broken (default 0)",
+        help="seed for breaking ties between missions (default 0)",
     )
     flag(
         "--state",
         type=Path,
         metavar="FILE",
-        help="default .tarl/watch/FIXTURE.npz; goes on from it where it exists",
+        help="file with the state of the watch; continued if it exists (default .tarl/watch/FIXTURE.npz)",
     )
     flag(
         "--json",
         type=Path,
         metavar="FILE",
-        help="keep the account there for other programs; - for standard output",
+        help="write the result to this file for other programs; - for standard output",
     )
     flag(
         "--interval",
         metavar="SECONDS",
         type=float,
         default=1.0,
-        help="between two looks at the logs (default 1)",
+        help="time between reads of the logs (default 1)",
     )
     flag(
         "--every",
         metavar="SECONDS",
         type=float,
         default=60.0,
-        help="between two lines of output (default 60)",
+        help="time between lines of output (default 60)",
     )
-    flag("--diagnostics", choices=("rclpy", "rospy"), help="be a ROS node that publishes on /diagnostics")
+    flag("--diagnostics", choices=("rclpy", "rospy"), help="run as a ROS node that publishes on /diagnostics")
     watch.set_defaults(run=_watch)
 
 

@@ -110,13 +110,15 @@ def _collected_before() -> Iterator[None]:
 
 def _check(order: Order) -> None:
     if not order.node.is_file():
-        raise LogError(f"There is no file {order.node}: name the node's script.")
+        raise LogError(f"{order.node}: no such file. Give the path of the node's script.")
     if order.mission and order.idle is not None:
-        raise LogError("--mission-topic and --idle are two ways to tell missions apart: give one of them.")
+        raise LogError(
+            "--mission-topic and --idle cannot be used together: both define when a mission begins and ends."
+        )
     if bool(order.reward) == (order.step is not None):
         raise LogError(
-            "Give --reward-topic where the monitor publishes its reward, or --step SECONDS where the marker's `judge` "
-            "is to say it when the log is read; one of them."
+            "Give either --reward-topic, on which the monitor publishes its reward, or --step SECONDS, if the marker's "
+            "`judge` computes the reward when the log is read."
         )
 
 
@@ -133,8 +135,8 @@ def _fixture_of(node: Path) -> Path:
     if len(found) != 1:
         listed = ", ".join(str(path.relative_to(Path.cwd())) for path in found) or "none"
         raise LogError(
-            f"The sensors come from the test's utility fixture; of those below {Path.cwd()} that name {node.name} "
-            f"there is {listed}: choose one with --fixture."
+            f"The sensors are read from the test's recording. Recordings below {Path.cwd()} that name {node.name}: "
+            f"{listed}. Choose one with --fixture."
         )
     return found[0]
 
@@ -157,7 +159,7 @@ def _warn_of_mute_sensors(fixture: Fixture) -> None:
     mute = [sensor.name for sensor in fixture.sensors if sensor.topic is None]
     if mute:
         raise LogError(
-            f"Sensor {mute[0]!r} has no topic: the test tells it with tarl.observe, on a robot nobody does. Give it "
+            f"Sensor {mute[0]!r} has no topic. In a test, tarl.observe sets it; on a robot, nothing does. Give it "
             "a topic and a field in the marker and record again."
         )
 

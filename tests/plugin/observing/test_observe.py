@@ -119,9 +119,9 @@ def test_without_a_reward_topic_the_markers_judge_rewards_the_steps(
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        ({"reward": ""}, "Give --reward-topic"),
-        ({"idle": 1.0}, "two ways to tell missions apart"),
-        ({"node": Path("nowhere.py")}, "There is no file"),
+        ({"reward": ""}, "Give either --reward-topic"),
+        ({"idle": 1.0}, "cannot be used together"),
+        ({"node": Path("nowhere.py")}, "no such file"),
         ({"reward": "/monitor:nonsense_msgs/Float99"}, "nonsense_msgs"),
     ],
 )
@@ -144,5 +144,5 @@ def test_only_a_comparison_takes_a_log(pytester: pytest.Pytester) -> None:
 def test_a_fixture_is_needed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "keeper.py").write_text(NODE)
-    with pytest.raises(LogError, match="choose one with --fixture"):
+    with pytest.raises(LogError, match="Choose one with --fixture"):
         observe(order(tmp_path))
