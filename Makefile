@@ -1,5 +1,7 @@
 # make demo: install, then lint → record → on-line → repair on examples/shuttle
 # make test: install, then lint, types, import contracts, tests and the demo
+# make docs: the documentation site in build/site; docs-assets fetches the fonts and scripts that it ships, once
+# make test-docs: the whole site in a browser
 # make test-ros1, make test-ros2: the examples and the probes on a real ROS, in an environment of its own
 
 PYTHON ?= python3
@@ -11,7 +13,7 @@ PROCESSES ?= 2
 unexport PYTHONDONTWRITEBYTECODE
 INSTALLED := $(VENV)/.installed
 
-.PHONY: demo test check unit test-editor setup clean bench-paper bench-drift
+.PHONY: demo test check unit test-editor setup docs docs-assets test-docs clean bench-paper bench-drift
 
 demo: setup
 	@BIN="$(abspath $(BIN))" sh examples/demo.sh
@@ -30,6 +32,15 @@ unit: setup test-editor
 # The language server is tested by itself: its tests need asyncio, which the others run without
 test-editor: setup
 	$(BIN)/python -m pytest -q -c tests/editor/pytest.ini --rootdir . --timeout 120 tests/editor
+
+docs: setup
+	$(BIN)/python -m website.build
+
+docs-assets: setup
+	$(BIN)/python -m website.build --fetch
+
+test-docs: docs docs-assets
+	TARL_SITE=build/site $(BIN)/python -m pytest -q tests/site
 
 setup: $(INSTALLED)
 

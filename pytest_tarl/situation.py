@@ -92,7 +92,7 @@ class Situation:
         if self._requirements.followed and name in said.observed and (not close or close[0] in said.observed):
             return
         hint = f"; did you mean {close[0]!r}?" if close else f"; the marker declares {', '.join(known)}."
-        raise SettingsError(f"tarl.observe: no sensor and no signal is named {name!r}{hint}")
+        raise SettingsError(f"tarl.observe: no such sensor or signal: {name!r}{hint}")
 
     def _read(self, sensor: Sensor, value: Any) -> None:
         if not sensor.categories:

@@ -134,12 +134,12 @@ MISTAKES = {
     "an observation without any formula": (
         "drifts={}",
         "tarl.observe(gap=gap)",
-        "no sensor and no signal is named 'gap'; the marker declares wet, mode.",
+        "no such sensor or signal: 'gap'; the marker declares wet, mode.",
     ),
     "an observation that is a typing error of a sensor": (
         'requires=["always wet"]',
         "tarl.observe(wett=gap)",
-        "no sensor and no signal is named 'wett'; did you mean 'wet'?",
+        "no such sensor or signal: 'wett'; did you mean 'wet'?",
     ),
     "an unknown signal in the body": (
         "",
