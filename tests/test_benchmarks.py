@@ -25,6 +25,7 @@ SMALLEST = {
     "editing": ["{tmp}"],
     "episodes": ["--episodes", "2"],
     "gate": ["--repetitions", "2", "--workers", "1", "--worlds", "corridor", "--sizes", "0"],
+    "limits": ["--share", "0.001"],
     "lint_speed": ["--repetitions", "1", "--growth", "1", "--", "{tmp}"],
     "observe": ["--cycles", "20", "--blocks", "2"],
     "observe_day": ["--hours", "0.02", "--growth", "50"],
