@@ -37,6 +37,8 @@ def settings(address: str, quick: bool) -> str:
         text = "".join(line for line in text.splitlines(keepends=True) if '"gallery/index.md"' not in line)
     text = text.replace("[project]\n", "[project]\n" + "\n".join(known) + "\n", 1)
     text = text.replace("[project.theme]\n", '[project.theme]\ncustom_dir = "overrides"\n', 1)
+    if address:  # published beside other versions, between which a menu leads
+        text = text.replace("[project.extra]\n", '[project.extra]\nversion = { provider = "mike" }\n', 1)
     return text.replace('paths = ["."]', 'paths = [".."]', 1)
 
 
