@@ -6,7 +6,12 @@ import json
 import os
 import re
 import subprocess
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
 from html import unescape
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +20,7 @@ import pytest
 from tests.plugin.report.test_browser import BROWSER, DARK, OFFLINE, QUIET
 from website import assets, links
 from website.message_pages import slug
+from website.publish import publish
 
 WAIT = """const pause = time => new Promise(done => setTimeout(done, time));
 const until = async found => { for (let i = 0; i < 200 && !found(); i++) await pause(50); return found() };"""
@@ -50,7 +56,7 @@ if os.environ.get("TARL_SLOW") or os.environ.get("TARL_SITE"):
 
 
 def opened(
-    site: Path, page: str, script: str, directory: Path, *flags: str
+    site: Path, page: str, script: str, directory: Path, *flags: str, at: str = ""
 ) -> tuple[dict[str, Any], list[str]]:
     """Return what a script finds on a page, and the lines of the console."""
     if BROWSER is None:
@@ -58,14 +64,15 @@ def opened(
     body = f"const found = {{}};{WAIT}{script}\ndocument.body.dataset.found = JSON.stringify(found);"
     probe = f'<script>addEventListener("load", async () => {{{body}}})</script></body>'
     text = (site / page).read_text("utf-8")
-    file = (site / page).with_name(f"{directory.name}.html")  # beside the page, so that its links hold
+    file = (site / page).with_name(f"{directory.name}.htm")  # beside the page, so that its links hold
     file.write_text(text.replace("</body>", probe), "utf-8")
     profile = f"--user-data-dir={directory / 'profile'}"
     local = "--allow-file-access-from-files"
+    offline = f"{OFFLINE}, EXCLUDE 127.0.0.1" if at else OFFLINE
     command = [
         BROWSER,
         *QUIET.split(),
-        OFFLINE,
+        offline,
         local,
         *flags,
         profile,
@@ -73,9 +80,8 @@ def opened(
         "--dump-dom",
     ]
     try:
-        ran = subprocess.run(
-            [*command, file.as_uri()], capture_output=True, text=True, timeout=120, check=True
-        )
+        address = f"{at}/{file.name}" if at else file.as_uri()
+        ran = subprocess.run([*command, address], capture_output=True, text=True, timeout=120, check=True)
     finally:
         file.unlink()
     body_tag = re.search(r'<body[^>]* data-found="([^"]*)"', ran.stdout)
@@ -132,3 +138,37 @@ def test_pages_can_be_read_by_everybody(site: Path, axe: str, tmp_path: Path, pa
     if page == "lint.html":
         assert all(height > 100 for height in found["drawn"])
         assert found["drawn"]
+
+
+def test_the_menu_of_versions_leads_to_each_of_them(site: Path, tmp_path: Path) -> None:
+    if 'provider":"mike"' not in (site / "index.html").read_text("utf-8"):
+        pytest.skip("the site was built without SITE_URL, so it has no menu of versions")
+    for tag in ("v0.1.0", "v0.2.0", "dev"):
+        publish(site, tmp_path / "tree", tag)
+    script = """await until(() => document.querySelector(".md-version a"));
+found.versions = [...document.querySelectorAll(".md-version a")].map(link => link.textContent.trim());"""
+    with served(tmp_path / "tree") as address:
+        found, console = opened(
+            tmp_path / "tree" / "0.1.0", "index.html", script, tmp_path, at=f"{address}/0.1.0"
+        )
+    assert found["versions"] == ["0.2.0", "0.1.0", "dev"]
+    assert console == []
+
+
+@contextmanager
+def served(folder: Path) -> Iterator[str]:
+    """Serve a folder on this machine; give its address."""
+    handler = partial(Silent, directory=str(folder))
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        try:
+            yield f"http://127.0.0.1:{server.server_address[1]}"
+        finally:
+            server.shutdown()
+
+
+class Silent(SimpleHTTPRequestHandler):
+    """Serve files and say nothing."""
+
+    def log_message(self, *_: object) -> None:
+        """Drop a line of the log."""
