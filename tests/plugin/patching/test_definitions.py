@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
-from pytest_tarl.patching.definitions import defined, parameter
+from pytest_tarl.model import Guard
+from pytest_tarl.patching.definitions import configured, defined, parameter
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.searching.search import Candidate
 from tarl_lint.api import analyse
 
 NODE = """\
@@ -66,3 +72,17 @@ def test_an_entry_keeps_its_key_and_a_parameter_its_name(
     assert place is not None
     assert (place.name, place.value) == (name, value)
     assert parameter(analysis, operand) == (name if use.startswith("self.") else "")
+
+
+def test_a_place_in_a_file_that_nobody_has_read_is_read_when_it_is_written(tmp_path: Path) -> None:
+    path, file = tmp_path / "mast.py", tmp_path / "mast.yaml"
+    path.write_text(NODE.format(use="self.ki"))
+    file.write_text("mast:\n  ki: 0.5  # per second\n")
+    analysis = analyse([path], root=tmp_path)
+    (operand,) = {o for step in analysis.sites for o in analysis.operands(step.site) if o.code == "self.ki"}
+    (place,) = configured("ki", {"mast.yaml": file.read_text()})
+    order: Any = SimpleNamespace(
+        analysis=analysis, root=tmp_path, rollout=None, fixture=SimpleNamespace(topics={})
+    )
+    written = Mutants(order).source(Candidate((Mutation(operand, 2.0, place),), Guard()))
+    assert written == {file: "mast:\n  ki: 1.0  # per second\n"}
