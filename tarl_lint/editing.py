@@ -1,4 +1,4 @@
-"""A workspace that an editor holds open: linted again after each change, with the texts that are not saved yet."""
+"""A workspace that is open in an editor: linted again after each change, including unsaved texts."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ __all__ = ["Result", "Workspace"]
 
 
 class Workspace:
-    """The files at and below some paths. Programs that a change does not touch are not analysed again."""
+    """The files at and below some paths. Programs that a change does not affect are not analysed again."""
 
     def __init__(self, paths: Sequence[Path]) -> None:
         self._options = Options(paths=tuple(paths), jobs=1)
         self._known: _Memory | None = None
 
     def lint(self, buffers: Mapping[Path, str]) -> Result:
-        """Return what is found; `buffers` holds the text of unsaved files by their absolute path.
+        """Return the result; `buffers` maps absolute paths to the texts of unsaved files.
 
-        Raises LintError for unusable settings or an unusable baseline, and where there is nothing to lint.
+        Raises LintError for unusable settings or an unusable baseline, and if there is nothing to lint.
         """
         config = resolve(self._options)
         if self._known is None or self._known.config != config:
@@ -33,9 +33,9 @@ class Workspace:
         return runner.run(self._options, config, buffers=texts, known=self._known)
 
     def accept(self, fingerprint: str, buffers: Mapping[Path, str]) -> Path:
-        """Add what has this fingerprint to the accepted flows and return their file.
+        """Add the findings with this fingerprint to the baseline and return its path.
 
-        Raises LintError as `lint` does, and where the file cannot be written.
+        Raises LintError like `lint`, and if the file cannot be written.
         """
         config = resolve(self._options)
         path = config.baseline or (config.root or Path.cwd()) / BASELINE_NAME
@@ -47,7 +47,7 @@ class Workspace:
 
 
 class _Memory(Cache):
-    """Reports of the last run by key, and those of the cache on disk, which is never written."""
+    """Reports of the last run by key, and those of the cache on disk, which is read only."""
 
     def __init__(self, config: object, saved: Cache) -> None:
         super().__init__(None)
@@ -57,20 +57,20 @@ class _Memory(Cache):
         self._now: dict[str, Report] = {}
 
     def report(self, key: str) -> Report | None:
-        """Return what is known under a key, None when there is nothing."""
+        """Return the report stored under a key, None if there is none."""
         found = self._now.get(key) or self._before.get(key) or self._saved.report(key)
         if found is not None:
             self._now[key] = found
         return found
 
     def put(self, key: str, report: Report) -> None:
-        """Keep a report until it has not been needed for a whole run."""
+        """Keep a report until a whole run has not needed it."""
         self._now[key] = report
 
     def plan(self, _: str) -> Sequence[str]:
-        """Return no plan: which reports a run needs is found anew."""
+        """Return no plan: each run determines the reports it needs."""
         return []
 
     def save(self) -> None:
-        """Forget what the last run did not need."""
+        """Drop the reports that the last run did not need."""
         self._before, self._now = self._now, {}

@@ -32,7 +32,7 @@ NO_BUFFERS: Final[Mapping[Path, bytes]] = MappingProxyType({})
 
 @dataclass(frozen=True)
 class Statistics:
-    """Counts of one run: files and lines analysed, what was left out, programs not followed in every detail."""
+    """Counts of one run: analysed files and lines, skipped files, programs that exhausted their budget."""
 
     files: int = 0
     lines: int = 0
@@ -42,15 +42,15 @@ class Statistics:
 
 @dataclass(frozen=True)
 class Result:
-    """Everything that a run found: what all reports are made from.
+    """The result of a run, from which all reports are made.
 
-    `findings` are sorted by place and carry fingerprint and status; `silenced` are those that comments speak
-    of. `found` are the findings as a baseline holds them, `vanished` and `kept` what the baseline holds beyond
-    that. `unmatched` are sentences about settings that speak of nothing here. `followed` are installed
-    packages that were analysed too, `ended` classes that are not here and that flows ended at. `texts` are the files.
-    `left_out` counts what `per-file-ignores` speaks of, `off_by_default` what rules found that nobody asked for.
-    Without `names_errors` files that cannot be read are counted but not listed for people; only flows of the `kinds`
-    were asked for, hazards with `reports_hazards`. New findings of the codes in `failing` make the run fail.
+    `findings` are sorted by place and have a fingerprint and a status; `silenced` are those silenced by comments.
+    `found` are the findings in the form of a baseline, `vanished` and `kept` the further entries of the baseline.
+    `unmatched` are messages about settings without effect. `followed` are the analysed installed packages, `ended`
+    the classes outside the files at which flows ended. `texts` maps paths to the texts of the files.
+    `left_out` counts findings disabled by `per-file-ignores`, `off_by_default` those of rules that are off by default.
+    Without `names_errors`, text reports count unreadable files without listing them. Only flows of the `kinds` were
+    requested, and hazards if `reports_hazards`. New findings with codes in `failing` fail the run.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -75,7 +75,7 @@ class Result:
 
     @property
     def new(self) -> tuple[Finding, ...]:
-        """Return the findings that the baseline does not hold."""
+        """Return the findings that are not in the baseline."""
         return tuple(f for f in self.findings if f.status == "new")
 
 
@@ -86,12 +86,12 @@ def run(
     buffers: Mapping[Path, bytes] = NO_BUFFERS,
     known: Cache | None = None,
 ) -> Result:
-    """Lint the files at and below the paths, telling what it is at.
+    """Lint the files at and below the paths, reporting progress to `tell`.
 
-    `buffers` holds the text of files that an editor has not saved, by their absolute path; `known` is a cache to use
-    in place of the one on disk.
+    `buffers` maps absolute paths to the texts of unsaved files in an editor; `known` is a cache to use
+    instead of the one on disk.
 
-    Raises UsageError when there is nothing to lint, BaselineError when the baseline is unusable, AnalysisBug when the
+    Raises UsageError if there is nothing to lint, BaselineError if the baseline is unusable, AnalysisBug if the
     analysis crashed.
     """
     tell("Looking for files")
@@ -146,13 +146,13 @@ def run(
 
 
 def _in_vain(comment: Suppression, config: Config) -> bool:
-    """Tell whether all rules were looked for that a comment may silence; one without a code means the usual rules."""
+    """Return whether all rules that a comment may silence are enabled; without a code, these are the default rules."""
     rules = comment.rules if comment.code else [r for r in comment.rules if r not in OFF_BY_DEFAULT]
     return all(map(config.enabled, rules))
 
 
 def exceeds(result: Result, config: Config) -> bool:
-    """Tell whether the findings are what `fail_on` fails on."""
+    """Return whether the findings fail the run according to `fail_on`."""
     return bool(failing(result.new, config))
 
 
@@ -172,7 +172,7 @@ def failing(findings: Sequence[Finding], config: Config) -> frozenset[str]:
 def read(
     files: Sequence[SourceFile], buffers: Mapping[Path, bytes] = NO_BUFFERS, tell: Tell = silent
 ) -> tuple[tuple[Script, ...], tuple[SourceError, ...]]:
-    """Read the files. One that cannot be read becomes an error."""
+    """Read the files; an unreadable one becomes an error entry."""
     tell(f"Reading {len(files)} {'file' if len(files) == 1 else 'files'}")
     found = [_read(file, buffers) for file in files]
     scripts = tuple(f for f in found if isinstance(f, Script))
@@ -206,12 +206,12 @@ def _examine(
         what = f"{type(error).__name__}: {error}".rstrip(": ")
         raise AnalysisBug(
             f"tarl-lint has a bug and could not finish ({what}, {Path(last.filename).name}:{last.lineno}). "
-            "Run it with TARL_DEBUG=1 for the traceback and report that, please; --exclude helps meanwhile."
+            "Please report it with the traceback from TARL_DEBUG=1; meanwhile, --exclude may help."
         ) from None
 
 
 def _accepted(options: Options, config: Config) -> Baseline:
-    """Load the baseline, if there is one; one that is about to be written may still be missing."""
+    """Load the baseline, if there is one; it may be missing if it is about to be written."""
     path = config.baseline
     if path is None or (options.write_baseline and not path.exists()):
         return Baseline()
@@ -219,7 +219,7 @@ def _accepted(options: Options, config: Config) -> Baseline:
 
 
 class _Identities:
-    """Knows each finding's fingerprint, by way of the ROS package and of where the baseline is."""
+    """Computes the fingerprints of findings from their ROS package and the place of the baseline."""
 
     def __init__(self, files: Sequence[SourceFile], config: Config) -> None:
         self._files = {file.shown: file for file in files}
@@ -237,12 +237,12 @@ class _Identities:
         return replace(finding, fingerprint=digest, package=fingerprint.package)
 
     def entries(self, findings: Sequence[Finding]) -> tuple[Accepted, ...]:
-        """Return the findings as a baseline holds them."""
+        """Return the findings as entries of a baseline."""
         each = (Accepted(self._by_digest[f.fingerprint], 1, self._places(f)) for f in findings)
         return baseline.merged(each, ()).entries
 
     def _places(self, finding: Finding) -> tuple[str, ...]:
-        """Name the files of a finding as seen from the baseline."""
+        """Return the files of a finding, relative to the baseline."""
         flow = finding.flow
         shown = {flow.source.span.path, flow.sink.span.path} if flow else {finding.span.path}
         files = ((path, self._files.get(path)) for path in shown)
@@ -251,20 +251,20 @@ class _Identities:
 
 
 def _home(config: Config) -> Path:
-    """Return the directory that file names in the baseline are relative to."""
+    """Return the base directory of file names in the baseline."""
     return config.baseline.absolute().parent if config.baseline else Path.cwd()
 
 
 def _judge(
     files: Sequence[SourceFile], errors: Sequence[SourceError], config: Config, unasked: Set[str]
 ) -> Callable[[Accepted], bool]:
-    """Return the test whether this run can know that an accepted flow is gone.
+    """Return a function that tells whether this run can judge that an accepted finding is gone.
 
-    `unasked` are the fingerprints that rules found which are off by default: baselines of before these rules hold them.
+    `unasked` are the fingerprints of findings of rules that are off by default: older baselines contain them.
     """
     home = _home(config)
 
-    @lru_cache(maxsize=1)  # only baselines with entries ask
+    @lru_cache(maxsize=1)  # used only by baselines with entries
     def analysed() -> set[str]:
         unreadable = {error.path for error in errors}
         return {os.path.realpath(f.path) for f in files if f.shown not in unreadable}
@@ -281,15 +281,17 @@ def _judge(
 
 
 def _place(finding: Finding) -> tuple[object, ...]:
-    """Sort by publish call, then rule, then subscription."""
+    """Return the sort key: publish call, then rule, then subscription."""
     source = (finding.flow.source.span,) if finding.flow else ()
     return (finding.span, finding.code, source, finding.message)
 
 
 def _nothing(paths: Sequence[Path], notes: Notes) -> str:
     places = ", ".join(path.as_posix() for path in paths)
-    nodes = f" (there are {notes.cpp_nodes} C++ nodes, which it does not read)" if notes.cpp_nodes else ""
+    nodes = (
+        f" (there are {notes.cpp_nodes} C++ nodes, which tarl-lint does not read)" if notes.cpp_nodes else ""
+    )
     return (
-        f"There is no Python file to lint in {places}{nodes}: name a file, or a directory that holds some. "
-        "What .gitignore or exclude names, is hidden, or was installed is left out."
+        f"There is no Python file to lint in {places}{nodes}: name a file, or a directory with Python files. "
+        "Hidden and installed files, and those that .gitignore or exclude match, are skipped."
     )
