@@ -137,7 +137,6 @@ class LossInterval(NamedTuple):
     low: float
     high: float
     confidence: float
-    exact: bool = False
 
 
 @dataclass(frozen=True, slots=True)

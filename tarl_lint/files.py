@@ -1,4 +1,4 @@
-"""Display of paths, and atomic writing of files."""
+"""Files: how they are named to people, and how they are written whole or not at all."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from pathlib import Path
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a file under another name and rename it, so that no reader sees a partial file.
+    """Write a file under another name and rename it, so that nobody ever reads half of it.
 
-    A device or pipe is written to directly and never replaced.
+    What is no file, as a device or a pipe, is written to and never replaced.
     """
-    target = path.resolve()  # follow a link instead of replacing it
+    target = path.resolve()  # through a link, not over it
     if target.exists() and not target.is_file():
         target.write_text(text, encoding="utf-8", errors="surrogateescape", newline="\n")
         return
@@ -29,7 +29,7 @@ def write_whole(path: Path, text: str) -> None:
 
 
 def shown(path: Path) -> str:
-    """Return a path for display: with slashes, relative to the working directory if below it."""
+    """Write a path for people: with slashes, relative to the working directory when below it."""
     try:
         return path.absolute().relative_to(Path.cwd()).as_posix()
     except ValueError:

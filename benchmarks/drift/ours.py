@@ -37,8 +37,7 @@ def prepared(stage: Stage, seed: int, budget: int = Options.budget, search: str 
     fixture = Fixture(
         stage.test, seed, marked.sensors, stage.sites.lists, offline.topics, offline.sample, tables
     )
-    plugged = ":" in search  # a peer changes constants only
-    options = Options(mode="repair", seed=seed, budget=budget, searches=(search,), structure=not plugged)
+    options = Options(mode="repair", seed=seed, budget=budget, searches=(search,))
     online = run_online(stage.rollout, fixture, marked, options, stage.sites, stage.drift, quiet)
     patches = stage.folder / ".tarl" / "patches"
     return Order(

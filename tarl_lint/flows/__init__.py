@@ -1,1 +1,1 @@
-"""Flows and their steps, computed from the value-flow graph."""
+"""From the value-flow graph to flows as people see them."""

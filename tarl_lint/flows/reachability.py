@@ -1,8 +1,8 @@
-"""Reachability from sources to sinks: which pairs are flows, and through which statements."""
+"""From sources to sinks: which pairs are flows, and through which statements."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -12,7 +12,7 @@ from tarl_lint.flows.shortest_path import shortest_path
 from tarl_lint.flows.statement_text import Texts, Written
 from tarl_lint.flows.topological_order import before_loops, in_order
 from tarl_lint.interpret.fixpoint import Linker
-from tarl_lint.memory.value_flow_graph import Place
+from tarl_lint.memory.value_flow_graph import MERGED, Place
 from tarl_lint.memory.values import Branches
 from tarl_lint.model import Dependence, Flow, Role, Sink, Source, Span, Step
 from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
@@ -31,11 +31,11 @@ ROLES: Mapping[str, Role] = {
 
 @dataclass(slots=True)
 class Reach:
-    """Nodes that a source reaches: by data edges alone, and by any edge."""
+    """What a source reaches: by data alone, and in any way."""
 
     data: set[int]
     any: set[int]
-    counted: Mapping[int, set[int]]  # element counts → the source's data that it put there under a condition
+    counted: Mapping[int, set[int]]  # counts of elements → what of its data it decided to put there
 
 
 class Tracer:
@@ -64,7 +64,7 @@ class Tracer:
         return tuple(sorted(found, key=lambda f: (f.sink.span, f.source.span)))
 
     def reach(self, record: SourceRecord) -> Reach:
-        """Return the nodes that messages of a source reach."""
+        """Return what the messages of a source reach."""
         data = closure(record.nodes, [self.forward_data])
         counted: dict[int, set[int]] = {}
         while more := self.counts(data):
@@ -73,7 +73,7 @@ class Tracer:
         return Reach(data, closure(record.nodes, [self.forward_data, self.forward_control]), counted)
 
     def counts(self, data: set[int]) -> dict[int, set[int]]:
-        """Return the element counts, not yet in `data`, of containers whose elements come from `data`."""
+        """Return the counts, not in `data` yet, of elements that are made from it and that it puts there."""
         graph = self.graph
         found: dict[int, set[int]] = {}
         for node, elements in graph.counts.items():
@@ -86,7 +86,7 @@ class Tracer:
     def flow(
         self, source: Source, origin: SourceRecord, reach: Reach, sink: Sink, record: SinkRecord
     ) -> Flow | None:
-        """Return the flow of a pair, None if the source does not reach the sink."""
+        """Return the flow of a pair, None when nothing of the source reaches the sink."""
         ends = record.nodes & reach.any
         if not ends:
             return None
@@ -108,18 +108,18 @@ class Tracer:
         return Flow("explicit" if explicit else "implicit", source, sink, steps, chain)
 
     def data_formers(self, reach: Reach) -> Callable[[int], list[int]]:
-        """Return a function from a node to the data it is made from, including the elements behind a count."""
+        """Return what tells the data that a node is made from, the elements that a count is made from included."""
         return lambda node: sorted(self.graph.data[node] | reach.counted.get(node, set()))
 
     def made_from(self, ends: set[int], reach: Reach) -> set[int]:
-        """Return the nodes of a source's data from which the ends are computed."""
+        """Return the data of a source that its ends are made from."""
         found = closure(ends, [self.graph.data], reach.data)
         while more := set().union(*(reach.counted[n] for n in found & reach.counted.keys())) - found:
             found |= closure(more, [self.graph.data], reach.data)
         return found
 
     def made_there(self, nodes: set[int]) -> set[int]:
-        """Return the constants that conditions among the nodes choose, with the nodes that produce them."""
+        """Return the constants that conditions among the nodes choose, with the statements that make them."""
         graph = self.graph
         found: set[int] = set()
         for node in nodes:
@@ -135,7 +135,7 @@ class Tracer:
         return found
 
     def _makers(self, dep: int, ways: Branches, found: set[int]) -> None:
-        """Add the nodes from which a value is made, as far as they are under the conditions that choose it."""
+        """Add what a value is made from, as far as it stands under the conditions that choose it."""
         pending = [dep] if ways else []
         while pending:
             for near in self.graph.data[pending.pop()]:
@@ -149,9 +149,9 @@ class Tracer:
     def steps(
         self, origin: SourceRecord, on_data: set[int], on_any: set[int], record: SinkRecord
     ) -> tuple[tuple[Step, ...], dict[int, int], dict[int, int]]:
-        """Return the taint list: data and control steps of the nodes, and the context steps.
+        """Return the taint list: data and control steps of the nodes, and what is around them.
 
-        Also return node → statement, and statement → index in the list.
+        With it come node → statement, and statement → place in the list.
         """
         dependence: dict[int, Dependence] = {}
         written: dict[int, Written] = {}
@@ -195,7 +195,7 @@ class Tracer:
         written: dict[int, Written],
         dependence: dict[int, Dependence],
     ) -> list[tuple[int, int]]:
-        """Add the calls between conditions and the values stored under them; return the order constraints."""
+        """Add the calls by which decisions lead to what functions store; return what comes before what."""
         edges: dict[tuple[int, int], None] = {}
         for decision, calls, made in entrances(self.graph, nodes):
             chain = [statement_of.get(decision)]
@@ -211,7 +211,7 @@ class Tracer:
         return list(edges)
 
     def statement(self, node: int) -> Written | None:
-        """Return the statement of a node; for an arriving message, the header of the callback."""
+        """Return the statement that a node belongs to; of a message arriving, the callback's header."""
         if node not in self._statements:
             self._statements[node] = self._statement(self.graph.places[node])
         return self._statements[node]
@@ -230,7 +230,7 @@ class Tracer:
     def edges(
         self, nodes: Iterable[int], statement_of: Mapping[int, int], written: Mapping[int, Written]
     ) -> list[tuple[int, int]]:
-        """Return the order constraints between statements, without those carried by a loop to its next iteration."""
+        """Return which statement comes before which; what a loop carries to its next turn says nothing."""
         found: dict[tuple[int, int], None] = {}
         turns: list[tuple[int, int]] = []
         function: dict[int, object] = {}
@@ -239,7 +239,7 @@ class Tracer:
             if after is None:
                 continue
             function[after] = self.graph.places[node].frame.function
-            for former in self.formers(node):
+            for former in self.before(node):
                 before = statement_of.get(former)
                 if before is None or before == after:
                     continue
@@ -250,15 +250,27 @@ class Tracer:
                     found[before, after] = None
         return [*found, *before_loops(found, turns, function)]
 
+    def before(self, node: int) -> Iterator[int]:
+        """Yield what a node is made from or depends on, in place of what is no statement what leads there."""
+        pending = list(reversed(self.formers(node)))
+        seen: set[int] = set()
+        while pending:
+            former = pending.pop()
+            if self.graph.places[former].role == MERGED and former not in seen:
+                seen.add(former)
+                pending += reversed(self.formers(former))
+            elif former not in seen:
+                yield former
+
     def formers(self, node: int) -> list[int]:
-        """Return the nodes that a node is made from or depends on, in order."""
+        """Return what a node is made from or depends on, in order."""
         known = self._formers.get(node)
         if known is None:
             known = self._formers[node] = sorted(self.graph.data[node] | self.graph.control[node])
         return known
 
     def step(self, written: Written, span: Span, dependence: Dependence, known: Role | None) -> Step:
-        """Return a statement as a step; an unknown role is derived from the syntax."""
+        """Return a statement as a step; what is not known of its role its syntax tells."""
         text = written.text
         role = ROLES.get(type(written.node).__name__, "assign")
         if known is not None:
@@ -272,7 +284,7 @@ class Tracer:
     # --- ends ---------------------------------------------------------------------------------------------
 
     def source(self, record: SourceRecord) -> Source:
-        """Return a source in the form of the public model."""
+        """Return a source as others see it."""
         topics = tuple(sorted(record.topics))
         callback = ", ".join(sorted(record.callbacks))
         name = ", ".join(topics) or f"line {record.pos[0]}"
@@ -290,7 +302,7 @@ class Tracer:
         )
 
     def sink(self, record: SinkRecord) -> Sink:
-        """Return a sink in the form of the public model."""
+        """Return a sink as others see it."""
         topics = tuple(sorted(record.topics))
         name = ", ".join(topics) or f"line {record.pos[0]}"
         same = sorted(
@@ -315,7 +327,7 @@ class Tracer:
 
 
 def ending_in_publish_call(path: Sequence[int], steps: Sequence[Step]) -> tuple[int, ...]:
-    """Return a path with its publish call last; functions called in its arguments otherwise come after it."""
+    """Return a path with its publish call last: the call is on the way before what its arguments call."""
     calls = [place for place in path if steps[place].role == "publish"]
     return (*(place for place in path if place not in calls), *calls[-1:])
 

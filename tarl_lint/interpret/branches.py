@@ -72,8 +72,9 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         again = joins.joined(ctx, [head, *backs]) if backs else head
         if again == head:
             break
-        if ctx.spent > MAX_STATEMENTS:
+        if ctx.worked > MAX_STATEMENTS:
             ctx.cut[ctx.program] = None
+            ctx.store.reads.whole = False
             break  # loops in loops in loops take as many passes as all of theirs multiplied
         head = again
     return _loop_end(ctx, s, done, table["break"], frame)
@@ -84,6 +85,7 @@ def _told_apart(ctx: Interpreter, source: Value) -> list[Value]:
     elements = sizes.unpacked(ctx, source) or []
     if not 1 < len(elements) <= MAX_TURNS:
         return []
+    ctx.look(o for v in elements for o in v.pts)
     laden = any(v.deps or any(o.laden or o.kind == "message" for o in v.pts) for v in elements)
     return elements if laden else []
 
@@ -133,7 +135,7 @@ def _loop_head(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame) -> tup
 
 def _length(ctx: Interpreter, source: Value, node: int) -> None:
     """How often a loop runs depends on a container's length: on what chose to add elements, not on them."""
-    ours = frozenset(filter(sizes.sized, source.pts))
+    ours = frozenset(o for o in source.pts if sizes.sized(ctx, o))
     ctx.graph.flow(sizes.length(ctx, source), node)
     ctx.graph.choice(sizes.placed(ctx, ours), node)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 
-from tarl_lint.interpret import displays, nullness
+from tarl_lint.interpret import displays, nullness, replay
 from tarl_lint.interpret.budget import ALL_LEISURE, LEISURE, MANY, MAX_CALLS, MAX_FRAMES, OFTEN
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
@@ -13,7 +13,7 @@ from tarl_lint.memory import heap, joins, recency, updates
 from tarl_lint.memory.abstract_gc import lasting
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import item_field
-from tarl_lint.memory.store import BORN
+from tarl_lint.memory.store import BORN, Delta
 from tarl_lint.memory.values import BOTTOM, NONE, UNKNOWN, Nodes, Obj, Value, join, lineage, pointer
 from tarl_lint.models import sizes
 
@@ -37,11 +37,12 @@ def make_frame(
     if not isinstance(closure.info, tuple):
         return None
     function, outer, program, cls = closure.info
-    runs = ctx.activations[function] = ctx.activations.get(function, 0) + 1
+    runs = ctx.activations.get(function, 0) + 1
     if len(ctx.stack) > MAX_CALLS or [f.function for f in ctx.stack].count(function) > 1:
         return None
-    if ctx.spent > ctx.limit or (ctx.spent > MANY and runs > OFTEN):
+    if ctx.worked > ctx.limit or (ctx.worked > MANY and runs > OFTEN):
         ctx.cut[ctx.program] = None
+        ctx.store.reads.whole = False
         return None
     statement = caller.statement.id if caller.statement is not None else -1
     key = (caller.id, statement, call.slot, closure.key, receiver, *caller.turn)
@@ -50,6 +51,7 @@ def make_frame(
         made = ctx.frames_of[ctx.program] = ctx.frames_of.get(ctx.program, 0) + 1
         if made > MAX_FRAMES:
             ctx.cut[ctx.program] = None
+            ctx.store.reads.whole = False
             return None
         frame = Frame(key, len(ctx.frames) + 1, function, program, ctx.module_objects[program.name])
         ctx.frames[key] = frame
@@ -71,8 +73,9 @@ def invoke(
 ) -> Value:
     """Run a function on arguments; where no data goes in and nothing takes part, only so far."""
     before, start = ctx.leisure, ctx.spent
-    matters = not isinstance(closure.info, tuple) or closure.info[2].takes_part or carries(arguments)
+    matters = not isinstance(closure.info, tuple) or closure.info[2].takes_part or carries(ctx, arguments)
     if not matters and before is not None and start > before:
+        ctx.store.reads.whole = False
         return _again(ctx, closure, arguments)
     if matters:
         ctx.leisure = None
@@ -94,24 +97,20 @@ def _invoke(
         return _again(ctx, closure, arguments)
     ctx.called.add((frame.function.module, frame.function.pos[0]))
     passed = pass_arguments(ctx, arguments, caller, call)
-    ctx.store.push()
-    depth = len(ctx.store.layers) - 1
-    frame.depth_of_layers = depth
-    frame.root_waits = caller.root_waits
-    frame.jumps, frame.tries, frame.escapes = [], [], []
-    bind_parameters(ctx, frame, closure, passed)
     _note_arguments(ctx, frame, arguments, caller, call)
     frame.guards |= frozenset(ctx.guards)
-    ctx.guards, guards = [], ctx.guards
-    ctx.stack.append(frame)
-    result = ctx.ops.run(ctx, frame)
-    ctx.stack.pop()
-    ctx.guards = guards
-    nullness.note_result(ctx, call, [v for _, v in frame.returns], frame)
-    if frame.escapes:
+    frame.root_waits = caller.root_waits
+    run = replay.run(ctx, frame, passed, lambda: _execute(ctx, frame, closure, passed))
+    result = run.result
+    nullness.note_result(ctx, call, run.returned, frame)
+    if run.escapes:
         ctx.ops.escaped(ctx, frame, caller)
-    ctx.store.cut(depth)
-    joins.merge(ctx, [lasting(d, frame, _handed(frame, v), ctx.given) for d, v in frame.returns] or [{}])
+    if run.noted:
+        ctx.store.absorb(run.delta)
+    else:
+        for key, value in run.delta.items():
+            ctx.store.put(key, value)
+        run.noted = True
     if frame.function.generator:
         collected = recency.allocate(ctx, "sequence", caller, ("generator", call.slot))
         updates.add_element(ctx, pointer(collected), frame.yielded)
@@ -119,13 +118,39 @@ def _invoke(
     return result
 
 
+def _execute(ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments) -> Delta:
+    """Execute a function's body in a layer of its own; return what of its changes lasts."""
+    function = frame.function
+    ctx.activations[function] = ctx.activations.get(function, 0) + 1
+    ctx.store.push()
+    depth = len(ctx.store.layers) - 1
+    frame.depth_of_layers = depth
+    frame.jumps, frame.tries, frame.escapes = [], [], []
+    bind_parameters(ctx, frame, closure, passed)
+    ctx.guards, guards = [], ctx.guards
+    ctx.stack.append(frame)
+    ctx.ops.run(ctx, frame)
+    ctx.stack.pop()
+    ctx.guards = guards
+    ctx.store.cut(depth)
+    reads = ctx.store.reads
+    ends = [lasting(d, frame, _handed(frame, v), ctx.given, reads) for d, v in frame.returns]
+    return joins.joined(ctx, ends or [{}])
+
+
 def _again(ctx: Interpreter, closure: Obj, arguments: Arguments) -> Value:
     """Return the result of a recursive call: what is known by now, and data of the arguments."""
     known = BOTTOM
     for frame in ctx.stack:
         if frame.key[3] == closure.key if isinstance(frame.key, tuple) and len(frame.key) > 3 else False:
+            ctx.store.reads.ask(_result, frame)
             known = join(known, frame.result)
     return join(known, Value(all_used(ctx, arguments)))
+
+
+def _result(frame: Frame) -> Value:
+    """Return what a function has returned so far in a call context."""
+    return frame.result
 
 
 def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: ir.Call) -> Arguments:
@@ -259,9 +284,11 @@ def _handed(frame: Frame, returned: Value) -> list[Obj]:
     return [*returned.pts, *frame.yielded.pts, *raised]
 
 
-def carries(arguments: Arguments) -> bool:
+def carries(ctx: Interpreter, arguments: Arguments) -> bool:
     """Tell whether any data is in what is passed."""
     plain, named = arguments
+    for value in (*plain, *named.values()):
+        ctx.look(value.pts)
     return any(v.deps or any(o.laden for o in v.pts) for v in (*plain, *named.values()))
 
 

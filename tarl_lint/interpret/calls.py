@@ -162,6 +162,8 @@ def call_object(
 ) -> Value:
     """Call one object; a method's receiver is what `carriers` handed on, which may have been chosen by data."""
     kind = target.kind
+    if kind in ("partial", "weak"):
+        ctx.store.reads.look(target)
     if qualified := ctx.ops.named_by_settings(ctx, target):
         return ctx.ops.call_library(ctx, qualified, arguments, frame, call)
     if kind == "closure":

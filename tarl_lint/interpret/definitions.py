@@ -85,6 +85,7 @@ def run_class(ctx: Interpreter, statement: ir.Class, frame: Frame) -> None:
         ]
         if not value.pts:
             info.external.append("?")
+    ctx.shared.edition += isinstance(cls.info, ClassInfo) and _inherits(cls.info) != _inherits(info)
     cls.info = info
     body = Frame(
         ("class", cls.key),
@@ -103,6 +104,10 @@ def run_class(ctx: Interpreter, statement: ir.Class, frame: Frame) -> None:
     ctx.ops.assign(ctx, statement.target, made if made.pts else pointer(cls), frame)
 
 
+def _inherits(info: ClassInfo) -> tuple[list[Obj], list[str]]:
+    return info.bases, info.external
+
+
 def frame_number(ctx: Interpreter, key: object) -> int:
     """Return a frame's number, the same at every run."""
     return ctx.frame_numbers.setdefault(key, -2 - len(ctx.frame_numbers))
@@ -117,6 +122,7 @@ def import_names(ctx: Interpreter, s: ir.Import, frame: Frame) -> bool:
             star = found.name if found is not None else module
             if star not in frame.program.stars:
                 frame.program.stars.append(star)
+                ctx.shared.edition += 1
         elif target is not None:
             ctx.ops.assign(ctx, target, ctx.ops.imported(ctx, module, member, importer), frame)
     return True

@@ -112,7 +112,10 @@ def mark(ctx: Interpreter, node: int, expr: ir.Expr, value: Value, frame: Frame)
 
 def _parameter_call(ctx: Interpreter, expr: ir.Expr, value: Value) -> bool:
     """Tell whether an expression is a call that gives a ROS parameter."""
-    return isinstance(expr, ir.Call) and bool(value.deps) and value.deps <= ctx.graph.parameters
+    if not isinstance(expr, ir.Call) or not value.deps:
+        return False
+    ctx.graph.reads.ask(ctx.graph.parameters.issuperset, value.deps)
+    return value.deps <= ctx.graph.parameters
 
 
 def _conversion(expr: ir.Expr) -> bool:

@@ -142,7 +142,7 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
                 result = join(result, heap.arrive(ctx, element(ctx, obj, key), base.deps))
         else:
             found = heap.read_any(ctx, obj)
-            if found is BOTTOM and obj.kind == "mapping" and obj.info is not None:
+            if found is BOTTOM and obj.kind == "mapping" and _makes(ctx, obj):
                 found = ctx.ops.missing(ctx, obj, ANY)
             result = join(result, heap.arrive(ctx, found, base.deps))
     return Value(result.deps | extra, result.pts, result.consts)
@@ -150,6 +150,7 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
 
 def member(ctx: Interpreter, cls: Obj, name: Value) -> Value:
     """Return what `Class[name]` may be: a member of an enumeration, any of them when the name is not known."""
+    ctx.store.reads.look(cls)
     names = name.texts() or tuple(n for n in cls.fields if not n.startswith("_"))
     return join_all(v for n in names if not (v := heap.read_field(ctx, cls, n)).pts & functions(ctx, cls))
 
@@ -169,9 +170,15 @@ def element(ctx: Interpreter, obj: Obj, key: object) -> Value:
     if obj.kind == "sequence" and ctx.store.get((obj, name)) is None and heap.content(ctx, obj) is BOTTOM:
         return BOTTOM
     value = heap.read_field(ctx, obj, name)
-    if value is BOTTOM and obj.kind == "mapping" and obj.info is not None:
+    if value is BOTTOM and obj.kind == "mapping" and _makes(ctx, obj):
         return ctx.ops.missing(ctx, obj, name)
     return value
+
+
+def _makes(ctx: Interpreter, mapping: Obj) -> bool:
+    """Tell whether a mapping makes what is asked for and not there."""
+    ctx.store.reads.look(mapping)
+    return mapping.info is not None
 
 
 def _slice(ctx: Interpreter, expr: ir.Slice, frame: Frame) -> Value:

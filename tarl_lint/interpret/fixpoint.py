@@ -114,9 +114,10 @@ class Linker(Interpreter):
             self.pending.update(self.doubts.pop(node))
 
     def _run(self, root: Root, run: Callable[[Root], None]) -> None:
-        self.store = Store(self.shared, root)
+        self.store = Store(self.shared, root, gather=self.gathered)
+        self.graph.reads = self.store.reads
         self.stack = []
-        self.spent = 0
+        self.spent = self.saved = 0
         self.limit = HASTE if self.hurried(root.program) else MAX_STATEMENTS
         self.graph.edges = self.edges_of.get(root.program, 0)
         self.activations.clear()
@@ -129,7 +130,7 @@ class Linker(Interpreter):
             self._failed(where.path, error)
             return
         finally:
-            self.totals[root.program] = self.totals.get(root.program, 0) + self.spent
+            self.totals[root.program] = self.totals.get(root.program, 0) + self.worked
             self.edges_of[root.program] = self.graph.edges
             if self.graph.edges >= MAX_EDGES:
                 self.cut[root.program] = None

@@ -6,7 +6,8 @@ those of higher ones through `ctx.ops` (`operations.py` declares them, `wiring.p
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+import os
+from collections.abc import Callable, Hashable, Iterable, Sequence
 
 from tarl_lint.config import Config
 from tarl_lint.interpret.budget import LOOKS, MAX_STATEMENTS, PATIENCE
@@ -26,6 +27,11 @@ NONE_ONLY = frozenset([None])
 
 
 Probe = Callable[["Interpreter", Frame, ir.Stmt, ir.Expr, Value], None]
+
+
+def control_of(function: ir.Function) -> object:
+    """Return a function's control dependence, which is another one when a call in it is known to raise more."""
+    return function.control
 
 
 class Interpreter:
@@ -62,6 +68,7 @@ class Interpreter:
         ] = {}  # decision or node that no source led to → roots that went by that
         self.guards: list[tuple[int, str]] = []  # decisions inside the expression that is being evaluated
         self.spent = 0  # statements executed in this run of a root, and looks and edges for so many
+        self.saved = 0  # of it in calls that were replayed
         self.totals: dict[str, int] = {}  # the same in all runs before, of each program
         self.edges_of: dict[str, int] = {}  # edges that the runs of each program made
         self.frames_of: dict[str, int] = {}  # activations of each program
@@ -82,6 +89,7 @@ class Interpreter:
         self.ended: set[str] = (
             set()
         )  # classes that are not here and whose methods data or callbacks are passed to
+        self.checking = os.environ.get("TARL_CHECK", "") not in ("", "0")  # execute what could be replayed
         self.probe: Probe | None = None
         self.watch: Callable[[Frame, ir.Stmt], None] | None = None
 
@@ -89,6 +97,11 @@ class Interpreter:
     def total(self) -> int:
         """Return how much work was done in all runs before."""
         return sum(self.totals.values())
+
+    @property
+    def worked(self) -> int:
+        """Return what this run of a root took so far, replayed calls left out."""
+        return self.spent - self.saved
 
     @property
     def program(self) -> str:
@@ -106,6 +119,21 @@ class Interpreter:
         """Count looks into objects, and what was asked of the graph and added to it meanwhile, as work."""
         self.spent += (looks + self.graph.asked) // LOOKS
         self.graph.asked %= LOOKS
+
+    def absence(self, key: Key | None) -> tuple[bool, bool, int]:
+        """Return what is known of a place where None may be stored; without one whether any may hold both."""
+        if key is None:
+            return False, bool(self.optional), 0
+        return key in self.vacant, key in self.optional, len(self.came.get(key, ()))
+
+    def given_back(self, call: ir.Call) -> tuple[bool, int]:
+        """Return what is known of the None that a call may give."""
+        return call in self.doubtful, len(self.came_out[call]) if call in self.came_out else -1
+
+    def look(self, objects: Iterable[Obj]) -> None:
+        """Note that it matters what objects stand for and whether data is in them."""
+        for obj in objects:
+            self.store.reads.look(obj)
 
     # --- places -----------------------------------------------------------------------------------------
 
@@ -144,12 +172,14 @@ class Interpreter:
     def control(self, frame: Frame) -> Control:
         """Return the control dependence of a frame's function."""
         function = frame.function
-        if frame.cls is None and (frame.control is None or frame.control is not function.control):
+        if frame.cls is None:
             if function.control is None:
                 body = lower_body(function, frame.program.package)
                 function.control = control_dependence(body, function.raising)
-            frame.control = function.control
-            frame.closures = {}
+            if frame.control is not function.control:
+                frame.control = function.control
+                frame.closures = {}
+            self.graph.reads.ask(control_of, function)
         assert isinstance(frame.control, Control)  # noqa: S101 - set above, for classes when they are made
         return frame.control
 
@@ -162,6 +192,12 @@ class Interpreter:
             return known
         where = pos or (statement.pos if statement is not None else frame.function.pos)
         return self.graph.node(key, Place(frame, statement, role, where), self.branches(frame, statement))
+
+    def gathered(self, key: Key, value: Value) -> Value:
+        """Return a value that many meet in, and more may be added to, as made from one node."""
+        if not self.stack or not self.graph.meets(key, value.deps, carriers=bool(value.pts)):
+            return value
+        return Value(self.graph.merged(key, value.deps, self.stack[-1]), value.pts, value.consts)
 
     def carry(self, value: Value, node: int) -> Value:
         """Return the value as passed on by a statement's node."""
@@ -184,6 +220,9 @@ class Interpreter:
         for branch, _ in branches:
             if branch in live:
                 return frozenset([node])
+        unreached = graph.reads.unreached
+        unreached.add(node)
+        unreached.update([branch for branch, _ in branches])
         for branch, _ in branches:
             self.doubts.setdefault(branch, {})[self.store.root] = None
         if graph.data[node] or graph.control[node]:
@@ -203,7 +242,10 @@ class Interpreter:
         """Return what a value is made from. What is the same constant on every way was chosen by nothing."""
         if not value.deps or not value.fixed():
             return value.deps
-        return frozenset(self.graph.unchosen(d) for d in value.deps if not self.graph.control[d])
+        free = [d for d in value.deps if not self.graph.control[d]]
+        for node in free:
+            self.graph.reads.ask(self.graph.free, node)
+        return frozenset(map(self.graph.unchosen, free))
 
     def nothing_yet(self, value: Value) -> bool:
         """Tell whether nothing was stored so far where a value was looked for, or only None."""
@@ -211,10 +253,17 @@ class Interpreter:
             return False
         if value.consts == NONE_ONLY:
             return True
-        if value.consts is None or value.consts or not self.patient:
+        if value.consts is None or value.consts:
+            return False
+        self.store.reads.ask(Interpreter.hopes, self)
+        if not self.patient:
             return False
         self.waiting[self.store.root] = None
         return True
+
+    def hopes(self) -> bool:
+        """Tell whether what is not known yet may be stored by a root that runs later."""
+        return self.patient
 
     def release(self) -> None:
         """Let go of everything, so that nothing is left that holds itself. Nothing can be asked afterwards."""
@@ -223,5 +272,7 @@ class Interpreter:
         for record in self.sources.values():
             for message in record.messages.values():
                 message.release()
+        self.store = Store(self.shared, Root("none", "none"))
+        self.graph.reads = self.store.reads
         for table in (self.objects, self.module_objects, self.frames, self.roots, self.sources):
             table.clear()

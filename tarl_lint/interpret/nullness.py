@@ -28,9 +28,13 @@ def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes |
 
 def _absence(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Nodes | None:
     """Return what decided whether anything is there, None where that may be data."""
-    if isinstance(expr, ir.Call) and expr in ctx.came_out:
-        return None if expr in ctx.doubtful else frozenset(ctx.came_out[expr])
+    if isinstance(expr, ir.Call):
+        ctx.store.reads.ask(ctx.given_back, expr)
+        if expr in ctx.came_out:
+            return None if expr in ctx.doubtful else frozenset(ctx.came_out[expr])
     keys = list(_keys(ctx, expr, frame))
+    for key in keys:
+        ctx.store.reads.ask(ctx.absence, key)
     if any(k in ctx.optional for k in keys):
         return None
     if isinstance(expr, (ir.Item, ir.Call)):
@@ -44,7 +48,7 @@ def note_absence(ctx: Interpreter, target: ir.Expr, source: ir.Expr, value: Valu
     """Remember that a target gets None, or what may be None as well as something else."""
     if value.consts == NONE_ONLY and not value.pts:
         ctx.vacant.update(_keys(ctx, target, frame))
-    elif _holds_data(value) and (decides := _absence(ctx, source, frame)) is not None:
+    elif _holds_data(ctx, value) and (decides := _absence(ctx, source, frame)) is not None:
         _note_copy(ctx, list(_keys(ctx, target, frame)), value, decides, frame, target.pos)
     elif _may_be_none(ctx, source, frame):
         ctx.optional.update(_keys(ctx, target, frame))
@@ -52,7 +56,7 @@ def note_absence(ctx: Interpreter, target: ir.Expr, source: ir.Expr, value: Valu
 
 def note_passed(ctx: Interpreter, key: Key, source: ir.Expr, value: Value, frame: Frame) -> None:
     """Remember where a value is held that is None only as long as nothing has come."""
-    if isinstance(source, COPIED) and _holds_data(value):
+    if isinstance(source, COPIED) and _holds_data(ctx, value):
         decides = _absence(ctx, source, frame)
         if decides is not None:
             _note_copy(ctx, [key], value, decides, frame, source.pos)
@@ -63,6 +67,8 @@ def note_taken(
 ) -> None:
     """Remember the same of a target that gets an element of a sequence."""
     keys = [(o, item_field(number)) for o in held.pts if o.kind == "sequence"]
+    for key in keys:
+        ctx.store.reads.ask(ctx.absence, key)
     if any(k in ctx.vacant for k in keys):
         decides = frozenset(n for k in keys for n in ctx.came.get(k, ()))
         _note_copy(ctx, list(_keys(ctx, target, frame)), value, decides, frame, target.pos)
@@ -79,12 +85,14 @@ def _note_copy(
         ctx.came.setdefault(key, set()).add(there)
 
 
-def _holds_data(value: Value) -> bool:
+def _holds_data(ctx: Interpreter, value: Value) -> bool:
+    ctx.look(value.pts)
     return bool(value.deps) or any(o.laden for o in value.pts)
 
 
 def note_result(ctx: Interpreter, call: ir.Call, returned: list[Value], frame: Frame) -> None:
     """Remember a call of a function that gives None beside other things, or only as long as nothing has come."""
+    ctx.store.reads.ask(ctx.absence, (frame, RETURNED))
     without = [v.consts == NONE_ONLY and not v.pts for v in returned]
     if any(without) and not all(without):
         ctx.doubtful.add(call)
@@ -95,11 +103,17 @@ def note_result(ctx: Interpreter, call: ir.Call, returned: list[Value], frame: F
 def _may_be_none(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> bool:
     if isinstance(expr, ir.Call):
         name = expr.function.name if isinstance(expr.function, (ir.Attribute, ir.Name)) else ""
+        ctx.store.reads.ask(ctx.given_back, expr)
         return expr in ctx.doubtful or name in catalog.MAY_BE_NONE
     if isinstance(expr, ir.Choice):
         return any(_none(arm) or _may_be_none(ctx, arm, frame) for arm in (expr.then, expr.other))
-    if isinstance(expr, (ir.Name, ir.Attribute)) and ctx.optional:
-        return any(k in ctx.optional for k in _keys(ctx, expr, frame))
+    if isinstance(expr, (ir.Name, ir.Attribute)):
+        keys = list(_keys(ctx, expr, frame)) if ctx.optional else []
+        if not keys:
+            ctx.store.reads.ask(ctx.absence, None)
+        for key in keys:
+            ctx.store.reads.ask(ctx.absence, key)
+        return any(k in ctx.optional for k in keys)
     return False
 
 

@@ -110,7 +110,7 @@ def truth(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes
     said = dunder_methods.special(ctx, value, "__bool__", (), frame, frame.function.pos)
     if said is not None:
         return ctx.use(said)
-    ours = frozenset(filter(sizes.sized, value.pts))
+    ours = frozenset(o for o in value.pts if sizes.sized(ctx, o))
     kept = frozenset(o for o in value.pts - ours if not _always_true(ctx, o))
     deps = ctx.use(Value(value.deps, kept)) | sizes.length(ctx, Value(pts=ours))
     if ours:

@@ -141,6 +141,7 @@ def _assign_item(ctx: Interpreter, target: ir.Item, value: Value, frame: Frame) 
 def set_property(ctx: Interpreter, base: Value, target: ir.Attribute, value: Value, frame: Frame) -> bool:
     """Call the setter where the attribute is a property."""
     done = False
+    ctx.store.reads.ask(ctx.setters.__contains__, target.name)
     if target.name not in ctx.setters:
         return done
     for obj in base.pts:

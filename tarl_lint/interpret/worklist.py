@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Set
 
 from tarl_lint.interpret.budget import EXCHANGED
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory.frames import Frame
-from tarl_lint.memory.store import Root
-from tarl_lint.memory.values import ABSENT
+from tarl_lint.memory.store import Root, private
+from tarl_lint.memory.values import ABSENT, Key
 
 
 def add_root(ctx: Interpreter, root: Root, run: Callable[[Root], None], *, news: bool = False) -> None:
@@ -24,23 +24,38 @@ def add_root(ctx: Interpreter, root: Root, run: Callable[[Root], None], *, news:
 
 def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - one signature for all
     """Let other roots see what was stored, and store what they may."""
-    store, root = ctx.store, ctx.store.root
-    own = store.own()
-    ctx.spent += len(own) // EXCHANGED
-    store.waited = True
-    for key in own:
+    store, heeds = ctx.store, ctx.store.root.heeds
+    reads = store.reads
+    reads.wait(len(heeds))
+    reads.keys.update((heeds & store.now.keys()) - reads.written)
+    changed = show(ctx)
+    ctx.spent += len(changed) // EXCHANGED
+    for key in changed:
+        news = store.others(key) if key in heeds else None
+        if news is None:
+            continue
         value = store.now[key]
-        if value is not ABSENT and store.exchanged.get(key) is not value:
-            store.exchanged[key] = value
-            mine = store.mine(key, value)
-            if mine is not None:
-                ctx.shared.leave(ctx.shared.pauses, root, key, mine)
-        news = store.others(key) if key in root.heeds else None
-        if news is not None:
-            former = ctx.ops.default(ctx, *key) if value is ABSENT else value  # a field of a new object
-            both = store.admit(key, former, news)
-            if both is not value:
-                store.put(key, both)
+        former = ctx.ops.default(ctx, *key) if value is ABSENT else value  # a field of a new object
+        both = store.admit(key, former, news)
+        if both is not value:
+            store.put(key, both)
+            store.exchanged[key] = both
+
+
+def show(ctx: Interpreter, but: Set[Key] = frozenset()) -> list[Key]:
+    """Let other roots see what was stored since this one waited last; return where that was."""
+    store, root, exchanged = ctx.store, ctx.store.root, ctx.store.exchanged
+    store.waited = True
+    changed = [
+        key for key, value in store.now.items() if exchanged.get(key) is not value and not private(key)
+    ]
+    changed = [key for key in changed if key not in but] if but else changed
+    for key in changed:
+        value = exchanged[key] = store.now[key]
+        mine = store.mine(key, value) if value is not ABSENT else None
+        if mine is not None:
+            ctx.shared.leave(ctx.shared.pauses, root, key, mine)
+    return changed
 
 
 def root_frame(ctx: Interpreter, root: Root) -> Frame:

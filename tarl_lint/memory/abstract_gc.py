@@ -10,13 +10,14 @@ from collections.abc import Iterable, Iterator, Set
 from typing import Final
 
 from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.store import BORN, Delta
 from tarl_lint.memory.values import Obj, Value
 
 TEMPORARY: Final = frozenset(["lib", "sequence", "mapping"])  # objects that a function makes by the way
 
 
-def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]) -> Delta:
+def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj], reads: Reads) -> Delta:
     """Return what others can see of an activation's changes.
 
     `returned` are objects that it hands out by other ways than by storing them, `given` those that anything on its
@@ -54,6 +55,7 @@ def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]
     gone = local - seen
     if not gone:
         return kept
+    reads.ask(given.isdisjoint, frozenset(gone))
     return {k: v for k, v in kept.items() if k[0].whole not in gone}
 
 

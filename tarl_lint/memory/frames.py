@@ -54,6 +54,7 @@ class Frame(Obj):
         "outer",
         "owner",
         "program",
+        "recorded",
         "result",
         "returns",
         "root_waits",
@@ -94,6 +95,7 @@ class Frame(Obj):
         self.tries: list[Attempt] = []
         self.escapes: list[Escape] = []
         self.result = BOTTOM
+        self.recorded: object = None  # the last run, to be replayed
         self.yielded = BOTTOM
         self.arguments: list[Value] = []
 
@@ -101,6 +103,7 @@ class Frame(Obj):
         """Let go of what may lead back here."""
         super().release()
         self.returns, self.jumps, self.tries, self.escapes, self.arguments = [], [], [], [], []
+        self.recorded = None
 
     def owner_class(self) -> Obj | None:
         """Return the class whose body this is, None in functions."""

@@ -98,6 +98,7 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
             return held
         if kind == "lib" and obj.info is not BY_CLASS and name in MEASURES:
             return Value(ctx.ops.deep(ctx, frozenset([obj])))
+        ctx.store.reads.look(obj)
         any_of_them = obj.subs.get("[]") if name.startswith("[") else None
         return Value(pts=frozenset([obj.sub(name)] if any_of_them is None else [obj.sub(name), any_of_them]))
     if kind in ("sequence", "mapping"):

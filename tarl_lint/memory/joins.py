@@ -21,6 +21,9 @@ JOINS = 40  # values joined in the time of a statement
 
 def merge(ctx: Interpreter, deltas: Sequence[Delta]) -> None:
     """Let the state be what it is after any of several continuations of it."""
+    if len(deltas) == 1:
+        ctx.store.absorb(deltas[0])
+        return
     for key, value in joined(ctx, deltas).items():
         ctx.store.put(key, value)
 
@@ -56,6 +59,8 @@ def joined(ctx: Interpreter, deltas: Sequence[Delta]) -> Delta:
 def _unset(ctx: Interpreter, key: tuple[Obj, str], value: Value) -> bool:
     """Tell whether a value is a field of a new message, to which nothing was stored yet."""
     owner = key[0]
+    if owner.kind == "lib":
+        ctx.look(value.pts)
     return (
         owner.kind == "lib"
         and owner.whole.info is BY_CLASS

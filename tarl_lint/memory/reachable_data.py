@@ -7,7 +7,10 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, HOLLOW
+from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.recency import MAX_NESTING
+from tarl_lint.memory.same_reads import unchanged
+from tarl_lint.memory.store import Inside
 from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value
 
 
@@ -18,21 +21,33 @@ def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
         if not obj.laden:
             ctx.store.doubt(obj)
             return NONE
-    now = (ctx.graph.grown, ctx.stack[-1] if ctx.stack else None)
-    if ctx.store.looked != now:
-        ctx.store.looked = now
-        ctx.store.insides.clear()
-    inside = ctx.store.insides.get(objects)
-    if inside is not None:
-        return inside
+    store, outer = ctx.store, ctx.store.reads
+    key = (objects, ctx.stack[-1] if ctx.stack else None)
+    last = store.insides.get(key)
+    if last is not None and _still(ctx, last):
+        outer.add(last.reads)
+        return last.nodes
+    reads = store.reads = ctx.graph.reads = Reads()
     known: dict[Obj, Nodes] = {}
-    found = NONE
+    nodes, grown, tick = NONE, ctx.graph.grown, store.tick
     for obj in in_order(objects):
-        found |= _deep(ctx, obj, known, 0)
+        nodes |= _deep(ctx, obj, known, 0)
     ctx.count(len(known))
-    if ctx.graph.grown == now[0]:
-        ctx.store.insides[objects] = found
-    return found
+    store.reads = ctx.graph.reads = outer
+    outer.add(reads)
+    store.insides[key] = Inside(nodes, reads, *store.found_by(reads), tick, grown)
+    return nodes
+
+
+def _still(ctx: Interpreter, last: Inside) -> bool:
+    """Tell whether what was inside objects is inside them still."""
+    store, graph = ctx.store, ctx.graph
+    if last.tick == store.tick and last.grown == graph.grown:
+        return True
+    if not unchanged(last.reads, last.found, last.stored, store, graph):
+        return False
+    last.tick, last.grown = store.tick, graph.grown
+    return True
 
 
 def _deep(ctx: Interpreter, obj: Obj, known: dict[Obj, Nodes], depth: int, *, counted: bool = False) -> Nodes:
@@ -79,6 +94,7 @@ def _parts(ctx: Interpreter, obj: Obj, overwritten: bool) -> list[Obj]:
 
     An empty one has none beside that of the whole, and a field that appears in it is news for who looked at the whole.
     """
+    ctx.look(obj.subs.values())
     return [
         sub
         for name, sub in obj.subs.items()
@@ -99,6 +115,8 @@ def defined(ctx: Interpreter, obj: Obj) -> str:
 def replaced(ctx: Interpreter, obj: Obj, kind: str) -> bool:
     """Tell whether every field of a message, or of a copy of one, was overwritten in this run."""
     fields = FIELDS.get(kind)
+    if fields is not None:
+        ctx.store.reads.look(obj)
     return fields is not None and all(
         heap.written_here(ctx, obj, name)
         or (inner != "" and name in obj.subs and replaced(ctx, obj.subs[name], inner))

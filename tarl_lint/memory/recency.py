@@ -10,6 +10,7 @@ from tarl_lint.memory.store import BORN
 from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value, join
 
 MAX_NESTING = 7
+NEW = -1  # the stamp of an object that was not there yet
 
 
 def intern(ctx: Interpreter, kind: str, key: Hashable, name: str = "") -> Obj:
@@ -27,6 +28,7 @@ def allocate(ctx: Interpreter, kind: str, frame: Frame, slot: Hashable) -> Obj:
     obj = ctx.objects.get((kind, key))
     if obj is None:
         obj = ctx.objects[kind, key] = Obj(kind, key)
+        ctx.store.reads.objects[obj] = NEW
         ctx.store.put((obj, BORN), BOTTOM)
         return obj
     if kind == "lib" and obj.fields:
@@ -38,6 +40,7 @@ def allocate(ctx: Interpreter, kind: str, frame: Frame, slot: Hashable) -> Obj:
 
 def _age(ctx: Interpreter, obj: Obj) -> None:
     """Where the former object is still held, let it be one of the older ones."""
+    ctx.store.reads.ask(held_at, obj)
     holders = [k for k in obj.holders if k[0] is not obj and _holds(ctx, k, obj)]
     if not holders:
         return
@@ -57,6 +60,11 @@ def _age(ctx: Interpreter, obj: Obj) -> None:
             ctx.store.put(key, Value(value.deps, pts, value.consts))
 
 
+def held_at(obj: Obj) -> int:
+    """Return at how many places pointers to an object were ever stored."""
+    return len(obj.holders)
+
+
 def _holds(ctx: Interpreter, key: tuple[Obj, str], obj: Obj) -> bool:
     value = ctx.store.get(key)
     return value is not None and obj in value.pts
@@ -64,6 +72,7 @@ def _holds(ctx: Interpreter, key: tuple[Obj, str], obj: Obj) -> bool:
 
 def copy_fields(ctx: Interpreter, obj: Obj, older: Obj, depth: int = 0) -> None:
     """Copy the fields of an object, and of its parts, to what stands for older ones."""
+    ctx.store.reads.look(obj)
     for name in list(obj.fields):
         value = ctx.store.get((obj, name))
         if value is not None:
@@ -76,6 +85,7 @@ def copy_fields(ctx: Interpreter, obj: Obj, older: Obj, depth: int = 0) -> None:
 
 def clear_fields(ctx: Interpreter, obj: Obj, depth: int = 0) -> None:
     """Let an object and its parts be as if nothing had been stored."""
+    ctx.store.reads.look(obj)
     for name in list(obj.fields):
         ctx.store.put((obj, name), ABSENT)
     if depth < MAX_NESTING:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.values import ABSENT, Key, Obj, Value, join
 
 Delta = dict[Key, Value]
 
+ADDING = frozenset(["*", "<keys>", "<length>"])  # fields where everything adds up
 BORN = "<born>"  # the field that every object has which exists
 
 
@@ -50,6 +52,7 @@ class Shared:
     watchers: dict[Obj, set[Root]] = field(default_factory=dict)
     doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # roots that found no data inside an object
     dirty: set[Root] = field(default_factory=set)
+    edition: int = 0  # how often a class, a `from … import *` or a whole `__dict__` was news
 
     def entry(self, key: Key, root: Root) -> Value | None:
         """Return what a root finds when it starts: the join of all that any other can have stored."""
@@ -85,6 +88,7 @@ class Shared:
             if current.laden:
                 continue
             current.laden = True
+            current.stamp += 1
             self.dirty |= self._others(self.doubters.pop(current, None), root)
             pending += current.inside
             pending += current.subs.values()
@@ -125,6 +129,23 @@ def private(key: Key) -> bool:
     return isinstance(owner, Frame) and not owner.captured
 
 
+@dataclass(slots=True, eq=False)
+class Inside:
+    """The data inside objects when somebody looked last, and what was read to find it."""
+
+    nodes: frozenset[int]
+    reads: Reads
+    found: dict[Key, Value | None]
+    stored: dict[Key, bool]
+    tick: int
+    grown: int  # how often something new was inside an object that was passed on
+
+
+def as_it_is(key: Key, value: Value) -> Value:  # noqa: ARG001 - as other ways to gather
+    """Return a value unchanged."""
+    return value
+
+
 @dataclass(slots=True)
 class Store:
     """The state of one root's run: writes go to the top layer, reads fall through to the shared memory.
@@ -142,15 +163,34 @@ class Store:
     foreign: dict[Key, Value] = field(default_factory=dict)  # what others stored while this root waited
     now: Delta = field(default_factory=dict)
     hidden: list[dict[Key, Value | None]] = field(default_factory=lambda: [{}])
-    insides: dict[frozenset[Obj], frozenset[int]] = field(default_factory=dict)  # data inside objects now
-    looked: object = None  # what else that was true of when somebody looked
+    insides: dict[object, Inside] = field(
+        default_factory=dict
+    )  # data inside objects when somebody looked last
+    tick: int = 0  # how often the state outside of activations may have changed
     elsewhere: dict[Key, Value | None] = field(
         default_factory=dict
     )  # what other roots may store while this one waits
+    hearing: dict[Key, Value | None] = field(default_factory=dict)
     waited: bool = False  # so that others may have stored meanwhile
+    reads: Reads = field(default_factory=Reads)  # of the call that is running
+    gather: Callable[[Key, Value], Value] = as_it_is  # what becomes of a value where everything adds up
 
     def get(self, key: Key) -> Value | None:
         """Return the value now, None where nothing was stored."""
+        reads = self.reads
+        if key not in reads.written:
+            reads.keys.add(key)
+        value = self.now.get(key)
+        if value is not None:
+            if self.waited and key not in self.root.heeds and not private(key):
+                self._heed(key, value)
+            return None if value is ABSENT else value
+        if key in self.found:
+            return self.found[key]
+        return self.peek(key)
+
+    def peek(self, key: Key) -> Value | None:
+        """Return the value now without noting that the running call reads it."""
         value = self.now.get(key)
         if value is not None:
             if self.waited and key not in self.root.heeds and not private(key):
@@ -165,6 +205,7 @@ class Store:
     def _heed(self, key: Key, value: Value) -> None:
         """From now on, take in what others store here meanwhile; run again if they have."""
         self.root.heeds.add(key)
+        self.exchanged.pop(key, None)
         news = self.others(key)
         if news is not None and (value is ABSENT or join(value, news) is not value):
             self.shared.dirty.add(self.root)
@@ -175,26 +216,55 @@ class Store:
             self.elsewhere[key] = self.shared.others(key, self.root)
         return self.elsewhere[key]
 
+    def found_by(self, reads: Reads) -> tuple[dict[Key, Value | None], dict[Key, bool]]:
+        """Return what is where something was read, and whether this run stored there where that was asked."""
+        now, found = self.now, self.found
+        values: dict[Key, Value | None] = {}
+        for key in reads.keys:
+            value = now.get(key)
+            if value is None:
+                value = found[key] if key in found else self.peek(key)
+            values[key] = None if value is ABSENT else value
+        return values, {key: key in now for key in reads.stored}
+
     def stored(self, key: Key) -> bool:
         """Tell whether this run has stored here."""
+        if key not in self.reads.written:
+            self.reads.stored.add(key)
         return key in self.now
 
     def put(self, key: Key, value: Value) -> None:
         """Store for certain."""
+        if key[1] in ADDING and len(value.deps) > 1:
+            value = self.gather(key, value)
         layer = self.layers[-1]
         if key not in layer:
             self.hidden[-1][key] = self.now.get(key)
         layer[key] = self.now[key] = value
+        self.reads.written.add(key)
         owner, name = key
-        if self.insides and owner.kind != "frame":
-            self.insides.clear()
+        if owner.kind != "frame":
+            self.tick += 1
         noted = owner.fields.get(name)
         laden = bool(value.deps)
         if noted is None or (value.pts is not noted and not value.pts <= noted):
             owner.fields[name] = value.pts
+            if noted is None:
+                owner.stamp += 1
+                self.shared.edition += name == "__dict__"
             laden = self._note(key, value.pts) or laden
         if laden and not owner.laden:
             self.shared.load(owner, self.root)
+
+    def absorb(self, delta: Delta) -> None:
+        """Store for certain what was stored before in a layer that is closed."""
+        layer, hidden, now = self.layers[-1], self.hidden[-1], self.now
+        for key, value in delta.items():
+            if key not in layer:
+                hidden[key] = now.get(key)
+            layer[key] = now[key] = value
+        self.reads.written.update(delta)
+        self.tick += 1
 
     def _note(self, key: Key, held: frozenset[Obj]) -> bool:
         """Have objects know where they are held; tell whether data is in one of them."""
@@ -210,10 +280,12 @@ class Store:
 
     def doubt(self, obj: Obj) -> None:
         """Remember that this run found no data inside an object."""
+        self.reads.look(obj)
         self.shared.doubters.setdefault(obj, set()).add(self.root)
 
     def look(self, obj: Obj) -> None:
         """Remember that this run depends on which fields an object has."""
+        self.reads.look(obj)
         if obj not in self.seen:
             self.seen.add(obj)
             self.shared.look(obj, self.root)
@@ -224,15 +296,19 @@ class Store:
             self.layers.append({})
             self.hidden.append({})
             return
-        self.insides.clear()
+        self.tick += 1
         self.layers.append(dict(delta))
         self.hidden.append({key: self.now.get(key) for key in delta})
         self.now.update(delta)
+        self.reads.written.update(delta)
 
     def pop(self) -> Delta:
         """Close the top layer and return it."""
-        self.insides.clear()
-        for key, value in self.hidden.pop().items():
+        self.tick += 1
+        hidden = self.hidden.pop()
+        self.reads.written.difference_update(hidden)
+        self.reads.left += 1
+        for key, value in hidden.items():
             if value is None:
                 del self.now[key]
             else:
@@ -256,8 +332,13 @@ class Store:
         both = join(mine, news)
         if both is not mine:
             theirs = Value(both.deps - mine.deps, both.pts - mine.pts, frozenset())
-            self.foreign[key] = join(self.foreign.get(key, theirs), theirs)
+            self.take(key, theirs)
         return both
+
+    def take(self, key: Key, theirs: Value) -> None:
+        """Remember which part of what is stored came from others."""
+        self.foreign[key] = join(self.foreign.get(key, theirs), theirs)
+        self.reads.admit(key, theirs)
 
     def mine(self, key: Key, value: Value) -> Value | None:
         """Return the part of a value that this root stored itself, None when there is none."""
@@ -268,6 +349,12 @@ class Store:
         part = Value(value.deps - theirs.deps, value.pts - theirs.pts, value.consts)
         news = part.deps or part.pts or not value.consts_in(theirs)
         return part if news or not (value.deps or value.pts) else None
+
+    def heard(self) -> dict[Key, Value | None]:
+        """Return what others may store where this root takes it in, which does not change while it runs."""
+        if len(self.hearing) != len(self.root.heeds):
+            self.hearing = {key: self.others(key) for key in self.root.heeds}
+        return self.hearing
 
     def own(self) -> list[Key]:
         """Return the keys written in this run which others can see."""

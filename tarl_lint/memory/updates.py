@@ -40,6 +40,7 @@ def add_element(ctx: Interpreter, base: Value, value: Value) -> None:
             continue
         before = heap.content(ctx, obj)
         ctx.store.put((obj, ANY), join(before, value))
+        ctx.store.reads.look(obj)
         for name in list(obj.fields):
             if name.startswith("["):
                 known = ctx.store.get((obj, name))

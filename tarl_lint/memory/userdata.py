@@ -26,11 +26,14 @@ def rename(ctx: Interpreter, state: Obj, names: Iterable[tuple[str, str]]) -> No
     """Remember what a state's own names stand for."""
     for view in userdata(ctx, state).pts:
         if isinstance(view.info, dict):
+            before = dict(view.info)
             view.info.update(names)
+            view.stamp += view.info != before
 
 
 def seen_through(ctx: Interpreter, view: Obj, name: str) -> tuple[Obj, str]:
     """Return the shared object and the name there of a field that a state sees."""
+    ctx.store.reads.look(view)
     names = view.info if isinstance(view.info, dict) else {}
     shared = next(iter(userdata(ctx).pts))
     return shared, str(names.get(name, name))

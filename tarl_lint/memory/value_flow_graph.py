@@ -8,11 +8,15 @@ from itertools import islice
 
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.values import Branches, Nodes
 
 MAX_NODES = 15_000  # after which content is taken to arrive as it is, too
 MAX_EDGES = 200_000  # of data; then few of very many values that meet in one are followed
 FEW = 8
+MANY = 16  # nodes that meet in a field where everything adds up and are told apart
+MANY_CARRIERS = 64  # the same of pointers to objects with data in them
+MERGED = "merged"  # the role of nodes that stand for all that meets in a field
 NOTHING: Set[int] = frozenset()
 MAX_CARRIED = 500  # content times carriers; beyond that, content is taken to arrive as it is
 
@@ -27,7 +31,7 @@ class Place:
     pos: ir.Pos
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Graph:
     """Edges lead backwards, from a node to what it depends on.
 
@@ -62,6 +66,7 @@ class Graph:
     onward: dict[int, list[int]] = field(default_factory=dict)  # where nodes lead that are not live yet
     asked: int = 0  # edges, and how much was looked at to tell through whom content arrives
     asking: set[tuple[int, int]] = field(default_factory=set)  # questions that are being answered
+    reads: Reads = field(default_factory=Reads)  # of the call that is running
 
     def node(self, key: Hashable, place: Place, branches: Branches) -> int:
         """Return the node with this key, made at the first time."""
@@ -101,6 +106,22 @@ class Graph:
         self.data[node].add(dep)
         self._lead(dep, node)
         return node
+
+    def meets(self, key: Hashable, deps: Nodes, *, carriers: bool) -> bool:
+        """Tell whether too many values meet in a field to be told apart, or did before and more are added.
+
+        `carriers`: they are pointers, whose content arrives by each of them as long as these are few.
+        """
+        return len(deps) > (MANY_CARRIERS if carriers else MANY) or self.numbers.get(("merged", key)) in deps
+
+    def merged(self, key: Hashable, deps: Nodes, frame: Frame) -> Nodes:
+        """Return one node in place of the many that meet in a field where everything adds up.
+
+        Whoever reads the field depends on this node; what is added later is an edge, and news to nobody.
+        """
+        node = self.node(("merged", key), Place(frame, None, MERGED, (0, 0, 0, 0)), frozenset())
+        self.flow([dep for dep in deps if dep != node], node)
+        return frozenset([node])
 
     def choice(self, deps: Iterable[int], node: int) -> None:
         """Let only the choice that was made for `deps` reach `node`, not their data."""
@@ -148,9 +169,11 @@ class Graph:
         """
         if not content or not carriers or len(content) * len(carriers) > MAX_CARRIED:
             return content
-        if len(self.places) > MAX_NODES:
+        self.reads.ask(Graph.large, self)
+        if self.large():
             return content
         self.asked += len(content) + len(carriers)
+        self._consult(carriers)
         found: set[int] = set()
         taken: set[int] = set()
         for carrier in carriers:
@@ -166,6 +189,27 @@ class Graph:
                     found |= arrived
                     taken.add(item)
         return (content - taken) | found if found else content
+
+    def large(self) -> bool:
+        """Tell whether there are too many nodes to say how content arrives."""
+        return len(self.places) > MAX_NODES
+
+    def _consult(self, carriers: Nodes) -> None:
+        """Note that it matters what carriers have passed on by now, and those through which they were carried."""
+        noted = self.reads.held
+        for carrier in carriers:
+            while carrier not in noted:
+                noted[carrier] = self.passed_by(carrier)
+                if carrier in self.carried:
+                    carrier = self.carried[carrier][1]
+
+    def passed_by(self, carrier: int) -> int:
+        """Return how many nodes were inside what a carrier passed on: they only become more."""
+        return len(self.held.get(carrier, NOTHING))
+
+    def free(self, node: int) -> bool:
+        """Tell whether no decision led to a node so far."""
+        return not self.control[node]
 
     def _first(self, carrier: int) -> int:
         """Return who first held what arrives by a carrier: what was not inside then does not come this way."""

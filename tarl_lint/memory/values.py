@@ -21,6 +21,7 @@ MAX_CONSTS = 4
 MAX_TEXTS = 24  # names of topics, mostly: a table of them may be long
 MAX_DEPTH = 6  # of objects embedded in objects
 MAX_ELEMENTS = 2  # elements of elements that are told apart: beyond, their indices give a power of objects
+MAX_CELLS = 16  # elements of elements of one object of a library that are told apart: of a matrix, mostly
 MESSAGES = frozenset(["message", "goal"])  # objects that bring data with them
 
 
@@ -28,6 +29,7 @@ class Obj:
     """An object, known by what makes it: allocation site, definition, or the object it is embedded in."""
 
     __slots__ = (
+        "cells",
         "defined",
         "depth",
         "elements",
@@ -43,6 +45,7 @@ class Obj:
         "number",
         "outermost",
         "parent",
+        "stamp",
         "subs",
     )  # fmt: skip
 
@@ -65,6 +68,10 @@ class Obj:
         self.laden: bool = (
             parent.laden if parent is not None else kind in MESSAGES
         )  # data may be in it, at any depth
+        self.cells = 0  # elements of elements that it has by now
+        self.stamp = (
+            0  # how often a field or part was added to it, data came into it, or what it stands for changed
+        )
         self.inside: dict[Obj, None] = {}  # objects that a pointer to it was stored in while it was not laden
 
     def sub(self, name: str) -> Obj:
@@ -73,7 +80,12 @@ class Obj:
             return self
         found = self.subs.get(name)
         if found is None:
+            if self.kind == "lib" and self.elements and name.startswith("["):
+                if self.whole.cells >= MAX_CELLS:
+                    return self
+                self.whole.cells += 1
             found = self.subs[name] = Obj(self.kind, (self.key, name), name, self)
+            self.stamp += 1
         return found
 
     def path(self) -> str:
@@ -87,6 +99,12 @@ class Obj:
     def whole(self) -> Obj:
         """Return the outermost object that it is part of."""
         return self.outermost or self
+
+    def describe(self, info: object) -> None:
+        """Say what the object stands for, which may be another thing than before."""
+        if info is not self.info and info != self.info:
+            self.stamp += 1
+        self.info = info
 
     def release(self) -> None:
         """Let go of what may lead back here."""

@@ -76,6 +76,7 @@ def _behind_callable(ctx: Interpreter, obj: Obj) -> tuple[ir.Function | None, in
     given = 0
     while True:
         if obj.kind == "partial" and isinstance(obj.info, tuple):
+            ctx.store.reads.look(obj)
             given += len(obj.info[1])
             inner = obj.info[0].pts
         elif obj.kind == "instance":

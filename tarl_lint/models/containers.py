@@ -215,7 +215,7 @@ def new_container(ctx: Interpreter, it: Invocation) -> Value:
 def counted_elements(ctx: Interpreter, it: Invocation) -> Value:
     """Return `len(x)`: data of what the length is made of, choice of what decided to add elements."""
     deps = iterators.lengths(ctx, it.arguments[0])
-    ours = [o for value in it.arguments[0] for o in value.pts if sizes.sized(o)]
+    ours = [o for value in it.arguments[0] for o in value.pts if sizes.sized(ctx, o)]
     node = ctx.node(it.frame, ("length", it.call.slot), "call")
     ctx.graph.choice(sizes.placed(ctx, frozenset(ours)), node)
     if ctx.graph.control[node]:

@@ -251,7 +251,7 @@ def _blank_object(ctx: Interpreter, it: Invocation) -> Value:
 def _weak(ctx: Interpreter, it: Invocation) -> Value:
     """Return a weak reference: called, it gives what it refers to."""
     obj = recency.allocate(ctx, "weak", it.frame, ("made", it.call.slot))
-    obj.info = it.arguments[0][0] if it.arguments[0] else UNKNOWN
+    obj.describe(it.arguments[0][0] if it.arguments[0] else UNKNOWN)
     return pointer(obj)
 
 
@@ -317,6 +317,10 @@ def dropped(frame: Frame, call: ir.Call) -> bool:
     """Tell whether a call's result is not used: then it is there for what it does."""
     return isinstance(frame.statement, ir.Evaluate) and frame.statement.value is call
 
+
+STANDING = frozenset(
+    ["server", "goal", "filter", "synchronizer"]
+)  # objects that stand for what they were given
 
 BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(CONTAINERS, containers.new_container),

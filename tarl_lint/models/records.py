@@ -100,7 +100,7 @@ def _options(ctx: Interpreter, owner: Obj, name: str) -> dict[str, Value] | None
 def field_default(ctx: Interpreter, it: Invocation) -> Value:
     """Return what `field(...)` says of a field."""
     obj = recency.intern(ctx, "field", (it.frame.id, it.statement, it.call.slot))
-    obj.info = it.arguments[1]
+    obj.describe(it.arguments[1])
     return pointer(obj)
 
 
@@ -117,8 +117,10 @@ def named_tuple_class(ctx: Interpreter, it: Invocation) -> Value:
     cls = recency.intern(
         ctx, "class", (it.frame.id, it.statement, it.call.slot), "".join(plain[0].texts()[:1])
     )
-    cls.info = ClassInfo(cls.name, cls.name, named=True, module=it.frame.program.name)
-    cls.info.fields = tuple(names)
+    info = ClassInfo(cls.name, cls.name, named=True, module=it.frame.program.name)
+    info.fields = tuple(names)
+    ctx.shared.edition += isinstance(cls.info, ClassInfo) and cls.info.fields != info.fields
+    cls.info = info
     return pointer(cls)
 
 
@@ -186,14 +188,16 @@ def _blank(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Obj:
     classes = {o.info for o in value.pts if o.kind == "instance"}
     if len(classes) == 1 and all(o.kind == "instance" for o in value.pts):
         obj = recency.allocate(ctx, "instance", frame, slot)
-        obj.info = classes.pop()
+        obj.describe(classes.pop())
         return obj
     kinds = {o.kind for o in value.pts} & {"sequence", "mapping"}
     obj = recency.allocate(ctx, kinds.pop() if kinds else "lib", frame, slot)
     if all(o.info is BY_CLASS for o in value.pts):
-        obj.info = BY_CLASS
+        obj.describe(BY_CLASS)
     definitions = {reachable_data.defined(ctx, o) for o in value.pts}
-    obj.defined = definitions.pop() if len(definitions) == 1 else ""
+    defined = definitions.pop() if len(definitions) == 1 else ""
+    obj.stamp += defined != obj.defined
+    obj.defined = defined
     return obj
 
 
@@ -201,6 +205,7 @@ def deep_copy(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable, dept
     """Return a copy whose inner objects are copies too."""
     made = copy_of(ctx, value, frame, slot)
     for obj in made.pts - value.pts if depth < MAX_COPIED else ():
+        ctx.store.reads.look(obj)
         for name in list(obj.fields):
             inner = ctx.store.get((obj, name))
             if inner is not None and any(o.kind in INNER for o in inner.pts):
@@ -226,7 +231,7 @@ def new_mapping(ctx: Interpreter, it: Invocation) -> Value:
     for key, value in named.items():
         ctx.store.put((obj, item_field(key)), value)
     if factory is not None:
-        obj.info = factory
+        obj.describe(factory)
     return pointer(obj)
 
 
@@ -268,6 +273,7 @@ def from_keys(ctx: Interpreter, it: Invocation) -> Value:
 
 def missing(ctx: Interpreter, mapping: Obj, name: str) -> Value:
     """Return what a mapping with a default makes for a key that it does not have."""
+    ctx.store.reads.look(mapping)
     factory = mapping.info
     if not isinstance(factory, Value):
         return BOTTOM

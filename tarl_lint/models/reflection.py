@@ -27,6 +27,7 @@ def _method_by_beginning(ctx: Interpreter, it: Invocation) -> Value | None:
     found = BOTTOM
     for obj in holder.pts if len(start) > 1 else ():
         for cls in lineage(obj.info) if obj.kind == "instance" and isinstance(obj.info, Obj) else ():
+            ctx.store.reads.look(cls)
             for member in [n for n in cls.fields if n.startswith(start)]:
                 found = join_all([found, heap.read_field(ctx, obj, member)])
     if not found.pts:
@@ -38,7 +39,7 @@ def _method_by_beginning(ctx: Interpreter, it: Invocation) -> Value | None:
 def getter(ctx: Interpreter, it: Invocation) -> Value:
     """Return the function that `attrgetter(...)` or `itemgetter(...)` makes."""
     obj = recency.intern(ctx, "partial", (it.frame.id, it.statement, it.call.slot, *it.frame.turn), it.name)
-    obj.info = (expressions.external(ctx, f"{it.name}.<made>"), it.arguments[0], {})
+    obj.describe((expressions.external(ctx, f"{it.name}.<made>"), it.arguments[0], {}))
     return pointer(obj)
 
 

@@ -115,6 +115,7 @@ def absorb(ctx: Interpreter, obj: Obj, value: Value) -> None:
 
 def empty(ctx: Interpreter, obj: Obj) -> None:
     """Take everything out of a container."""
+    ctx.store.reads.look(obj)
     for name in list(obj.fields):
         if name.startswith("[") or name in (ANY, KEYS, LENGTH):
             ctx.store.put((obj, name), ABSENT)
@@ -127,7 +128,7 @@ def length(ctx: Interpreter, value: Value) -> Nodes:
     """Return the nodes that a value's length is data of: of our containers not their elements."""
     deps = value.deps
     for obj in value.pts:
-        if sized(obj):
+        if sized(ctx, obj):
             stored = ctx.store.get((obj, LENGTH))
             made = stored.deps if stored is not None else NONE
             if obj.parent is not None:
@@ -140,10 +141,11 @@ def length(ctx: Interpreter, value: Value) -> Nodes:
     return deps
 
 
-def sized(obj: Obj) -> bool:
+def sized(ctx: Interpreter, obj: Obj) -> bool:
     """Tell whether an object has elements that say nothing of how many there are: ours, and arrays of messages."""
     if obj.kind in ("sequence", "mapping"):
         return True
+    ctx.store.reads.look(obj)
     return obj.parent is not None and (ANY in obj.fields or any(n.startswith("[") for n in obj.subs))
 
 

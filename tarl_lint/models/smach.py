@@ -16,6 +16,7 @@ def add_state(ctx: Interpreter, it: Invocation) -> Value:
     plain, named = it.arguments
     states = plain[1] if len(plain) > 1 else named.get("state", UNKNOWN)
     remapping = plain[3] if len(plain) > 3 else named.get("remapping", UNKNOWN)
+    ctx.look(remapping.pts)
     for table in in_order(remapping.pts):
         held = ((n, ctx.store.get((table, n))) for n in list(table.fields) if n.startswith("['"))
         pairs = [(n[2:-2], v.texts()[0]) for n, v in held if v is not None and v.texts()]

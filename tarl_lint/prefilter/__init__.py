@@ -1,1 +1,1 @@
-"""Exclude modules that cannot influence a result, before anything is interpreted."""
+"""What cannot matter, told before anything is interpreted."""

@@ -1,1 +1,1 @@
-"""Constant propagation queries of the plugin at single sites."""
+"""Questions of the plugin about constants at a site."""

@@ -1,4 +1,4 @@
-"""Lines of a report before colouring: pieces of text with their styles."""
+"""Lines of a report before anyone decides whether they are coloured: pieces of text with what they mean."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _TAB: Final = 4
 
 @dataclass(frozen=True)
 class Glyphs:
-    """Signs that some terminals cannot show, with replacements."""
+    """Signs that not every terminal can show."""
 
     bar: str = "│"
     data: str = "●"
@@ -30,10 +30,10 @@ ASCII: Final = Glyphs(bar="|", data="*", control="?", context=".", arrow="->", d
 
 @dataclass(frozen=True)
 class View:
-    """Display settings of a report. `width` is in columns; 0 leaves long lines whole.
+    """How a report is shown. `width` is in columns; 0 means that long lines stay whole.
 
-    `show_paths` shows the shortest chain of statements of each flow, `all_steps` all statements. At most `most_flows`
-    flows are shown individually; 0 means all.
+    With `show_paths` each flow has its shortest chain of statements, with `all_steps` all of them. At most `most_flows`
+    flows are shown one by one; 0 means all.
     """
 
     show_paths: bool = False
@@ -45,29 +45,29 @@ class View:
 
 
 def plain(line: Line) -> str:
-    """Return the text of a line without its styles."""
+    """Return a line without its meaning."""
     return "".join(text for text, _ in line)
 
 
 def unbroken(line: Line) -> Line:
-    """Return a line with line-ending characters escaped."""
+    """Return a line in which what would end it is written as an escape."""
     if not any("\n" in text or "\r" in text for text, _ in line):
         return line
     return tuple((text.replace("\n", "\\n").replace("\r", "\\r"), style) for text, style in line)
 
 
 def location(span: Span) -> str:
-    """Return the start of a span in the form that terminals and editors link."""
+    """Write where a span begins, so that terminals and editors can go there."""
     return f"{one_line(span.path)}:{span.line}:{span.column}"
 
 
 def one_line(path: str) -> str:
-    """Return a path with line feeds escaped, which file names may contain."""
+    """Write a path without line feeds, which file names may have."""
     return path.replace("\n", "\\n")
 
 
 def columns(text: str) -> int:
-    """Return the width of a text in terminal columns."""
+    """Return how many columns of a terminal a text takes."""
     if text.isascii():
         return len(text)
     return sum(_columns(character) for character in text)
@@ -82,12 +82,12 @@ def _columns(character: str) -> int:
 
 
 def tabs(text: str) -> str:
-    """Replace tabs by spaces, so that carets stay below their characters."""
+    """Replace tabs, so that what stands below a character stays below it."""
     return text.expandtabs(_TAB)
 
 
 def crop(text: str, width: int, dots: str) -> str:
-    """Return a text shortened to a width in columns; a width of 0 or less leaves it whole."""
+    """Shorten a text to a width in columns; a width of 0 or less leaves it whole."""
     if width <= 0 or columns(text) <= width:
         return text
     while text and columns(text) > width - len(dots):

@@ -1,4 +1,4 @@
-"""Names of sources and sinks in messages of rules."""
+"""How rules name the ends of a flow."""
 
 from __future__ import annotations
 

@@ -118,7 +118,7 @@ def test_what_nothing_leads_to_is_dropped_when_a_function_returns(ctx, frame):
     ctx.store.put((kept, "[0]"), Value(DATA))
     ctx.store.put((gone, "[0]"), Value(DATA))
     ctx.store.put((frame, "local"), pointer(gone))
-    delta = lasting(ctx.store.since(0), frame, [kept], frozenset())
+    delta = lasting(ctx.store.since(0), frame, [kept], frozenset(), ctx.store.reads)
     assert (kept, "[0]") in delta
     assert not any(owner in (gone, frame) for owner, _ in delta)
 

@@ -31,6 +31,11 @@ def topics(ctx: Interpreter, it: Invocation) -> list[str]:
     return [names.get(text.lstrip("/"), text) for text in it.argument(it.fact.topic).texts()]
 
 
+def names_of(info: Publisher) -> tuple[int, int]:
+    """Return how many topics and types a publisher may have: they only become more."""
+    return len(info.topics), len(info.types)
+
+
 def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
     """Record a sink: everything inside the message reaches it, and whether it is reached at all."""
     frame, call = it.frame, it.call
@@ -40,6 +45,7 @@ def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
         record = SinkRecord(*key, _api(info, it), ctx.modules[key[0]].name, qualname(frame))
         record.kind = info.kind
         ctx.sinks[key] = record
+    ctx.store.reads.ask(names_of, info)
     record.topics |= info.topics
     record.types |= info.types
     record.publishers.add((info.path, info.pos))

@@ -88,6 +88,7 @@ def _goal_callback(ctx: Interpreter, server: Server, way: str, target: Obj) -> N
 
 def serve(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
     """Call a method of an action server or of a goal's handle."""
+    ctx.store.reads.look(target)
     server = target.info
     if not isinstance(server, Server):
         return UNKNOWN

@@ -141,6 +141,7 @@ def described(ctx: Interpreter, target: Obj) -> Frame | None:
             inner: frozenset[Obj] = target.info[0].pts
         else:
             inner = heap.read_field(ctx, target, "__call__").pts
+        ctx.store.reads.look(target)
         if len(inner) != 1:
             return None
         target = next(iter(inner))
@@ -164,7 +165,7 @@ def message_filter(ctx: Interpreter, it: Invocation) -> Value:
         it.fact = catalog.FILTER_WITH_NODE
     record = source(ctx, it, BOTTOM)
     obj = recency.intern(ctx, "filter", (record.path, record.pos))
-    obj.info = record
+    obj.describe(record)
     return pointer(obj)
 
 
@@ -176,7 +177,7 @@ def synchronizer(ctx: Interpreter, it: Invocation) -> Value:
     several = parts is None and all(o.kind == "sequence" for o in given.pts)
     if parts is None:
         parts = [heap.elements(ctx, given)] if several else [given]
-    obj.info = (parts, (it.frame.program.path, it.call.pos), several)
+    obj.describe((parts, (it.frame.program.path, it.call.pos), several))
     return pointer(obj)
 
 
@@ -184,6 +185,7 @@ def register_filter(ctx: Interpreter, target: Obj | None, it: Invocation) -> Val
     """Run a callback with one message of each subscriber."""
     if target is None:
         return UNKNOWN
+    ctx.store.reads.look(target)
     places = {(it.frame.program.path, it.call.pos)}
     parts: Sequence[Value] = [pointer(target)]
     several = False
@@ -206,6 +208,7 @@ def register_filter(ctx: Interpreter, target: Obj | None, it: Invocation) -> Val
 def _filtered(ctx: Interpreter, part: Value, function: Obj, places: set[tuple[str, ir.Pos]]) -> Value:
     """Return the message that a subscriber of message_filters hands on."""
     arriving = BOTTOM
+    ctx.look(part.pts)
     for subscriber in part.pts:
         if isinstance(subscriber.info, SourceRecord):
             subscriber.info.registered |= places

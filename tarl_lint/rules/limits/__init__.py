@@ -1,1 +1,1 @@
-"""Range checks, for rules about magnitudes."""
+"""What rules about magnitudes ask: range checks."""

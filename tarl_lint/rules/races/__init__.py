@@ -1,1 +1,1 @@
-"""Held locks, threads and accesses, for rules about races."""
+"""What rules about races ask: locks that are held, threads, accesses."""

@@ -1,1 +1,0 @@
-"""Run tarl-lint as a linter of an ament package."""

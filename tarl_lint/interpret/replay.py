@@ -1,0 +1,134 @@
+"""Calls that need not run again: those whose every read is as it was when they ran last in the same context.
+
+Nodes, objects and entry points that such a call makes are there already, since the context is the same; what is left to
+be done is to store what it stored. `memory/reads.py` holds what is read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tarl_lint.interpret import worklist
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Arguments
+from tarl_lint.memory.frames import Escape, Frame
+from tarl_lint.memory.reads import Reads
+from tarl_lint.memory.same_reads import unchanged
+from tarl_lint.memory.store import Delta, Store
+from tarl_lint.memory.value_flow_graph import MAX_EDGES
+from tarl_lint.memory.values import Key, Value, join_all
+
+READS = 40  # facts compared in the time of a statement
+
+Mode = tuple[object, ...]
+
+
+@dataclass(slots=True, eq=False)
+class Run:
+    """A function's run in a call context: what went in, what it read, what came out."""
+
+    passed: Arguments
+    mode: Mode
+    reads: Reads
+    found: dict[Key, Value | None]  # what was where it read
+    stored: dict[Key, bool]
+    cost: int
+    result: Value
+    returned: list[Value]
+    escapes: list[Escape]
+    delta: Delta
+    edges: int  # that it made
+    noted: bool  # all of it was stored before, value by value
+    heard: dict[Key, Value | None]  # what others may store while it waits
+
+
+def run(ctx: Interpreter, frame: Frame, passed: Arguments, execute: Callable[[], Delta]) -> Run:
+    """Return the last run of a frame if it would be the same again, else execute it."""
+    mode = _mode(ctx)
+    last = frame.recorded
+    same = isinstance(last, Run) and _same(ctx, last, passed, mode)
+    if isinstance(last, Run) and same and not ctx.checking:
+        ctx.spent += last.cost
+        ctx.saved += last.cost - len(last.found) // READS
+        if last.reads.waits:
+            _wait_again(ctx, last.reads)
+        ctx.store.reads.add(last.reads)
+        frame.escapes = list(last.escapes)
+        return last
+    made = _executed(ctx, frame, passed, mode, execute)
+    if isinstance(last, Run) and same and made.reads.whole:
+        _check(frame, last, made)
+    frame.recorded = made if made.reads.whole and ctx.probe is None and ctx.watch is None else None
+    return made
+
+
+def _executed(
+    ctx: Interpreter, frame: Frame, passed: Arguments, mode: Mode, execute: Callable[[], Delta]
+) -> Run:
+    outer = ctx.store.reads
+    reads = ctx.store.reads = ctx.graph.reads = Reads()
+    before, edges = ctx.spent, ctx.graph.edges
+    delta = execute()
+    store = ctx.store
+    store.reads = ctx.graph.reads = outer
+    outer.add(reads)
+    returned = [value for _, value in frame.returns]
+    if reads.waits:  # what is read after that may be taken in from others from now on
+        reads.stored |= reads.keys
+    found, stored = store.found_by(reads)
+    return Run(
+        passed, mode, reads, found, stored, ctx.spent - before,
+        join_all(returned), returned, list(frame.escapes), delta, ctx.graph.edges - edges,
+        len(returned) == 1, store.heard() if reads.waits else {},
+    )  # fmt: skip
+
+
+def _hears(store: Store, last: Run) -> bool:
+    """Tell whether others may store the same as when a call waited."""
+    heard = store.heard()
+    if last.heard is not heard and last.heard == heard:
+        last.heard = heard
+    return last.heard is heard
+
+
+def _check(frame: Frame, last: Run, made: Run) -> None:
+    """Compare a run with the one that would have been replayed."""
+    wrong = {
+        key for key in last.delta.keys() | made.delta.keys() if last.delta.get(key) != made.delta.get(key)
+    }
+    escapes = [(e.name, e.value) for e in last.escapes] == [(e.name, e.value) for e in made.escapes]
+    if wrong or last.result != made.result or not escapes or made.edges:
+        what = [(key, last.delta.get(key), made.delta.get(key)) for key in sorted(wrong, key=str)]
+        raise AssertionError(f"{frame}: {what}, {last.result} or {made.result}, {made.edges} new edges")
+
+
+def _wait_again(ctx: Interpreter, reads: Reads) -> None:
+    """Let others see what was stored before a call that waits, as far as that stands when it waits."""
+    worklist.show(ctx, reads.own)
+    for key, value in reads.admitted.items():
+        ctx.store.take(key, value)
+
+
+def _mode(ctx: Interpreter) -> Mode:
+    """Return what all calls depend on."""
+    graph = ctx.graph
+    return (
+        ctx.store.waited,
+        ctx.shared.edition,
+        graph.edges >= MAX_EDGES,
+        ctx.probe,
+        ctx.watch,
+    )
+
+
+def _same(ctx: Interpreter, last: Run, passed: Arguments, mode: Mode) -> bool:
+    """Tell whether all that a run has read is still the same."""
+    if last.mode != mode or last.passed != passed:
+        return False
+    if ctx.leisure is not None and ctx.spent + last.cost > ctx.leisure:
+        return False
+    reads, store = last.reads, ctx.store
+    if reads.waits and (len(store.root.heeds) != reads.heeds or not _hears(store, last)):
+        return False
+    return unchanged(reads, last.found, last.stored, store, ctx.graph)

@@ -1,1 +1,0 @@
-"""The documentation site: `make docs` builds it from docs/, the examples and the code."""
