@@ -1,13 +1,19 @@
 # make demo: install, then lint → record → on-line → repair on examples/shuttle
 # make test: install, then lint, types, import contracts, tests and the demo
+# make docs: the documentation site in build/site; docs-assets fetches the fonts and scripts that it ships, once
+# make test-docs: the whole site in a browser
 # make test-ros1, make test-ros2: the examples and the probes on a real ROS, in an environment of its own
 
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+PROCESSES ?= 2
+
+# Tests start hundreds of Python processes: without cached bytecode each one compiles pytest and tarl again
+unexport PYTHONDONTWRITEBYTECODE
 INSTALLED := $(VENV)/.installed
 
-.PHONY: demo test check unit setup clean bench-paper bench-drift
+.PHONY: demo test check unit test-editor setup docs docs-assets test-docs clean bench-paper bench-drift
 
 demo: setup
 	@BIN="$(abspath $(BIN))" sh examples/demo.sh
@@ -20,8 +26,21 @@ check: setup
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-unit: setup
-	$(BIN)/python -m pytest -q --timeout 240
+unit: setup test-editor
+	$(BIN)/python -m pytest -q --timeout 240 --numprocesses $(PROCESSES)
+
+# The language server is tested by itself: its tests need asyncio, which the others run without
+test-editor: setup
+	$(BIN)/python -m pytest -q -c tests/editor/pytest.ini --rootdir . --timeout 120 tests/editor
+
+docs: setup
+	$(BIN)/python -m website.build
+
+docs-assets: setup
+	$(BIN)/python -m website.build --fetch
+
+test-docs: docs docs-assets
+	TARL_SITE=build/site $(BIN)/python -m pytest -q tests/site
 
 setup: $(INSTALLED)
 
@@ -37,9 +56,9 @@ $(INSTALLED): pyproject.toml
 # The same test bodies on a real ROS, each in an environment of its own; see docs/real-ros.md
 ROS1_PYTHON ?= /usr/bin/python3
 ROS1_VENV ?= .venv-ros1
-ROS1_PACKAGES := python3-rospy python3-rosmaster python3-std-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-rosgraph-msgs
+ROS1_PACKAGES := python3-rospy python3-rosmaster python3-std-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs python3-rosgraph-msgs python3-diagnostic-msgs
 ROS2_VENV ?= .venv-ros2
-ROS2_WHEELS := 'ros-rclpy[fastrtps]==9.1.2' ros-geometry-msgs==5.5.1 ros-nav-msgs==5.5.1 ros-sensor-msgs==5.5.1
+ROS2_WHEELS := 'ros-rclpy[fastrtps]==9.1.2' ros-geometry-msgs==5.5.1 ros-nav-msgs==5.5.1 ros-sensor-msgs==5.5.1 ros-diagnostic-msgs==5.5.1
 ROS_TOOLS := --editable ".[ros,report]" pymunk hypothesis pytest-xdist
 # Sockets that rospy leaves to the garbage collector are no failure of a test
 ROS_LEAVES := -W "ignore:Exception ignored in:pytest.PytestUnraisableExceptionWarning" \
@@ -59,7 +78,7 @@ test-ros2: setup-ros2
 	$(ROS2_VENV)/bin/python -m pytest -q $(ROS_LEAVES) tests/realros
 
 $(ROS1_VENV)/.installed: pyproject.toml
-	@$(ROS1_PYTHON) -c 'import rospy, rosmaster, nav_msgs' || \
+	@$(ROS1_PYTHON) -c 'import rospy, rosmaster, nav_msgs, diagnostic_msgs' || \
 		{ echo "$(ROS1_PYTHON) has no rospy; on Debian: apt-get install $(ROS1_PACKAGES)"; exit 1; }
 	@$(ROS1_PYTHON) -m venv --system-site-packages $(ROS1_VENV)
 	$(ROS1_VENV)/bin/python $(PIP_INSTALL) $(ROS_TOOLS)
@@ -70,6 +89,11 @@ $(ROS2_VENV)/.installed: pyproject.toml
 	$(ROS2_VENV)/bin/python $(PIP_INSTALL) $(ROS2_WHEELS)
 	$(ROS2_VENV)/bin/python $(PIP_INSTALL) $(ROS_TOOLS)
 	@touch $@
+
+# Small faults sown into pytest_tarl, ten in each package: how many do the tests catch? Hours; nightly
+.PHONY: mutants
+mutants: setup
+	$(BIN)/python benchmarks/mutants.py --seed $${SEED:-0}
 
 bench-paper: setup
 	$(BIN)/python benchmarks/paper.py

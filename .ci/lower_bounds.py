@@ -20,18 +20,25 @@ _REQUIREMENT = re.compile(r"([A-Za-z0-9._-]+)(?:\[[^]]*\])?>=([0-9.]+)")
 def bounds(extras: list[str]) -> list[str]:
     """Return the constraints; markers of the interpreter are kept."""
     project = tomllib.loads(Path(__file__).parent.parent.joinpath("pyproject.toml").read_text())["project"]
-    lines = [
-        *project["dependencies"],
-        *(one for extra in extras for one in project["optional-dependencies"][extra]),
-    ]
     found = []
-    for line in lines:
+    for line in [*project["dependencies"], *requirements(project["optional-dependencies"], extras)]:
         requirement, _, marker = line.partition(";")
         match = _REQUIREMENT.fullmatch(requirement.strip())
         if match is None:
             sys.exit(f"pyproject.toml: {line!r} names no lower bound.")
         found.append(f"{match[1]}=={match[2]}" + (f" ; {marker.strip()}" if marker else ""))
     return found
+
+
+def requirements(declared: dict[str, list[str]], extras: list[str]) -> list[str]:
+    """Return what these extras need and the extras that they include, each line once."""
+    found: dict[str, None] = {}
+    for extra in extras:
+        for line in declared[extra]:
+            included = re.fullmatch(r"tarl\[([^]]*)\]", line)
+            lines = requirements(declared, included[1].split(",")) if included else [line]
+            found.update(dict.fromkeys(lines))
+    return list(found)
 
 
 if __name__ == "__main__":

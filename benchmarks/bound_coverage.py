@@ -18,6 +18,7 @@ from math import log, sqrt
 
 import numpy as np
 
+from pytest_tarl.learning.betting import bet
 from pytest_tarl.learning.bounds import (
     Range,
     evidence_above,
@@ -26,9 +27,10 @@ from pytest_tarl.learning.bounds import (
     quantile_low,
     rate,
 )
-from pytest_tarl.learning.intervals import difference_bounds
+from pytest_tarl.learning.student import difference_bounds
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.model import Bound
+from pytest_tarl.searching.accept import SCREEN
 from pytest_tarl.seeds import generator
 
 CONFIDENCE = 0.95
@@ -37,6 +39,7 @@ EPISODES = (8, 20, 50, 200)
 ONLINE = (8, 20, 50)  # for losses without a range, which take long
 OFFLINE = 200
 QUANTILE = 0.05
+LIMIT = 0.01  # what a mean may be lower by in an acceptance, as a share of the range
 TRUTH = 2_000_000  # draws that a mean or quantile is known from
 
 Generator = np.random.Generator
@@ -101,6 +104,16 @@ class World:
     def loss(self, draws: Generator, n: int, how: Range | None) -> Held:
         """Tell whether the bounds of a loss hold where there is none."""
         return holds(loss_between(self.drawn(draws, OFFLINE), self.drawn(draws, n), CONFIDENCE, how), 0.0)
+
+    def limit(self, draws: Generator, n: int, how: Range) -> Held:
+        """Tell whether the bets of an acceptance are never won in n episodes whose mean is at the limit."""
+        margin = LIMIT * (how.high - how.low)
+        least = how.low - self.truth[0] - margin
+        away = self.truth[0] + margin
+        known, seen = ([total - away for total in self.drawn(draws, m)] for m in (SCREEN, n))
+        stakes = bet(margin, least, known)
+        ends = range(1, n + 1, max(1, n // 50))
+        return all(stakes.wealth(seen[:end]) < log(1 / (1 - CONFIDENCE)) for end in ends), True
 
     def welch(self, draws: Generator, n: int) -> Held:
         """Tell whether Welch's do."""
@@ -181,6 +194,9 @@ def of_world(name: str, repetitions: int, kinds: str) -> list[Row]:
             measured("mean, betting", True, name, lambda d, n: world.mean(d, n, declared), repetitions),
             measured(
                 "mean, betting, any time", True, name, lambda d, n: world.mean(d, n, declared, True), fewer
+            ),
+            measured(
+                "above a limit, acceptance", True, name, lambda d, n: world.limit(d, n, declared), fewer
             ),
             measured("loss, betting", True, name, lambda d, n: world.loss(d, n, declared), fewer),
         ]

@@ -1,16 +1,21 @@
-"""Time that `observe` adds to a control cycle: p50, p99, p99.9 of cycles with and without it, alternating in one run.
+"""Time that `observe` adds to a control cycle: p50, p99, p99.9 of the same loop with and without it, in one run.
 
 Run `python benchmarks/observe.py`. A cycle is what a Figure 1 style node does between a message and its command: the
 callback, the control law, 18 recorded lines; the observer is told two sensors and a reward in each, as on a robot,
-while its thread writes and syncs the log.
+while the log is written and synced. Blocks of both kinds alternate, each in a process of its own. A cycle's time runs
+from the moment at which it was due, so that a thread which keeps the interpreter counts as well; `executing` runs from
+its first line. With `--realtime`, the loop has the scheduler's priority that control loops have (SCHED_FIFO), so that
+other programs do not count.
 """
 
 from __future__ import annotations
 
 import argparse
-import gc
+import json
+import os
+import subprocess
+import sys
 import tempfile
-from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter_ns, sleep
@@ -20,7 +25,6 @@ import numpy as np
 
 from pytest_tarl import Sensor
 from pytest_tarl.instrumentation.importhook import NodeImports
-from pytest_tarl.observing.frames import LogFile
 from pytest_tarl.observing.observer import Observer
 
 SENSORS = (
@@ -30,6 +34,8 @@ SENSORS = (
 LINES = [f"    v{n} = v{n - 1} * 0.5 + {n}" for n in range(1, 19)]
 NODE = "\n".join(["def cycle(v0):", *LINES, "    speed = 5 * v18", "    return speed", ""])
 PERIOD = 0.002  # seconds between two cycles
+WARM = 50  # cycles at the start of a block that do not count
+AT = (50, 99, 99.9)
 
 
 @dataclass
@@ -56,42 +62,88 @@ def node(folder: Path, hooks: Any = None) -> Any:
 def main() -> None:
     """Print the percentiles."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--cycles", type=int, default=5000, help="of each kind (default 5000)")
-    cycles = parser.parse_args().cycles
-    with ExitStack() as open_:
-        folder = Path(open_.enter_context(tempfile.TemporaryDirectory()))
-        observer = Observer(SENSORS, LogFile(folder / "log"), {"node": "node.py", "sites": [], "sensors": []})
-        open_.callback(observer.close)
-        observer.begin()
-        plain, observed = node(folder), node(folder, observer.stream)
-        times = np.array([_pair(plain, observed, observer, n) for n in range(cycles)]) / 1000.0
-        gc.collect()
-        log = folder / "log"
-        print(f"{'':<12}{'p50':>10}{'p99':>10}{'p99.9':>10}   µs a cycle")
-        for name, column in (("bare", times[:, 0]), ("observed", times[:, 1])):
-            _row(name, column)
-        _row("added", np.sort(times[:, 1]) - np.sort(times[:, 0]))
-        print(
-            f"{log.stat().st_size / cycles:.0f} bytes of log a cycle, {observer.stream.dropped} events dropped"
+    parser.add_argument("--cycles", type=int, default=20_000, help="of each kind (default 20000)")
+    parser.add_argument("--blocks", type=int, default=10, help="that they are run in (default 10)")
+    parser.add_argument("--realtime", action="store_true", help="SCHED_FIFO, where the user may")
+    parser.add_argument("--block", choices=("bare", "observed"), help=argparse.SUPPRESS)
+    given = parser.parse_args()
+    cycles = max(1, given.cycles // given.blocks)
+    if given.block:
+        print(json.dumps(block(cycles, observed=given.block == "observed", realtime=given.realtime)))
+        return
+    own = [sys.executable, __file__, "--cycles", str(cycles), "--blocks", "1"]
+    own += ["--realtime"] if given.realtime else []
+    found: dict[str, list[Any]] = {"bare": [], "observed": []}
+    for _ in range(given.blocks):
+        for kind, times in found.items():
+            done = subprocess.run([*own, "--block", kind], check=True, stdout=subprocess.PIPE)
+            times.append(json.loads(done.stdout))
+    bytes_, dropped = (sum(one[name] for one in found["observed"]) for name in ("bytes", "dropped"))
+    for which in ("due", "executing"):
+        table(which, *(np.concatenate([one[which] for one in found[kind]]) for kind in found))
+    print(f"\n{bytes_ / cycles / given.blocks:.0f} bytes of log a cycle, {dropped} events dropped")
+
+
+def table(which: str, bare: Any, observed: Any) -> None:
+    """Print the percentiles of both kinds and their differences."""
+    print(
+        f"\n{'since ' + which if which == 'due' else which:<12}{'p50':>10}{'p99':>10}{'p99.9':>10}   µs a cycle"
+    )
+    rows = [[np.percentile(column, at) for at in AT] for column in (bare, observed)]
+    rows.append([after - before for before, after in zip(*rows, strict=True)])
+    for name, row in zip(("bare", "observed", "added"), rows, strict=True):
+        print(f"{name:<12}" + "".join(f"{one:>10.1f}" for one in row))
+
+
+def block(cycles: int, *, observed: bool, realtime: bool) -> dict[str, Any]:
+    """Run a block of cycles and return their times in µs."""
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / "log"
+        observer = (
+            Observer(SENSORS, log, {"node": "node.py", "sites": [], "sensors": []}) if observed else None
         )
+        if observer is not None:
+            observer.begin()
+        cycle = node(Path(folder), None if observer is None else observer.stream)
+        if (
+            realtime
+        ):  # threads that are there keep their priority, and processes that are begun do not inherit it
+            os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(10))
+        try:
+            due, executing = loop(cycle, observer, cycles)
+        finally:
+            if observer is not None:
+                observer.close()
+        dropped = 0 if observer is None else observer.stream.dropped
+        return {
+            "due": due,
+            "executing": executing,
+            "dropped": dropped,
+            "bytes": log.stat().st_size if observed else 0,
+        }
 
 
-def _pair(plain: Any, observed: Any, observer: Observer, number: int) -> tuple[int, int]:
-    sleep(PERIOD)
-    value = (number % 100) / 10.0
-    message = Message(value, number % 50 < 10)
-    began = perf_counter_ns()
-    plain(value)
-    middle = perf_counter_ns()
-    for sensor in SENSORS:
-        observer.told(sensor, message)
-    observed(value)
-    observer.step(0.5)
-    return middle - began, perf_counter_ns() - middle
-
-
-def _row(name: str, column: Any) -> None:
-    print(f"{name:<12}" + "".join(f"{np.percentile(column, at):>10.1f}" for at in (50, 99, 99.9)))
+def loop(cycle: Any, observer: Observer | None, cycles: int) -> tuple[list[float], list[float]]:
+    """Run the control loop; return for each cycle the µs since it was due and since it began."""
+    since_due, since_begun = [], []
+    due = perf_counter_ns()
+    for number in range(cycles + WARM):
+        value = (number % 100) / 10.0
+        message = Message(value, number % 50 < 10)
+        due = max(due + int(PERIOD * 1e9), perf_counter_ns())  # a late cycle does not make others late
+        sleep(max(0.0, (due - perf_counter_ns()) / 1e9))
+        began = perf_counter_ns()
+        if observer is not None:
+            for sensor in SENSORS:
+                observer.told(sensor, message)
+        cycle(value)
+        if observer is not None:
+            observer.step(0.5)
+        ended = perf_counter_ns()
+        if number >= WARM:
+            since_due.append((ended - due) / 1e3)
+            since_begun.append((ended - began) / 1e3)
+    return since_due, since_begun
 
 
 if __name__ == "__main__":

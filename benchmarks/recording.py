@@ -29,7 +29,9 @@ from coverage import Coverage
 from slipcover import Slipcover
 
 from pytest_tarl.instrumentation.codecache import CodeCache
+from pytest_tarl.instrumentation.constants import bound
 from pytest_tarl.instrumentation.instrument import Offset, instrument
+from pytest_tarl.instrumentation.instrument import compiled as code_of
 from pytest_tarl.instrumentation.nodecode import NodeCode
 from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.learning.statistics import sample
@@ -102,8 +104,7 @@ def sites_of(tree: ast.Module) -> dict[Offset, int]:
 def compiled(source: str, *, inline: bool) -> CodeType:
     """Compile a program with its sites recorded."""
     tree = ast.parse(source)
-    code: CodeType = compile(instrument(tree, sites_of(tree), inline=inline), "<program>", "exec")
-    return code
+    return code_of(instrument(tree, sites_of(tree), inline=inline), "<program>")
 
 
 def prepared(code: CodeType, space: dict[str, Any], name: str = "work") -> Callable[..., Any]:
@@ -142,14 +143,13 @@ def bare(source: str, file: Path) -> float:
 
 def hooked(source: str, _file: Path) -> float:
     """Time a program that calls a hook which does nothing."""
-    return seconds(prepared(compiled(source, inline=False), {"__tarl__": lambda _number, value: value}))
+    return seconds(prepared(bound(compiled(source, inline=False), lambda _number, value: value), {}))
 
 
 def recorded(source: str) -> tuple[float, int]:
     """Time a program as the plugin runs it, and count its events."""
-    recorder, space = Recorder(), dict[str, Any]()
-    recorder.bind(space)
-    spent = seconds(prepared(compiled(source, inline=True), space))
+    recorder = Recorder()
+    spent = seconds(prepared(recorder.bind(compiled(source, inline=True)), {}))
     return spent, len(recorder.finish().site)
 
 
@@ -178,9 +178,8 @@ def control_step() -> tuple[float, float]:
     plain = prepared(compile(source, "<program>", "exec"), {}, "control")
     step, best = float("inf"), [float("inf")] * 2
     for _ in range(TURNS):
-        recorder, space = Recorder(), dict[str, Any]()
-        recorder.bind(space)
-        watched = prepared(compiled(source, inline=True), space, "control")
+        recorder = Recorder()
+        watched = prepared(recorder.bind(compiled(source, inline=True)), {}, "control")
         step = min(step, stepped(plain))
         best = [min(pair) for pair in zip(best, (called(plain), called(watched)), strict=True)]
         assert len(recorder.finish().site) >= 20 * STEPS

@@ -29,7 +29,7 @@ import pytest
 HERE = Path(__file__).resolve().parent
 EXAMPLES = HERE.parent / "examples"
 FOUND = HERE.parent / ".tarl-same-world.jsonl"
-BATCH = 5  # comparisons of a process
+BATCH = 10  # comparisons of a process
 ONLINE_SEEDS = 1_000_000  # added to the number of a comparison: seeds that no recording has
 SPARED = shutil.ignore_patterns(".tarl", "__pycache__", "answer.json")
 
@@ -88,7 +88,7 @@ def compare_here(world: World, numbers: Sequence[int], committed: bool) -> Itera
 
 def ran(world: World, *flags: str) -> None:
     """Run pytest. Raises RuntimeError where it came to no verdict."""
-    quiet = ("-q", "-p", "no:cacheprovider", "-p", "no:asyncio", "-c", os.devnull, "--rootdir", ".")
+    quiet = ("-q", "-p", "no:cacheprovider", "-c", os.devnull, "--rootdir", ".")
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
         status = pytest.main(["-W", "ignore", *quiet, world.test, *flags], [Undrifted()])
     if status not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
@@ -112,7 +112,11 @@ def compared(name: str, numbers: Sequence[int], committed: bool) -> list[dict[st
     """Run a batch in a process of its own; what it found before it died counts."""
     command = [sys.executable, __file__, "--worlds", name, "--numbers", *map(str, numbers)]
     ended = subprocess.run(
-        [*command, *(["--committed"] if committed else [])], capture_output=True, text=True, check=False
+        [*command, *(["--committed"] if committed else [])],
+        env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1", "PYTEST_PLUGINS": "pytest_tarl.plugin"},
+        capture_output=True,
+        text=True,
+        check=False,
     )
     if ended.returncode:
         print(f"{name}: {ended.stderr.strip().splitlines()[-1:]}", file=sys.stderr, flush=True)

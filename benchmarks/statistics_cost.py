@@ -83,8 +83,6 @@ def recorded(steps: int) -> Callable[[], Recorder]:
 
     def fill() -> Recorder:
         recorder = Recorder()
-        namespace: dict[str, object] = {}
-        recorder.bind(namespace, "hook")
         entries = recorder._entries()
         for cell, chunk, reward in zip(cells.tolist(), chunks, rewards, strict=True):
             recorder.latch((cell,))

@@ -25,7 +25,7 @@ from time import process_time
 
 import numpy as np
 from gate_worlds import WORLDS
-from watch_streams import WATCHED, fixture, pools, stream
+from watch_streams import WATCHED, fixture, pools, stream, total_range
 
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning.fixture import Fixture, save
@@ -34,7 +34,8 @@ from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Floats, Sample
 from pytest_tarl.monitoring.monitor import Monitor, begun
 from pytest_tarl.observing.frames import MAGIC, encoded
-from pytest_tarl.observing.observer import packed
+from pytest_tarl.observing.stream import Chunk
+from pytest_tarl.observing.writer import steps_record
 from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
@@ -44,7 +45,7 @@ SIZES = (0.2, 0.5, 1.0)
 STARTS = (0, 1000, 100_000)
 DISTINCT = 5000  # missions that the log of the speed test is made of
 WINDOW, EVERY = 40, 10
-METHODS = ("watch", "bound", "world", "repeated KS", "CUSUM")
+METHODS = ("watch", "success", "mean", "world", "repeated KS", "CUSUM")
 
 
 @dataclass(frozen=True)
@@ -80,19 +81,23 @@ def watched(monitor: Monitor, missions: Sample, until: bool) -> None:
             (),
         )
         monitor.take(some, np.zeros(some.episodes))
-        if (monitor.processes.alarm[1:] >= 0).any() and (monitor.processes.alarm[:1] >= 0).any():
+        bounds, world = np.split(monitor.processes.alarm >= 0, [len(monitor.bounds)])
+        if bounds.all() and world.any():
             return
 
 
 def alarms(monitor: Monitor, offline: Floats, online: Floats) -> Alarms:
     """Return the first alarm of each method; `online` are the totals of all missions."""
     raised = monitor.processes.alarm
-    bound, world = _first(raised[: len(monitor.bounds)]), _first(raised[len(monitor.bounds) :])
-    both = [one for one in (bound, world) if one is not None]
+    stated = {bound.what: raised[row : row + 1] for row, bound in enumerate(monitor.bounds)}
+    nothing = raised[:0]
+    success, mean = (_first(stated.get(what, nothing)) for what in ("success", "total"))
+    world = _first(raised[len(monitor.bounds) :])
     return Alarms(
         {
-            "watch": min(both, default=None),
-            "bound": bound,
+            "watch": _first(raised),
+            "success": success,
+            "mean": mean,
             "world": world,
             "repeated KS": repeated(offline, online),
             "CUSUM": cusum(offline, online),
@@ -145,7 +150,7 @@ def false_alarms(streams: int, worlds: Sequence[str]) -> None:
         for number in range(min(each, streams - len(total))):
             rng = generator(number, f"watch/alarms/{world}")
             designed = pools(world, 0.0).designed
-            recorded = fixture(designed, rng)
+            recorded = fixture(designed, rng, total_range(world))
             monitor = begun(recorded, alpha=ALPHA, seed=number)
             online = stream(designed, recorded.sample.cells, LIFE, rng)
             watched(monitor, online, until=False)
@@ -184,7 +189,7 @@ def _drifts(world: str, number: int, start: int) -> dict[float, Alarms]:
     """Return what the methods say of each size of a drift after one and the same quiet life."""
     rng = generator(number, f"watch/delays/{world}/{start}")
     designed = pools(world, 0.0).designed
-    recorded = fixture(designed, rng)
+    recorded = fixture(designed, rng, total_range(world))
     quiet = begun(recorded, alpha=ALPHA, seed=number)
     before: list[Floats] = [np.empty(0)]
     for begin in range(0, start, LIFE):
@@ -278,10 +283,10 @@ def _logged(folder: Path, missions: int) -> int:
 def _steps(
     cells: list[list[int]], places: np.ndarray[tuple[int], np.dtype[np.int32]], reward: Floats
 ) -> dict[str, object]:
-    none = packed(np.empty(0, np.int32))
-    steps: dict[str, object] = dict.fromkeys(("site", "flow", "cell", "step", "thread"), none)
-    steps |= {"kind": "steps", "cells": cells, "step_cell": packed(places), "reward": packed(reward)}
-    return {**steps, "readings": [], "dropped": 0}
+    """Return the record that an observer writes of a node in which nothing is recorded."""
+    none, nothing = np.empty(0, np.int32), np.empty(0)
+    chunk = Chunk(tuple(map(tuple, cells)), none, nothing, none, none, none, places, reward)
+    return steps_record(chunk, [], 0)
 
 
 def main() -> None:

@@ -13,7 +13,9 @@ from gate_pools import simulated, trace
 from gate_worlds import WORLDS
 from numpy.typing import NDArray
 
+from pytest_tarl.learning.bounds import Range
 from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.guarantees import stated, varies
 from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.packing import represented
 from pytest_tarl.learning.statistics import sample
@@ -50,6 +52,7 @@ SYNTHETIC: dict[str, Callable[[Generator], tuple[list[tuple[int, ...]], list[flo
     "heavy": heavy,
     "rare": rare,
 }
+UNBOUNDED = ("heavy",)  # whose totals no range holds
 WATCHED = (*WORLDS, *EXAMPLES, *SYNTHETIC)
 
 
@@ -86,15 +89,29 @@ def _pool(world: str, size: float) -> Sample:
     return represented(replace(found, lists=()))
 
 
-def fixture(pool: Sample, rng: Generator) -> Fixture:
-    """Return a fixture of missions that are drawn with replacement, with the cells that they visit."""
+@cache
+def total_range(world: str) -> Range | None:
+    """Return what a marker would declare of a mission's total, with or without drift; None where nothing holds."""
+    if world in UNBOUNDED:
+        return None
+    totals = [_pool(world, size).total for size in ((0.0, 1.0) if world not in SYNTHETIC else (0.0,))]
+    low, high = min(float(one.min()) for one in totals), max(float(one.max()) for one in totals)
+    return Range(float(np.floor(low)) - 1.0, float(np.ceil(high)) + 1.0)
+
+
+def fixture(pool: Sample, rng: Generator, declared: Range | None = None) -> Fixture:
+    """Return a fixture of missions that are drawn with replacement, with the cells that they visit.
+
+    It states what `--tarl-record` states of such missions: bounds of success and, within a declared range, of the mean.
+    """
     chosen = gathered(pool, rng.integers(pool.episodes, size=OFFLINE))
     seen = np.unique(chosen.chain.cell)
     cells = tuple(pool.cells[row] for row in seen.tolist())
     seeds = tuple(sorted(int(one) for one in rng.integers(2**62, size=OFFLINE)))
     drawn = replace(_over(chosen, pool, cells), cells=cells, seeds=seeds)
     sensors = tuple(Sensor(f"s{n}") for n in range(len(cells[0])))
-    return Fixture("stream", 0, sensors, (), {}, drawn, ())
+    told = stated(drawn.passed.tolist(), drawn.total.tolist(), declared=declared, varied=varies(drawn))
+    return Fixture("stream", 0, sensors, (), {}, drawn, (), stated=told)
 
 
 def stream(pool: Sample, cells: tuple[tuple[int, ...], ...], count: int, rng: Generator) -> Sample:

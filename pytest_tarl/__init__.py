@@ -25,5 +25,10 @@ _HOMES = {
 def __getattr__(name: str) -> Any:
     """Import what is asked for when it is: every pytest run loads this package, few use it."""
     if name in _HOMES:
+        from pytest_tarl.extras import missing_extra
+
+        sentence = missing_extra(f"pytest_tarl.{name}")
+        if sentence is not None:
+            raise ImportError(sentence)
         return getattr(import_module(_HOMES[name]), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -34,6 +34,8 @@ from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import Cell, Sensor
 from pytest_tarl.settling import within
 
+Tables = tuple[Floats, Floats]  # utility of one list off-line and on-line, shape (cells, sites)
+
 
 @dataclass(frozen=True)
 class Online:
@@ -71,12 +73,8 @@ def run_online(
         tables = _learned_tables(fixture, recorded, learned, offline.cells)
     else:
         tables = _solved_tables(offline, online, fixture.sensors)
-    without = difference.region.without
-    if without:
-        tables = [
-            (lent(before, one, offline.cells, without), after)
-            for (before, after), one in zip(tables, offline.lists, strict=True)
-        ]
+    if difference.region.without:
+        tables = _lent(tables, offline, difference.region.without)
     near_half = _paper_cells(tables, offline.cells)
     chosen = _rows(difference.region, near_half, offline.cells)
     lists = _compared(_current(fixture, plan), tables, chosen)
@@ -97,10 +95,7 @@ def run_online(
             *side.notes,
             *recorded.notes,
             *remarks.early(recorded.sample, count),
-            *remarks.unheard_of(offline, online, difference, fixture.sensors),
-            *remarks.lost_sites(fixture, plan),
-            *remarks.failing(offline, online, difference.verdict, options),
-            *remarks.other_formulas(offline, online),
+            *remarks.of_comparison(fixture, plan, offline, online, difference, options),
         ),
         parts=parts.means(offline, online),
         lost=parts.lost(offline, online, options.alpha, seeds.generator(options.seed, "parts")),
@@ -114,6 +109,14 @@ def run_online(
         permanent=drift is not None and designation.drifts[drift].permanent,
     )
     return Online(comparison, recorded, learned)
+
+
+def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> list[Tables]:
+    """Return the tables, those off-line with what cells alike are worth when some sensors are left out."""
+    return [
+        (lent(before, one, offline.cells, without), after)
+        for (before, after), one in zip(tables, offline.lists, strict=True)
+    ]
 
 
 def _sizes(designation: Designation, drift: str | None, drawn_by: Sequence[int]) -> dict[str, Sizes]:
@@ -210,7 +213,7 @@ def _current(fixture: Fixture, plan: Plan) -> list[TaintList]:
     ]
 
 
-def _solved_tables(offline: Sample, online: Sample, sensors: Sequence[Sensor]) -> list[tuple[Floats, Floats]]:
+def _solved_tables(offline: Sample, online: Sample, sensors: Sequence[Sensor]) -> list[Tables]:
     """Return the batch solution off-line and on-line per list, shape (cells, sites); both samples share their cells."""
     cells, tiles = len(offline.cells), tiled(offline.cells, sensors)
     return [
@@ -221,7 +224,7 @@ def _solved_tables(offline: Sample, online: Sample, sensors: Sequence[Sensor]) -
 
 def _learned_tables(
     fixture: Fixture, recorded: Recorded, learned: Sequence[Floats], cells: Sequence[Cell]
-) -> list[tuple[Floats, Floats]]:
+) -> list[Tables]:
     """Return the learned tables off-line and on-line per list over the same cells, shape (cells, sites)."""
     return [
         (_spread(before, fixture.sample.cells, cells), _spread(after, recorded.sample.cells, cells))

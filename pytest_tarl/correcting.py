@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from pytest_tarl.learning.drift import judged, smallest_detectable_loss
+from pytest_tarl.learning.bounds import detectable_loss
+from pytest_tarl.learning.drift import judged
 from pytest_tarl.learning.holm import holm
 from pytest_tarl.learning.permutation import least_p_value, permutations_for
 from pytest_tarl.model import Comparison, Region, Verdict
@@ -53,4 +54,4 @@ def _hopeless(comparison: Comparison, tests: int, alpha: float) -> Iterator[str]
 def _detectable(comparison: Comparison, alpha: float) -> float:
     """Return the loss that would have been seen at the first step of the correction, the strictest one."""
     offline, online = (np.array(comparison.totals[world]) for world in ("offline", "online"))
-    return max(comparison.verdict.tolerance, smallest_detectable_loss(offline, online, alpha))
+    return max(comparison.verdict.tolerance, detectable_loss(offline, online, alpha))

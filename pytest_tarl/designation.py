@@ -12,6 +12,7 @@ from typing import Any
 from pytest_tarl.drifts import Drift, drift
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.formulas.declared import ARGUMENTS, NOTHING_REQUIRED, Requirements, requirements
+from pytest_tarl.formulas.said import NOTHING_SAID, Said
 from pytest_tarl.options import number_within
 from pytest_tarl.sensors import Sensor, as_number
 
@@ -43,8 +44,13 @@ class Designation:
     requirements: Requirements = NOTHING_REQUIRED
 
 
-def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, Any]) -> Designation:
-    """Check a marker's arguments. Raises SettingsError with a sentence that says which one and how to mend it."""
+def designation(
+    where: str, positional: Sequence[Any], arguments: Mapping[str, Any], said: Said = NOTHING_SAID
+) -> Designation:
+    """Check a marker's arguments; `said` is what the test says of formulas elsewhere.
+
+    Raises SettingsError with a sentence that says which one and how to mend it.
+    """
     if positional:
         raise SettingsError(
             f"{where}: @pytest.mark.tarl takes named arguments only, such as nodes=[…], sensors=[…]."
@@ -66,7 +72,7 @@ def designation(where: str, positional: Sequence[Any], arguments: Mapping[str, A
         tolerance=_tolerance(where, arguments.get("tolerance")),
         judge=_judge(where, arguments.get("judge")),
         monitor=_monitor(where, arguments.get("monitor")),
-        requirements=requirements(where, arguments, sensors),
+        requirements=requirements(where, arguments, sensors, said),
     )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import reprlib
 from collections.abc import Mapping, Sequence
@@ -12,11 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pytest_tarl import seeds
-from pytest_tarl.errors import RecordingError, RequirementError, SettingsError, TarlError
-from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements, check_texts
-from pytest_tarl.formulas.judging import Judge, Judged
-from pytest_tarl.formulas.signals import Signal
-from pytest_tarl.sensors import Cell, Sensor, as_number, reading
+from pytest_tarl.errors import RecordingError, SettingsError
+from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
+from pytest_tarl.formulas.episode import EpisodeFormulas
+from pytest_tarl.formulas.judging import Judged
+from pytest_tarl.sensors import Sensor, as_number
+from pytest_tarl.situation import Situation
 
 if TYPE_CHECKING:
     import numpy as np
@@ -48,12 +48,7 @@ class Tarl:
         alone: bool = False,
     ) -> None:
         self.seed = seed
-        self.topics: dict[str, str] = {}
         self.drives_ros = False
-        self._sensors = tuple(sensors)
-        self.values: dict[str, list[float]] = {}  # of sensors whose bins are yet to be learned
-        self._bins: dict[str, int | None] = {}
-        self._situated = False  # whether there ever was a cell
         self._folder = folder
         self._kind = kind
         self._nodes = tuple(nodes)
@@ -66,8 +61,10 @@ class Tarl:
         self._origin = 0  # of virtual time, in ns
         self._requirements = requirements
         self._alone = alone  # whether it is the only episode of a plain test run
-        self._judge = Judge(requirements.names, requirements.formulas) if requirements.followed else None
-        self.judged: tuple[Judged, ...] = ()
+        self._formulas = EpisodeFormulas(requirements, tuple(sensors), lambda: self._now)
+        self._situation = Situation(tuple(sensors), requirements, self._formulas, recorder)
+        self.topics = self._situation.topics
+        self.values = self._situation.values
         self._open = ExitStack()
         self._open.enter_context(imports)
 
@@ -86,7 +83,7 @@ class Tarl:
             self._ros = make_ros(self._kind, [self._folder / node for node in self._nodes])
             self._open.enter_context(self._ros.installed())
             self._open.callback(self._ros.close)
-            self._ros.on_delivery(self._latch)
+            self._ros.on_delivery(self._situation.hear)
             if self._replay is not None:
                 self._replay.begin(self._ros)
             self._origin = self._ros.scheduler.time
@@ -96,6 +93,11 @@ class Tarl:
     def bus(self) -> Bus:
         """The topics, as the world sees them: `publish` to the nodes, `latest` from them."""
         return self.ros.bus
+
+    @property
+    def judged(self) -> tuple[Judged, ...]:
+        """What the formulas came to, once the episode is concluded."""
+        return self._formulas.judged
 
     @property
     def now(self) -> float:
@@ -153,7 +155,7 @@ class Tarl:
             elif judgement is not None:
                 self.reward(judgement)
 
-        replay.run(self.ros, dt, lambda: self._situated, close, self.observe)
+        replay.run(self.ros, dt, lambda: self._situation.known, close, self.observe)
         raise MissionReplayed("The recorded mission is over.")
 
     def message(self, topic: str, message: Any) -> None:
@@ -162,41 +164,18 @@ class Tarl:
             raise SettingsError(
                 f"tarl.message got {topic!r} as topic: it takes the name first, tarl.message('/odom', message)."
             )
-        self._latch(topic, message)
+        self._situation.hear(topic, message)
 
     def observe(self, **values: Any) -> None:
         """Give the values of sensors that have no topic, and of signals that formulas name."""
-        declared = {sensor.name: sensor for sensor in self._sensors}
-        signals = {signal.name for signal in self._requirements.signals}
-        for name, value in values.items():
-            if name in declared:
-                self._read(declared[name], value)
-            elif name in signals:
-                self._give(name, value)
-            else:
-                known = [*declared, *sorted(signals)]
-                close = difflib.get_close_matches(name, known, 1)
-                hint = (
-                    f"; did you mean {close[0]!r}?" if close else f"; the marker declares {', '.join(known)}."
-                )
-                raise SettingsError(f"tarl.observe: no sensor and no signal is named {name!r}{hint}")
-        if not signals.issuperset(values):
-            self._latch_cell()
+        self._situation.observe(values)
 
     def require(self, formula: str) -> None:
         """Require a formula of this episode, judged with those of the marker when the body is over.
 
         Raises SettingsError for what is no formula over the test's signals.
         """
-        check_texts("tarl.require", formula, self._sensors)
-        if self._judge is None:
-            if self._bins or self._now:
-                raise SettingsError(
-                    "tarl.require: the episode has begun and its signals were not followed until now: call it before "
-                    "the world moves, or say requires=[] in the marker."
-                )
-            self._judge = Judge(self._requirements.names, ())
-        self._judge.require(formula)
+        self._formulas.require(formula, begun=self._situation.begun)
 
     def reward(self, total: float | None = None, /, **parts: float) -> None:
         """Give the monitor's judgement of this simulation step, once a step; parts are summed and reported apart."""
@@ -219,31 +198,16 @@ class Tarl:
 
         A body that failed by itself fails for its own reason.
         """
-        if self._judge is None:
-            return
         whole = ended is None or (self._replay is not None and self._replay.done)
-        try:
-            self.judged = self._judge.conclude(self._now)
-        except TarlError:
-            if whole:
-                raise
-            return
-        if not whole:
-            return
-        too_short = self._judge.unjudged(self._now) if self._alone else ""
-        if too_short:
-            raise SettingsError(too_short)
-        violation = self._judge.violation(self.judged)
-        if violation:
-            raise RequirementError(violation)
+        self._formulas.conclude(whole=whole, alone=self._alone)
 
     def rewarded(self, trace: Trace) -> Trace:
         """Return the trace with the rewards that formulas give, where they do."""
-        if not self._requirements.rewarding or self._judge is None:
+        rewards = self._formulas.rewards()
+        if rewards is None:
             return trace
         import numpy as np
 
-        rewards = self._judge.rewards(self._now, self._requirements.cap)
         return replace(trace, reward=np.array(rewards, np.float64))
 
     def close(self) -> None:
@@ -275,14 +239,9 @@ class Tarl:
                 "The test never called tarl.reward: call it once a simulation step with the monitor's judgement, "
                 "for instance tarl.reward(world.monitor())."
             )
-        silent = [sensor for sensor in self._sensors if sensor.name not in self._bins]
-        if silent:
-            return RecordingError(_silence(silent[0]))
-        if not self._situated:
-            return RecordingError(
-                f"Sensor {next(name for name, value in self._bins.items() if value is None)!r} was NaN whenever the "
-                "others were known, which tells nothing: look at what the world gives it."
-            )
+        problem = self._situation.problem()
+        if problem is not None:
+            return problem
         if self.drives_ros and not self.ros.published:
             heard = ", ".join(sorted(self.ros.subscribed)) or "no topic"
             return RecordingError(
@@ -304,57 +263,15 @@ class Tarl:
             )
         return None
 
-    def _latch(self, topic: str, message: Any) -> None:
-        """Hold the sensors' bins until the next message on their topic."""
-        changed = False
-        for sensor in self._sensors:
-            if sensor.topic is not None and same_topic(sensor.topic, topic):
-                self._read(sensor, _value(sensor, message))
-                self.topics[sensor.topic] = message_type_name(message)
-                changed = True
-        for signal in self._requirements.signals:
-            if signal.topic is not None and same_topic(signal.topic, topic):
-                self._give(signal.name, _value(signal, message))
-                self.topics[signal.topic] = message_type_name(message)
-        if changed:
-            self._latch_cell()
-
     @property
     def _now(self) -> int:
         """Return the virtual nanoseconds since the episode, or the recorded mission, began."""
         return 0 if self._ros is None else self._ros.scheduler.time - self._origin
 
-    def _give(self, name: str, value: Any) -> None:
-        if self._judge is not None:
-            self._judge.give(name, value, self._now)
-
     def _stepped(self) -> None:
-        """Close a step for the formulas; what it earns by them is known when the episode is over."""
-        if self._judge is None:
-            return
-        self._judge.steps.append(self._now)
-        if self._requirements.rewarding:
+        if self._formulas.stepped():
             self._recorder.reward(0.0, {})
             self._rewards += 1
-
-    def _read(self, sensor: Sensor, value: Any) -> None:
-        if self._judge is not None and not sensor.categories:
-            self._give(sensor.name, value)
-        self._bins[sensor.name] = sensor.bin(value)
-        if sensor.to_learn:
-            self.values.setdefault(sensor.name, []).append(float(value))
-
-    def _latch_cell(self) -> None:
-        bins = [self._bins.get(sensor.name) for sensor in self._sensors]
-        known = [value for value in bins if value is not None]
-        cell: Cell | None = tuple(known) if len(known) == len(bins) else None
-        self._situated = self._situated or cell is not None
-        self._recorder.latch(cell)
-
-
-def same_topic(first: str, second: str) -> bool:
-    """Compare topic names; a leading slash makes no difference."""
-    return first.lstrip("/") == second.lstrip("/")
 
 
 def _reward(value: Any) -> float:
@@ -367,31 +284,3 @@ def _reward(value: Any) -> float:
             "squares overflow. Scale the monitor's judgement."
         )
     return number
-
-
-def message_type_name(message: Any) -> str:
-    """Name a message's type as ROS 2 does: `std_msgs/msg/Bool`. Empty for what is no ROS message."""
-    kind = type(message)
-    package = kind.__module__.split(".")[0]
-    return f"{package}/msg/{kind.__name__}" if hasattr(kind, "__slots__") or hasattr(kind, "_type") else ""
-
-
-def _value(sensor: Sensor | Signal, message: Any) -> Any:
-    if callable(sensor.field):
-        return sensor.field(message)
-    try:
-        return reading(message, sensor.field or "")
-    except (AttributeError, IndexError, KeyError, TypeError) as problem:
-        raise SettingsError(
-            f"{type(sensor).__name__} {sensor.name!r}: a message on {sensor.topic} ({type(message).__name__}) has no "
-            f"field {sensor.field!r}. Mend the field in the marker."
-        ) from problem
-
-
-def _silence(sensor: Sensor) -> str:
-    if sensor.topic is None:
-        return f"Sensor {sensor.name!r} was never observed: call tarl.observe({sensor.name}=…) in each step."
-    return (
-        f"Sensor {sensor.name!r} heard nothing on {sensor.topic}: publish it with tarl.bus.publish({sensor.topic!r}, "
-        f"…), or tell its message with tarl.message({sensor.topic!r}, message), or mend the topic in the marker."
-    )

@@ -1,4 +1,4 @@
-"""The flags that pytest gets from TARL: their names, how they are read, and which of them ask for a run of ours."""
+"""The flags that TARL adds to pytest: names, types, and which of them start a TARL run."""
 
 from __future__ import annotations
 
@@ -10,47 +10,51 @@ class Flag(NamedTuple):
 
     name: str
     help: str
-    asks: bool = False  # whether it asks for a run of ours; the others say how such a run goes
+    asks: bool = False  # whether the flag starts a TARL run; the others configure one
     metavar: str | None = None
     type: type = str
-    default: Any = None
-    many: bool = False  # whether it may be given several times
+    default: Any = None  # where neither the command line nor the ini file has a value
+    many: bool = False  # whether the flag may be repeated
 
     @property
     def key(self) -> str:
-        """Name it as `options.options` does."""
+        """Return the name used by `options.options`."""
         return self.name.removeprefix("--tarl-")
 
     def declaration(self) -> dict[str, Any]:
-        """Return what argparse is told."""
+        """Return the arguments for argparse."""
         if self.metavar is None:
             return {"action": "store_true", "help": self.help}
         if self.many:
             return {"action": "append", "metavar": self.metavar, "help": self.help}
-        return {"metavar": self.metavar, "type": self.type, "default": self.default, "help": self.help}
+        return {"metavar": self.metavar, "type": self.type, "help": self.help}
 
 
 FLAGS = (
-    Flag("--tarl-record", "run the episodes off-line and record the utility fixture", asks=True),
-    Flag("--tarl-online", "run the drift scenarios and compare with the fixture", asks=True),
-    Flag("--tarl-repair", "with --tarl-online: search a repair and write a patch", asks=True),
+    Flag("--tarl-record", "record mode: run the episodes and write the reference utility", asks=True),
+    Flag(
+        "--tarl-online",
+        "compare mode: run the drift scenarios and compare them with the recording",
+        asks=True,
+    ),
+    Flag("--tarl-repair", "with --tarl-online: search for a repair and write a patch", asks=True),
     Flag(
         "--tarl-drift",
-        "with --tarl-online: only this drift scenario; with --tarl-record: make one that is for good the design",
+        "with --tarl-online: compare only this scenario; with --tarl-record: make this permanent drift the design",
         asks=True,
         metavar="NAME",
     ),
-    Flag("--tarl-seed", "the one seed that decides everything (default 0)", metavar="N", type=int, default=0),
+    Flag("--tarl-seed", "seed of all random numbers (default 0)", metavar="N", type=int, default=0),
     Flag(
         "--tarl-episodes",
-        "episodes to run instead of the marker's number, or of 40 on-line",
+        "number of episodes (default: the marker's when recording, 40 when comparing)",
         metavar="N",
         type=int,
     ),
     Flag("--tarl-alpha", "rate of false alarms (default 0.05)", metavar="P", type=float, default=0.05),
     Flag(
         "--tarl-looks",
-        "with --tarl-online: looks at the verdict, to end early when it is certain (default 3; 1 to repair)",
+        "with --tarl-online: number of times the verdict is checked, to end early (default 3; 1 with --tarl-repair)",
         metavar="N",
         type=int,
     ),
@@ -64,24 +68,24 @@ FLAGS = (
     ),
     Flag(
         "--tarl-localize",
-        "with --tarl-repair: repair (default) ends when a repair is accepted, full goes on until all sites are ranked",
+        "with --tarl-repair: repair (default) ends when a repair is accepted, full when all sites are ranked",
         asks=True,
         metavar="KIND",
     ),
     Flag(
         "--tarl-budget",
-        "what a search may spend: episodes (default 300), or a time such as 90s or 5min",
+        "limit of a search: a number of episodes (default 300), or a time such as 90s or 5min",
         metavar="N",
         default="300",
     ),
     Flag(
         "--tarl-edit",
-        "where an unconditional repair of a named constant is written: auto (default; where it is defined, if that "
-        "holds, too), definition, or use",
+        "where an unconditional repair of a named constant is written: auto (default: at its definition, if the "
+        "repair holds there), definition, or use",
         metavar="WHERE",
         default="auto",
     ),
-    Flag("--tarl-constants", "with --tarl-repair: change constants only, never the structure of the code"),
+    Flag("--tarl-constants", "with --tarl-repair: change constants only, not the structure of the code"),
     Flag(
         "--tarl-utility",
         "batch (default); sarsa, as in the paper; expected-sarsa or td-lambda",
@@ -90,14 +94,14 @@ FLAGS = (
     ),
     Flag(
         "--tarl-workers",
-        "episodes to run at a time, each in its own process; auto: as many as cores (default 1)",
+        "number of parallel episodes, each in its own process; auto: one per core (default 1)",
         metavar="N",
         default="1",
     ),
     Flag("--tarl-cluster", "run the episodes on the Dask cluster of this scheduler", metavar="ADDRESS"),
     Flag(
         "--tarl-ros",
-        "the ROS that nodes run on: embedded (default), real, or auto (real where it is installed)",
+        "the ROS that nodes run on: embedded (default), real, or auto (real if installed)",
         metavar="KIND",
         default="embedded",
     ),
@@ -120,5 +124,5 @@ FLAGS = (
         metavar="FILE",
         many=True,
     ),
-    Flag("--tarl-strict", "with --tarl-online: a test without fixture fails", asks=True),
+    Flag("--tarl-strict", "with --tarl-online: fail tests without a recording", asks=True),
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +17,8 @@ from pytest_tarl.formulas.lookback import Followed, LookedBack, judgeable, left_
 from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.instrumentation.trace import Floats, Trace
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.observing.frames import Record, records
-from pytest_tarl.observing.observer import unpacked
+from pytest_tarl.observing.frames import Record, records, set_aside
+from pytest_tarl.observing.writer import unpacked
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 
 FEWEST = 2  # missions that make a comparison
@@ -38,10 +39,13 @@ class Mission:
 
 
 def missions(path: Path, fixture: Fixture) -> list[Mission]:
-    """Read all missions of a log, unfinished ones too. Raises LogError where it does not belong to the fixture."""
+    """Read all missions of a log and of what was set aside of it, unfinished ones too.
+
+    Raises LogError where it does not belong to the fixture.
+    """
     found: list[Mission] = []
     sites: Sequence[str] = ()
-    for record in records(path):
+    for record in chain.from_iterable(map(records, (*set_aside(path), path))):
         kind = record["kind"]
         if kind == "start":
             sites = record["sites"]

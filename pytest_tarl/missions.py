@@ -114,6 +114,12 @@ class Mission:
         """Return the folder that everything is written to."""
         return self.root / ".tarl"
 
+    def interrupted(self, done: int, total: int) -> str:
+        """Say what an interrupted recording leaves behind, in one line."""
+        path = self.fixture_path
+        left = f"{path.relative_to(self.root)} is unchanged" if path.exists() else "nothing was written"
+        return f"Interrupted in episode {done + 1} of {total}: {left}."
+
     def _analysis(self) -> Analysis:
         paths = [(self.folder / node).resolve() for node in self.designation.nodes]
         for path, node in zip(paths, self.designation.nodes, strict=True):

@@ -137,6 +137,7 @@ class LossInterval(NamedTuple):
     low: float
     high: float
     confidence: float
+    exact: bool = False
 
 
 @dataclass(frozen=True, slots=True)

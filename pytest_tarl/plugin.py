@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from pytest_tarl import holding
-from pytest_tarl.flags import FLAGS
+from pytest_tarl import holding, ini
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.extras import missing_extra, missing_packages
+from pytest_tarl.flags import FLAGS, Flag
 
 if TYPE_CHECKING:
     from pytest_tarl.episode import Tarl
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 MARKER = (
     "tarl(nodes, sensors, drifts={}, episodes=200, min_success=1.0, confidence=None, total_range=None, tolerance=None, "
     "judge=None, monitor=None, requires=[], signals=[], reward=None): "
-    "a simulation test that TARL records off-line and compares on-line."
+    "a simulation test that TARL records and compares."
 )
 
 
@@ -26,6 +28,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("tarl", "TARL: record, compare and repair robot code in simulation")
     for flag in FLAGS:
         group.addoption(flag.name, **flag.declaration())
+    ini.declare(parser)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -33,6 +36,9 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", MARKER)
     holding.prepare()
     if _asked(config):
+        sentence = missing_extra("A run with TARL's flags")
+        if sentence is not None:
+            raise pytest.UsageError(sentence)
         from pytest_tarl.session import TarlSession
 
         config.pluginmanager.register(TarlSession(config, _options(config)), "tarl-session")
@@ -41,6 +47,7 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.fixture
 def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
     """The episode's random numbers, in-process ROS, sensors and reward."""
+    _require_extra("The fixture `tarl`")
     from pytest_tarl.repeating import opened
 
     with opened(request.node) as episode:
@@ -50,6 +57,7 @@ def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
 @pytest.fixture
 def tarl_drift(request: pytest.FixtureRequest) -> Any:
     """The value of the drift scenario that this episode runs under; off-line None, or a change that is the design."""
+    _require_extra("The fixture `tarl_drift`")
     from pytest_tarl.repeating import drift_value
 
     return drift_value(request.node)
@@ -76,8 +84,10 @@ def pytest_runtest_makereport(
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """Keep what an episode ended with, and show a user's mistake as a sentence."""
     report = yield
-    if call.excinfo is not None and (
-        item.get_closest_marker("tarl") is not None or _ours(call.excinfo.value)
+    if (
+        call.excinfo is not None
+        and (item.get_closest_marker("tarl") is not None or _ours(call.excinfo.value))
+        and not missing_packages()
     ):
         from pytest_tarl.repeating import in_the_node, keep_error
 
@@ -92,7 +102,7 @@ def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest
     """Add advice to the error of a test module that imports a ROS that is not installed."""
     report = yield
     call: pytest.CallInfo[Any] | None = getattr(report, "call", None)
-    if call is not None and call.excinfo is not None:
+    if call is not None and call.excinfo is not None and not missing_packages():
         from pytest_tarl.importhint import import_hint
 
         hint = import_hint(call.excinfo.value)
@@ -101,23 +111,35 @@ def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest
     return report
 
 
+def _require_extra(what: str) -> None:
+    sentence = missing_extra(what)
+    if sentence is not None:
+        pytest.fail(sentence, pytrace=False)
+
+
 def _ours(error: BaseException) -> bool:
     return type(error).__module__ == "pytest_tarl.errors"  # told by name: a plain run imports nothing of ours
 
 
 def _asked(config: pytest.Config) -> bool:
-    return any(config.getoption(flag.name) for flag in FLAGS if flag.asks)
+    try:
+        return ini.mode_asked(config)
+    except SettingsError as error:
+        raise pytest.UsageError(str(error)) from None
 
 
 def _options(config: pytest.Config) -> Options:
-    from pytest_tarl.errors import SettingsError
     from pytest_tarl.options import options
 
+    from_ini: list[Flag] = []
     try:
-        chosen = options({flag.key: config.getoption(flag.name) for flag in FLAGS})
+        given, from_ini = ini.values(config)
+        chosen = options(given)
         _look_for_plugged(config, chosen)
     except SettingsError as error:
-        raise pytest.UsageError(str(error)) from None
+        named = [ini.ini_name(flag) for flag in from_ini if flag.name in str(error)]
+        where = f" ({', '.join(named)} is set in {config.inipath}.)" if named else ""
+        raise pytest.UsageError(f"{error}{where}") from None
     return chosen
 
 

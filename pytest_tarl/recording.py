@@ -106,11 +106,9 @@ def record(
         *recorded.notes,
         *([] if identical(recorded.first, again.trace) else [NOT_REPRODUCIBLE]),
     ]
-    if settling.failing:
-        return RecordResult("", _unfinished(settling.failing, recorded.failures), tuple(notes))
-    unjudged = never_judged(recorded.sample.judgements)
-    if unjudged:
-        return RecordResult("", _unjudged(unjudged[0], recorded.sample), tuple(notes))
+    refused = _refused(settling, recorded)
+    if refused:
+        return RecordResult("", refused, tuple(notes))
     notes = [*accounts(recorded.sample.judgements), *notes, *_silent_lists(recorded.sample, plan)]
     new = Fixture(
         test=test,
@@ -128,6 +126,14 @@ def record(
     )
     fixtures.save(new, path)
     return RecordResult(_summary(new.sample, old), "", tuple(notes), new.stated)
+
+
+def _refused(settling: Settling, recorded: Recorded) -> str:
+    """Say why no fixture is written; empty where one is."""
+    if settling.failing:
+        return _unfinished(settling.failing, recorded.failures)
+    unjudged = never_judged(recorded.sample.judgements)
+    return _unjudged(unjudged[0], recorded.sample) if unjudged else ""
 
 
 def read_values(

@@ -22,6 +22,18 @@ from pytest_tarl.sensors import Sensor
 MOST_NAMED = 3  # lost sites that a note names
 
 
+def of_comparison(
+    fixture: Fixture, plan: Plan, offline: Sample, online: Sample, difference: Difference, options: Options
+) -> tuple[str, ...]:
+    """Return what is to be said of two samples that were compared, over the same cells."""
+    return (
+        *unheard_of(offline, online, difference, fixture.sensors),
+        *lost_sites(fixture, plan),
+        *failing(offline, online, difference.verdict, options),
+        *other_formulas(offline, online),
+    )
+
+
 def early(online: Sample, planned: int) -> tuple[str, ...]:
     """Tell that not all episodes were needed."""
     if online.episodes == planned:

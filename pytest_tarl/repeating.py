@@ -18,10 +18,12 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from _pytest.runner import runtestprotocol
 
+from pytest_tarl import ini
 from pytest_tarl.designation import Designation, designation
 from pytest_tarl.errors import NodeError, RequirementError, SettingsError, StuckNodeError, TarlError
 from pytest_tarl.printable import printable
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
+from pytest_tarl.sayings import said
 from pytest_tarl.scenarios import without_drift
 from pytest_tarl.seeds import episode_seed
 
@@ -70,7 +72,9 @@ INTERRUPTS = (pytest.exit.Exception, KeyboardInterrupt)  # what ends the whole r
 def designated(item: pytest.Item) -> Designation | None:
     """Return the item's marker, checked; None without one. Raises SettingsError."""
     marker = item.get_closest_marker("tarl")
-    return designation(item.nodeid, marker.args, marker.kwargs) if marker else None
+    if marker is None:
+        return None
+    return designation(item.nodeid, marker.args, marker.kwargs, said(item.nodeid, item.config.rootpath))
 
 
 @contextmanager
@@ -93,7 +97,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         bind=recorder.bind,
     )
     replay = _replay(episode)
-    kind = check_kind(item.config.getoption("--tarl-ros"))
+    kind = check_kind(ini.value_of(item.config, "ros"))
     tarl = Tarl(
         episode.plan.seed,
         episode.designation.sensors,
@@ -179,7 +183,7 @@ def _episode(item: pytest.Item) -> Episode:
         raise SettingsError(
             f"{item.nodeid} uses the fixture `tarl` without the marker: add @pytest.mark.tarl(nodes=[…], sensors=[…])."
         )
-    seed = episode_seed(item.config.getoption("--tarl-seed"), "offline", 0)
+    seed = episode_seed(ini.value_of(item.config, "seed"), "offline", 0)
     return Episode(EpisodePlan(seed), marked)
 
 

@@ -14,6 +14,7 @@ from pytest_tarl.design import AS_WRITTEN
 from pytest_tarl.errors import FixtureError, SettingsError, TarlError
 from pytest_tarl.options import Options
 from pytest_tarl.printable import printable
+from pytest_tarl.progress import ProgressLine
 from pytest_tarl.repeating import (
     INTERRUPTS,
     NOTHING,
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from _pytest.terminal import TerminalReporter
 
     from pytest_tarl.missions import Account, Compared, Other
-    from pytest_tarl.recording import Progress
     from pytest_tarl.repairing.joining import Joined
     from pytest_tarl.rollout import Rollout
 
@@ -177,6 +177,7 @@ class TarlSession:
                 "the marker declares drifts, but the test does not take the fixture `tarl_drift`, so they would change "
                 "nothing: take it as an argument and build the world with it."
             )
+        progress = self._progress(item)
         mission = Mission(
             test=without_drift(item),
             folder=item.path.parent,
@@ -186,7 +187,7 @@ class TarlSession:
             options=self.options,
             drift=scenario(item),
             width=self._width(),
-            progress=self._progress(item),
+            progress=progress,
             tell=self._say,
             others=self._others(item),
         )
@@ -206,6 +207,10 @@ class TarlSession:
             if self.options.strict:
                 raise
             pytest.skip(str(missing))
+        except KeyboardInterrupt:
+            if self.options.mode == "record":
+                self._say(mission.interrupted(progress.done, progress.total))
+            raise
 
     def _others(self, item: pytest.Function) -> tuple[Other, ...]:
         """Return the other designated tests of the run, each once, whatever drifts it has."""
@@ -233,14 +238,14 @@ class TarlSession:
             reporter.ensure_newline()
             reporter.write_line(printable(sentence))
 
-    def _progress(self, item: pytest.Function) -> Progress:
+    def _progress(self, item: pytest.Function) -> ProgressLine:
         reporter = self.config.pluginmanager.get_plugin("terminalreporter")
 
-        def show(done: int, total: int, what: str) -> None:
-            if reporter is not None and reporter.isatty and done % 5 == 0:
-                reporter.rewrite(f"{item.nodeid} {what} {done}/{total} ", erase=True)
+        def write(line: str) -> None:
+            if reporter is not None and reporter.isatty:
+                reporter.rewrite(line, erase=True)
 
-        return show
+        return ProgressLine(item.nodeid, write)
 
 
 @dataclass

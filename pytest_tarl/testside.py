@@ -23,6 +23,17 @@ def digests(test: str, root: Path, nodes: Collection[Path]) -> dict[str, dict[st
     name, *parts = test.partition("[")[0].split("::")
     found: dict[str, dict[str, str]] = {}
     first = (root / name).resolve()
+    for path, tree in modules(first, root, nodes):
+        own = parts if path == first else None
+        found[path.relative_to(root.resolve()).as_posix()] = dict(sorted(_definitions(tree, own).items()))
+    return dict(sorted(found.items()))
+
+
+def modules(first: Path, root: Path, nodes: Collection[Path] = ()) -> Iterator[tuple[Path, ast.Module]]:
+    """Yield a test's file, what that imports from below the root, and its conftest files, each with its tree.
+
+    `nodes` are left out, and what cannot be read or parsed.
+    """
     waiting = [first, *_conftests(first.parent, root.resolve())]
     seen = {path.resolve() for path in nodes}
     while waiting:
@@ -35,9 +46,7 @@ def digests(test: str, root: Path, nodes: Collection[Path]) -> dict[str, dict[st
         except (OSError, SyntaxError, ValueError):
             continue
         waiting += _imported(tree, path, root.resolve())
-        own = parts if path == first else None
-        found[path.relative_to(root.resolve()).as_posix()] = dict(sorted(_definitions(tree, own).items()))
-    return dict(sorted(found.items()))
+        yield path, tree
 
 
 def changes(before: Digests, after: Digests) -> Iterator[str]:

@@ -6,7 +6,7 @@ from tarl_lint import import_path
 
 
 def main() -> int:
-    """Run `tarl-lint` in a process of its own and return its exit code."""
+    """Run `tarl-lint` as a process of its own and return its exit code."""
     import_path.restrict()
     from tarl_lint.cli import main as run
 

@@ -1,4 +1,4 @@
-"""What other programs use: files become flows, sites, the operands of a site and what holds a topic's field."""
+"""API for other programs: flows, sites, operands of a site, and expressions that contain a topic's field."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tarl_lint.source import Module, SourceError, parse
 
 @dataclass(frozen=True, eq=False)
 class Analysis:
-    """Everything found in a set of files. `sources` holds the text of each file by its path."""
+    """The result of analysing a set of files. `sources` maps paths to texts."""
 
     flows: tuple[Flow, ...]
     errors: tuple[SourceError, ...]
@@ -40,22 +40,22 @@ class Analysis:
 
     @cached_property
     def prober(self) -> Prober:
-        """Return who runs the analysis once more, looking at single statements."""
+        """Return the prober, which runs the analysis again to observe single statements."""
         return Prober(self.machine, self.flows)
 
     def operands(self, site: SiteId) -> tuple[Operand, ...]:
-        """Return the constants that a site uses, in the order of the text."""
+        """Return the constants that a site uses, in source order."""
         return self.prober.operands(site)
 
     def holders(self, topic: str, field: str, site: SiteId) -> tuple[str, ...]:
-        """Return expressions that hold a topic's field unchanged at a site, shortest first."""
+        """Return the expressions that contain a topic's unchanged field at a site, shortest first."""
         return self.prober.holders(topic, field, site)
 
 
 def analyse(paths: Sequence[Path], *, root: Path | None = None) -> Analysis:
     """Analyse the files at and below the paths.
 
-    `root` is where settings that name places start; it defaults to the working directory.
+    `root` is the base of relative paths in settings; it defaults to the working directory.
     Raises UsageError for a path that does not exist.
     """
     config = Config(root=root)

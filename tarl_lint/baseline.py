@@ -18,7 +18,7 @@ FORMAT_VERSION: Final = 1  # 1: first format
 
 @dataclass(frozen=True)
 class Accepted:
-    """A fingerprint, how many findings have it, and their files as seen from the baseline's directory."""
+    """A fingerprint, the number of findings with it, and their files relative to the baseline's directory."""
 
     fingerprint: Fingerprint
     count: int
@@ -27,7 +27,7 @@ class Accepted:
 
 @dataclass(frozen=True)
 class Baseline:
-    """Everything that was accepted, sorted by fingerprint."""
+    """All accepted findings, sorted by fingerprint."""
 
     entries: tuple[Accepted, ...] = ()
 
@@ -37,7 +37,7 @@ class Baseline:
 
 
 def subtract(findings: Sequence[Finding], accepted: Mapping[str, int]) -> tuple[Finding, ...]:
-    """Mark findings as accepted, unless their group is larger than what was accepted: then all of it is new."""
+    """Return findings marked as accepted; a group larger than the accepted number is entirely new."""
     found = Counter(f.fingerprint for f in findings)
     return tuple(
         replace(f, status="accepted") if found[f.fingerprint] <= accepted.get(f.fingerprint, 0) else f
@@ -48,10 +48,10 @@ def subtract(findings: Sequence[Finding], accepted: Mapping[str, int]) -> tuple[
 def missing(
     baseline: Baseline, found: Mapping[str, int], judged: Callable[[Accepted], bool]
 ) -> tuple[tuple[Accepted, ...], tuple[Accepted, ...]]:
-    """Return accepted findings that were not found again, each with the number missing: (vanished, kept).
+    """Return the accepted findings that were not found, each with the number missing: (vanished, kept).
 
-    `judged` tells whether this run can know of an entry. Not of one through a file that was not looked at or
-    cannot be read: such entries are kept.
+    `judged` returns whether this run can judge an entry. It cannot if a file of the entry was not analysed or is
+    unreadable; such entries are kept.
     """
     counts = ((entry, entry.count - found.get(entry.fingerprint.digest(), 0)) for entry in baseline.entries)
     lacking = [replace(entry, count=count) for entry, count in counts if count > 0]
@@ -59,7 +59,7 @@ def missing(
 
 
 def merged(found: Iterable[Accepted], kept: Iterable[Accepted]) -> Baseline:
-    """Return a baseline of what was found and what was kept unseen; equal fingerprints add up."""
+    """Return the baseline of the found and kept entries; counts of equal fingerprints are added."""
     counts: Counter[Fingerprint] = Counter()
     files: dict[Fingerprint, set[str]] = {}
     for entry in (*found, *kept):
@@ -70,24 +70,26 @@ def merged(found: Iterable[Accepted], kept: Iterable[Accepted]) -> Baseline:
 
 
 def load(path: Path) -> Baseline:
-    """Read a baseline. Raises BaselineError for a file that is damaged, foreign, or of a later format."""
-    import json  # only where there is a baseline
+    """Read a baseline. Raises BaselineError if the file is damaged, not a baseline, or of another format version."""
+    import json  # imported only if there is a baseline
 
     try:
         document = json.loads(
             path.read_bytes().decode("utf-8-sig", "surrogateescape")
-        )  # names may be no text
+        )  # file names need not be valid UTF-8
     except FileNotFoundError:
         raise BaselineError(
-            f"The baseline {shown(path)} does not exist: write it with --write-baseline, "
-            "or leave it out with --no-baseline."
+            f"The baseline {shown(path)} does not exist: create it with --write-baseline, "
+            "or ignore it with --no-baseline."
         ) from None
     except OSError as error:
         raise BaselineError(f"The baseline {shown(path)} cannot be read: {error.strerror}.") from None
     except ValueError as error:
         raise BaselineError(f"The baseline {shown(path)} is damaged ({error}): {_REMEDY}") from None
     if not isinstance(document, dict) or document.get("tool") != "tarl-lint":
-        raise BaselineError(f"{shown(path)} is no baseline of tarl-lint: name another with --baseline.")
+        raise BaselineError(
+            f"{shown(path)} is not a baseline of tarl-lint: name another file with --baseline."
+        )
     version = document.get("format")
     if version != FORMAT_VERSION:
         raise BaselineError(
@@ -127,7 +129,7 @@ def _hazard(entry: Any) -> Accepted:
 def _texts(entry: Any, fields: Mapping[str, str]) -> dict[str, Any]:
     texts = {field: entry[key] for key, field in fields.items()}
     if not all(isinstance(text, str) for text in (*texts.values(), *entry["files"])):
-        raise ValueError("an entry has something else where a text should be")
+        raise ValueError("an entry has a value that is not a string")
     return texts
 
 
@@ -146,7 +148,7 @@ def _reason(error: Exception) -> str:
 
 
 def dumps(baseline: Baseline) -> str:
-    """Return the file's text: one finding a line, in words, so that a review shows what came and what went."""
+    """Return the text of the file: one finding per line, in words, so that a review shows additions and removals."""
     flows = [_words(entry, _FLOW) for entry in baseline.entries if isinstance(entry.fingerprint, OfFlow)]
     hazards = [
         _words(entry, _HAZARD) for entry in baseline.entries if isinstance(entry.fingerprint, OfHazard)
@@ -170,7 +172,7 @@ def _words(entry: Accepted, fields: Mapping[str, str]) -> dict[str, Any]:
 
 
 def save(path: Path, baseline: Baseline) -> None:
-    """Write a baseline whole or not at all. Raises BaselineError when the place cannot be written."""
+    """Write a baseline atomically. Raises BaselineError if the file cannot be written."""
     try:
         write_whole(path, dumps(baseline))
     except OSError as error:

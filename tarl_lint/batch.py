@@ -1,4 +1,4 @@
-"""All files of a run, group by group: what an earlier run knows is taken from there, the rest is analysed."""
+"""Analysis of all files of a run, group by group; results of an earlier run are reused."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from tarl_lint.prefilter.by_words import groups
 from tarl_lint.progress import Tell, silent
 from tarl_lint.source import TOO_DEEP, Module, Script, SourceError, parsed
 
-MANY_LINES: Final = 30_000  # to analyse; with fewer, starting processes takes longer than they save
+MANY_LINES: Final = 30_000  # lines to analyse; below this, starting processes takes longer than it saves
 
 
 @dataclass(frozen=True)
 class Task:
-    """Files to be analysed together, or one that only has to be readable."""
+    """Files to be analysed together, or one that only needs to be parsed."""
 
     scripts: tuple[Script, ...]
     analyse: bool
 
     @property
     def lines(self) -> int:
-        """Return how much there is to analyse."""
+        """Return the number of lines to analyse."""
         return sum(s.text.count("\n") for s in self.scripts) if self.analyse else 0
 
 
 def examine(
     scripts: Sequence[Script], config: Config, cache: Cache, jobs: int | None = 1, tell: Tell = silent
 ) -> Report:
-    """Return what is found in the files, whatever the number of processes (None: as many as pay)."""
+    """Return the findings in the files, independent of the number of processes (None: chosen by the size)."""
     digests = {
         s.path: digest([s.path, s.name, str((s.is_package, s.installed)), *s.started, s.text])
         for s in scripts
@@ -84,7 +84,7 @@ def _reports(
 
 
 def _workers(tasks: Sequence[Task], jobs: int | None) -> int:
-    """Return how many processes to use: never more than there are groups to analyse, nor than the largest allows."""
+    """Return the number of processes: limited by the number of groups and by the size of the largest."""
     wanted = sum(task.analyse for task in tasks)
     if jobs is None:
         lines = [task.lines for task in tasks]
@@ -114,14 +114,14 @@ def _made(tasks: Sequence[Task], config: Config, workers: int, tell: Tell) -> It
 
 
 def perform(task: Task, config: Config) -> Report:
-    """Parse the files of a task and analyse them. A file on which we fail is reported as our mistake."""
+    """Parse and analyse the files of a task. A file on which the analysis crashes becomes an error entry."""
     with without_collection():
         results = [_parsed(script) for script in task.scripts]
         errors = tuple(r for r in results if isinstance(r, SourceError))
         modules = [r for r in results if isinstance(r, Module)]
         if not task.analyse or not modules:
             return Report((), errors)
-        from tarl_lint import engine  # takes longer to import than most files to check
+        from tarl_lint import engine  # slow to import, compared with checking a file
 
         findings, failures, cut, ended = engine.examine(modules, config, isolate=not debugging())
     mistakes = (failure(path, error) for path, error in failures.items())
@@ -138,16 +138,16 @@ def _parsed(script: Script) -> Module | SourceError:
 
 
 def failure(path: str, error: Exception) -> SourceError:
-    """Say that a file could not be analysed by our fault."""
+    """Return the error entry of a file on which the analysis crashed."""
     if isinstance(error, RecursionError):
         return SourceError(path, 1, TOO_DEEP.format("analysed"))
     what = f"{type(error).__name__}: {error}".rstrip(": ")
-    advice = "Report it with the traceback that TARL_DEBUG=1 shows, please; --exclude leaves the file out."
+    advice = "Please report it with the traceback from TARL_DEBUG=1; --exclude skips the file."
     return SourceError(
-        path, 1, f"tarl-lint failed on this file ({what}), which is our fault. {advice}", bug=True
+        path, 1, f"tarl-lint failed on this file ({what}), which is a bug in tarl-lint. {advice}", bug=True
     )
 
 
 def debugging() -> bool:
-    """Tell whether mistakes of ours are to be shown with their traceback."""
+    """Return whether to show tracebacks of internal errors."""
     return os.environ.get("TARL_DEBUG", "") not in ("", "0")

@@ -1,8 +1,8 @@
-"""What earlier runs found, by content, settings and version. Trouble with it never fails a run.
+"""Cache of results by content, settings and version. A problem with it never fails a run.
 
-One file holds the entries of the last run on the same paths with the same settings. Its first line is the digest
-of the rest, so what is damaged is not read; it is written aside and renamed, so runs at the same time only
-replace each other's.
+One file contains the entries of the last run on the same paths with the same settings. Its first line is the digest
+of the rest, so a damaged file is not read. The file is written under another name and renamed, so concurrent runs
+only replace each other's file.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tarl_lint.model import Cut, Finding, Flow, Sink, SiteId, Source, Span, Step
 from tarl_lint.source import SourceError
 
 try:
-    from _blake2 import blake2b  # hashlib would bring OpenSSL, which takes longer than to lint a clean file
+    from _blake2 import blake2b  # hashlib would import OpenSSL, which is slower than linting a small file
 except ImportError:
     from hashlib import blake2b
 
@@ -35,15 +35,14 @@ PACKAGES: Final = (
 )  # fmt: skip
 AFTERWARDS: Final = frozenset(
     ["root", "exclude", "baseline", "fail_on", "per_file_ignores", "file", "origins"]
-)  # settings that change nothing in what is found in given files
+)  # settings that do not influence the findings in given files
 
 
 @dataclass(frozen=True)
 class Report:
-    """What was found in some files: findings without fingerprints, and files that could not be analysed.
+    """The results for a group of files: findings without fingerprints, and files that could not be analysed.
 
-    `cut` are programs so large that not everything in them was followed to its end, `ended` the classes that are not
-    here and that flows ended at.
+    `cut` are the programs that exhausted their budget, `ended` the classes outside the files at which flows ended.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -53,7 +52,7 @@ class Report:
 
 
 class Cache:
-    """Reports by key, and keys by plan: which keys make up a whole run. Without a file it forgets everything."""
+    """Reports by key, and plans: the keys of a whole run. Without a file, nothing is stored."""
 
     def __init__(self, file: Path | None) -> None:
         self._file = file
@@ -65,7 +64,7 @@ class Cache:
             self._load(file)
 
     def report(self, key: str) -> Report | None:
-        """Return what was stored under a key, None when there is nothing."""
+        """Return the report stored under a key, None if there is none."""
         packed = self._reports.get(key)
         if packed is None:
             return None
@@ -77,7 +76,7 @@ class Cache:
         )
 
     def put(self, key: str, report: Report) -> None:
-        """Store a report, unless a mistake of ours is in it: the next version may do better."""
+        """Store a report, unless it contains an internal error, which the next version may not have."""
         if self._file is not None and not any(error.bug for error in report.errors):
             self._used[key] = [
                 _packed(report.findings),
@@ -87,16 +86,16 @@ class Cache:
             ]
 
     def plan(self, key: str) -> Sequence[str]:
-        """Return the keys of the reports of a whole run, empty when one of them is missing."""
+        """Return the keys of the reports of a whole run, empty if one is missing."""
         keys = self._plans.get(key, [])
         return keys if all(k in self._reports for k in keys) else []
 
     def put_plan(self, key: str, keys: Sequence[str]) -> None:
-        """Store which reports make up a whole run."""
+        """Store the keys of the reports of a whole run."""
         self._plan = (key, list(keys))
 
     def save(self) -> None:
-        """Write what was used in this run, if that is not what is there already."""
+        """Write the entries used in this run, if they differ from the file."""
         if self._file is None or (self._plan is None and self._used.keys() == self._reports.keys()):
             return
         plans = dict([self._plan]) if self._plan is not None else self._plans
@@ -108,14 +107,14 @@ class Cache:
                 write_whole(ignore, "*\n")
             write_whole(self._file, f"{digest([text])}\n{text}")
         except OSError:
-            self._file = None  # a place that cannot be written to: the next run is as slow as this one
+            self._file = None  # not writable: the next run is as slow as this one
 
     def _load(self, file: Path) -> None:
         try:
             stated, _, text = file.read_text("utf-8").partition("\n")
             kept = json.loads(text) if stated == digest([text]) else None
         except (OSError, ValueError, RecursionError):
-            return  # not there, or not ours: as if there were none
+            return  # missing or damaged: start empty
         if isinstance(kept, list) and [type(part) for part in kept] == [dict, dict]:
             self._reports, self._plans = kept
 
@@ -130,7 +129,7 @@ def opened(paths: Sequence[Path], config: Config) -> Cache:
 
 
 def digest(texts: Iterable[str]) -> str:
-    """Return a name for a sequence of texts."""
+    """Return a digest of a sequence of texts."""
     made = blake2b(digest_size=16)
     for text in texts:
         data = text.encode("utf-8", "surrogatepass")
@@ -140,7 +139,7 @@ def digest(texts: Iterable[str]) -> str:
 
 
 def _ourselves() -> list[str]:
-    """Return what tells this copy of the linter from one with other rules, as while it is being developed."""
+    """Return the identity of this copy of the linter, which changes with its source during development."""
     home = Path(__file__).parent
     found = []
     for place in (home, *(home / name for name in PACKAGES)):
@@ -184,4 +183,4 @@ PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
     "sink": lambda packed: _unpacked(Sink, packed),
     "steps": lambda packed: tuple(Step(SiteId(*site), Span(*span), *rest) for site, span, *rest in packed),
     "flow": lambda packed: None if packed is None else _unpacked(Flow, packed),
-}  # by the names of fields
+}  # by field name

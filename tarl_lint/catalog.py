@@ -1,4 +1,4 @@
-"""What ROS and the usual libraries do, as data: who subscribes, publishes, waits, changes its arguments."""
+"""Functions of ROS and common libraries, as data: what subscribes, publishes, waits, or changes its arguments."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Final
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """One call that matters. Numbers are positions of arguments, names their keywords."""
+    """The effect of one function. Numbers are positions of arguments, names their keywords."""
 
     kind: str
     api: str
@@ -102,7 +102,7 @@ METHODS: Final[Mapping[str, Fact]] = {
 
 OTHER_KINDS: Final = ("rospy.Service", "rclpy.create_service", "actionlib.", "rclpy.action.", "tf2.")
 
-FILLS_RESPONSE: Final = frozenset(["rclpy.create_service"])  # their handlers get a response to fill
+FILLS_RESPONSE: Final = frozenset(["rclpy.create_service"])  # handlers receive a response to fill
 
 # Callbacks of action servers: "goal" gets the goal, the others a handle of it; what "execute" returns is the result.
 ACTION_CALLBACKS: Final[Mapping[str, Mapping[str, tuple[int, str]]]] = {
@@ -137,7 +137,7 @@ SOURCE_WORDS: Final = (
     "create_service",
     "ActionServer",
     "SimpleActionServer",
-)  # a file without them has no source
+)  # a file without these words has no source
 SINK_WORDS: Final = ("publish", "Publisher")
 
 WAITS: Final = frozenset(
@@ -206,7 +206,7 @@ ARGUMENT_WRITERS: Final[Mapping[str, int]] = {
     **dict.fromkeys(("heapq.heappush", "heapq.heappushpop", "heapq.heapreplace"), 0),
     **dict.fromkeys(("bisect.insort", "bisect.insort_left", "bisect.insort_right"), 0),
 }  # fmt: skip
-METHODS_WRITING: Final = {"pack_into": 0, "readinto": 0, "recv_into": 0}  # position of what they fill
+METHODS_WRITING: Final = {"pack_into": 0, "readinto": 0, "recv_into": 0}  # position of the filled argument
 DEVICE_WRITERS: Final = frozenset(["write", "writelines", "send", "sendall", "sendto"])
 DEVICE_READERS: Final = frozenset(
     ["read", "readline", "readlines", "read_until", "read_all", "readinto", "recv", "recvfrom", "recv_into",
@@ -214,7 +214,7 @@ DEVICE_READERS: Final = frozenset(
 )  # fmt: skip
 MEASURES: Final = frozenset(
     ["shape", "size", "ndim", "dtype", "nbytes"]
-)  # of an array; no store changes them
+)  # attributes of an array that no store changes
 KEEPERS: Final = frozenset(
     [
         "functools.wraps",
@@ -228,7 +228,7 @@ KEEPERS: Final = frozenset(
         "inspect.iscoroutinefunction",
         "asyncio.iscoroutinefunction",
     ]
-)  # functions of libraries that never call what they are given
+)  # library functions that never call the functions passed to them
 MAY_BE_NONE: Final = frozenset(
     [
         "get",
@@ -242,10 +242,10 @@ MAY_BE_NONE: Final = frozenset(
         "HoughCircles",
         "getenv",
     ]
-)  # functions of libraries that give None where they find nothing
-WRITTEN_KEYWORDS: Final = frozenset(["out", "dst"])  # arguments that numpy and cv2 put their result into
+)  # library functions that return None if they find nothing
+WRITTEN_KEYWORDS: Final = frozenset(["out", "dst"])  # arguments into which numpy and cv2 write results
 
-STATES: Final = "smach"  # a state of its machines is given, when it runs, what the states share
+STATES: Final = "smach"  # when a state runs, it receives the data shared by all states
 RUNS_STATE: Final = "execute"
 ADDS_STATE: Final = tuple(
     f"smach.{machine}.add" for machine in ("StateMachine", "Sequence", "Concurrence", "Container")
@@ -264,34 +264,32 @@ NODE_BASES: Final = NODES | frozenset(
 
 SHAPED: Final = frozenset(
     ["zeros_like", "ones_like", "empty_like", "full_like"]
-)  # functions that take of their first argument nothing but its shape
+)  # functions that use only the shape of their first argument
 
-CLOCKS: Final = frozenset(
-    ["get_clock"]
-)  # methods that give a clock: its time is nothing that their object holds
+CLOCKS: Final = frozenset(["get_clock"])  # methods that return a clock: its time is not data of the object
 
 LEVELS: Final = frozenset(["debug", "info", "warn", "warning", "error", "fatal", "critical"])  # of messages
 LOGGING: Final = LEVELS | {"get_logger", "exception", "log"}
 
 
 def on_topic(api: str) -> bool:
-    """Tell whether a source or sink is one of topics, not of services, actions or transforms."""
+    """Return whether a source or sink belongs to a topic, not to a service, action or transform."""
     return not api.startswith(OTHER_KINDS)
 
 
 def fact(qualified: str) -> Fact | None:
-    """Return what a function or class of a library does, None when it is nothing special."""
+    """Return the fact about a library function or class, None if there is none."""
     return FUNCTIONS.get(qualified)
 
 
 def written(qualified: str) -> int | None:
-    """Return the position of the argument that a function changes, None when it changes none."""
+    """Return the position of the argument that a function changes, None if it changes none."""
     if qualified.startswith("numpy.") and qualified.endswith(".at"):  # numpy.add.at(array, places, values)
         return 0
     return ARGUMENT_WRITERS.get(qualified)
 
 
 def scalar(qualified: str) -> bool:
-    """Tell whether a function returns a plain value, not an object that could be changed later."""
+    """Return whether a function returns a plain value, not an object that could be changed later."""
     name = qualified.removeprefix("builtins.")
     return name in SCALAR_FUNCTIONS or qualified.startswith(SCALAR_MODULES)

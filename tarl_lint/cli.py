@@ -28,18 +28,18 @@ INTERRUPTED: Final = 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run `tarl-lint` and return its exit code. Without arguments it is a process that ends with this."""
+    """Run `tarl-lint` and return its exit code. Without arguments, run as a process of its own."""
     if arguments is not None:
         return _guarded(arguments)
     gc.disable()
     _open_streams()
     code = _guarded(None)
-    gc.freeze()  # or Python walks all that is left when it ends
+    gc.freeze()  # otherwise Python traverses all objects at exit
     return code
 
 
 def _open_streams() -> None:
-    """Give what is written somewhere to go where whoever started us closed a stream, which Python has as None."""
+    """Open the null device for standard streams that the parent process closed (None in Python)."""
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))  # noqa: SIM115 - to the end
@@ -81,13 +81,13 @@ def _run(typed: Namespace) -> int:
 
 
 def _explanation(code: str) -> Iterator[Line]:
-    from tarl_lint.explain import explanation  # brings the rules, which most runs need not describe
+    from tarl_lint.explain import explanation  # imports the rules' texts, which most runs do not need
 
     return explanation(code)
 
 
 def _lint(chosen: Options, config: Config) -> Result:
-    """Run, saying on a terminal what a long run is at."""
+    """Run the linter; show the progress of a long run on a terminal."""
     if not sys.stderr.isatty():
         return runner.run(chosen, config)
     from tarl_lint.progress import Progress
@@ -97,7 +97,7 @@ def _lint(chosen: Options, config: Config) -> Result:
 
 
 def _check(config: Config) -> None:
-    """Refuse codes that no rule has and wrappers of what ROS does not have, wherever they come from."""
+    """Raise UsageError for unknown rule codes and for wrappers of functions that ROS does not have."""
     per_file = tuple(code for _, codes in config.per_file_ignores for code in codes)
     chosen = (
         ("select", config.select),
@@ -118,7 +118,7 @@ def _check(config: Config) -> None:
 
 
 def _show(typed: Namespace, result: Result) -> None:
-    """Print the report, or write it to a file; what a document has no place for goes to the error stream."""
+    """Print the report, or write it to a file; information without a place in the format goes to standard error."""
     wanted = View(
         show_paths=typed.show_paths or typed.all_steps,
         all_steps=typed.all_steps,
@@ -137,9 +137,9 @@ def _show(typed: Namespace, result: Result) -> None:
 
 
 def _print(lines: Iterable[Line]) -> None:
-    """Write to the standard output. When whoever reads it has gone away, say nothing.
+    """Write to standard output. If the reader has closed it, stop silently.
 
-    Raises OutputError when it cannot be written to, as on a full disk.
+    Raises OutputError if writing fails, as on a full disk.
     """
     try:
         paint.write(lines, sys.stdout, colour=paint.wants_colour(sys.stdout))
@@ -148,11 +148,11 @@ def _print(lines: Iterable[Line]) -> None:
         _give_up_output()
     except OSError as error:
         _give_up_output()
-        raise OutputError(f"The report cannot be written to the standard output: {error.strerror}.") from None
+        raise OutputError(f"Cannot write the report to standard output: {error.strerror}.") from None
 
 
 def _give_up_output() -> None:
-    """Let what is left go nowhere, or Python complains about it when it ends."""
+    """Discard the remaining output; otherwise Python reports an error at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -170,9 +170,9 @@ def _accept(result: Result, config: Config) -> Iterator[Line]:
     path = config.baseline or Path(BASELINE_NAME)
     written = baseline.merged(result.found, result.kept)
     baseline.save(path, written)
-    parts = [f"{len(result.new)} new", f"{sum(e.count for e in result.vanished)} forgotten"]
+    parts = [f"{len(result.new)} new", f"{sum(e.count for e in result.vanished)} removed"]
     if kept := sum(e.count for e in result.kept):
-        parts.append(f"{kept} kept that this run did not look at")
+        parts.append(f"{kept} kept that this run did not analyse")
     yield ((f"{shown(path)}: {summary.numbers(written)} accepted ({', '.join(parts)}).", "strong"),)
     if result.errors:
         yield from summary.not_analysed(result)

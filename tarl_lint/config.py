@@ -17,12 +17,12 @@ from tarl_lint.keys import BASELINE_NAME, KEYS, FailOn, Wrapper
 from tarl_lint.model import OFF_BY_DEFAULT
 
 TABLE: Final = "tarl-lint"
-_MENTIONS: Final = (TABLE.encode(), b"tool.tarl")  # also of a table whose name is mistyped
+_MENTIONS: Final = (TABLE.encode(), b"tool.tarl")  # also matches a table with a misspelt name
 
 
 @dataclass(frozen=True)
 class Stdin:
-    """The text of a file that came through the standard input, as an editor has it before it is saved."""
+    """The text of an unsaved file, read from standard input."""
 
     path: Path
     data: bytes
@@ -30,7 +30,7 @@ class Stdin:
 
 @dataclass(frozen=True)
 class Options:
-    """What the user typed. None means that the settings file or the default decides."""
+    """Command-line options. None means that the settings file or the default applies."""
 
     paths: tuple[Path, ...] = (Path(),)
     config: Path | None = None
@@ -46,23 +46,23 @@ class Options:
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] | None = None
     stdin: Stdin | None = None
     cache: bool = True
-    jobs: int | None = None  # processes; None: as many as pay
+    jobs: int | None = None  # processes; None chooses the number by the size of the run
 
 
 @dataclass(frozen=True)
 class Config:
     """Settings of one run. `Config()` is valid: every rule, nothing excluded, no baseline.
 
-    `select`, `extend_select` and `ignore` hold rule codes or their beginnings (`TARL1`); an empty `select` means all
-    rules. A rule that is off by default is wanted only where its whole code is selected.
-    `exclude` holds patterns as in .gitignore; they and a named baseline are relative to `root`.
-    `per_file_ignores` holds such patterns with the codes that are not wanted in the files they match.
-    `sources`, `sinks` and `sanitizers` are qualified names (`robot.bus.listen`); what a sanitizer returns is clean.
-    `wrappers` are functions that subscribe, publish or wait as one of ROS does.
-    `remaps` are pairs of topics: as the code names them, and as they are called when launched.
-    With `tf2`, what is looked up in the tree of transforms is a source too.
-    `follow_installed` names packages whose sources in the virtual environment `python` are analysed too.
-    `origins` names where each value comes from: "default", "command line" or the settings file.
+    `select`, `extend_select` and `ignore` contain rule codes or prefixes (`TARL1`); an empty `select` means all
+    rules. A rule that is off by default is enabled only by its full code.
+    `exclude` contains patterns as in .gitignore; they and a named baseline are relative to `root`.
+    `per_file_ignores` contains such patterns with the codes that are disabled in matching files.
+    `sources`, `sinks` and `sanitizers` are qualified names (`robot.bus.listen`); results of sanitizers are not tainted.
+    `wrappers` are functions that subscribe, publish or wait like a function of ROS.
+    `remaps` are pairs of topic names: in the code, and at launch.
+    With `tf2`, look-ups of transforms are sources too.
+    `follow_installed` names packages in the virtual environment `python` that are analysed too.
+    `origins` maps each key to its origin: "default", "command line" or the settings file.
     """
 
     root: Path | None = None
@@ -86,17 +86,17 @@ class Config:
 
     @cached_property
     def named(self) -> frozenset[str]:
-        """Return the qualified names of the functions that the settings speak of."""
+        """Return the qualified names of the functions in the settings."""
         wrappers = (wrapper.name for wrapper in self.wrappers)
         return frozenset((*self.sources, *self.sinks, *self.sanitizers, *wrappers))
 
     @cached_property
     def launched(self) -> dict[str, str]:
-        """Return the names of topics when launched, by their names in the code without leading slash."""
+        """Return topic name in the code, without leading slash → name at launch."""
         return {old.lstrip("/"): new for old, new in self.remaps}
 
     def enabled(self, code: str) -> bool:
-        """Tell whether findings of a rule are wanted."""
+        """Return whether a rule is enabled."""
         if code.startswith(self.ignore):
             return False
         if code in OFF_BY_DEFAULT:
@@ -105,9 +105,9 @@ class Config:
 
 
 def resolve(options: Options) -> Config:
-    """Find and read the settings file, put the command line over it and return what this run uses.
+    """Find and read the settings file, override it with the command line, and return the settings of this run.
 
-    Raises ConfigError for an unusable file, key or value. A named baseline need not be there.
+    Raises ConfigError for an unusable file, key or value. A named baseline need not exist.
     """
     start = common_directory(options.paths)
     file = options.config or find_settings(start)
@@ -121,7 +121,7 @@ def resolve(options: Options) -> Config:
         return typed if typed is not None else table.get(key, default)
 
     def extended(key: str, added: tuple[str, ...], typed: Any = None) -> Any:
-        """Return what `choose` does, with what an --extend option adds to it."""
+        """Return the value from `choose`, extended by an --extend option."""
         chosen = choose(key, typed, ())
         if added:
             before = origins[key]
@@ -151,7 +151,7 @@ def resolve(options: Options) -> Config:
 
 
 def _baseline(options: Options, root: Path, named: Path | str | None) -> Path | None:
-    """Return the file of accepted flows to use, or None: there is none, or it is not wanted."""
+    """Return the baseline file to use, or None if there is none or it is disabled."""
     if options.no_baseline:
         return None
     path = named if isinstance(named, Path) else root / (named or BASELINE_NAME)
@@ -159,22 +159,22 @@ def _baseline(options: Options, root: Path, named: Path | str | None) -> Path | 
 
 
 def common_directory(paths: Sequence[Path]) -> Path:
-    """Return the nearest directory that holds all the paths, absolute; the working directory for none."""
+    """Return the deepest common directory of the paths, absolute; the working directory if there are none."""
     places = [os.path.abspath(p) for p in paths] or [os.getcwd()]  # noqa: PTH100, PTH109 - also for missing files
     try:
         common = Path(os.path.commonpath(places))
-    except ValueError:  # drives of Windows have nothing in common
+    except ValueError:  # different drives on Windows
         return Path.cwd()
     return common if common.is_dir() else common.parent
 
 
 def repository_root(start: Path) -> Path | None:
-    """Return the nearest directory above (or at) `start` that git calls the top of a work tree."""
+    """Return the nearest directory at or above `start` that is the top of a git work tree."""
     return next((d for d in (start, *start.parents) if (d / ".git").exists()), None)
 
 
 def find_settings(start: Path) -> Path | None:
-    """Return the nearest pyproject.toml with our table, from `start` up to the top of the repository."""
+    """Return the nearest pyproject.toml with the table, from `start` up to the top of the repository."""
     top = repository_root(start)
     for directory in (start, *start.parents):
         candidate = directory / "pyproject.toml"
@@ -186,7 +186,7 @@ def find_settings(start: Path) -> Path | None:
 
 
 def _mentions_us(path: Path) -> bool:
-    """Look at the bytes first: most projects' files need no TOML parser, which takes time to import."""
+    """Return whether the bytes mention the table: most files then need no TOML parser, which is slow to import."""
     try:
         data = path.read_bytes()
     except OSError:
@@ -195,19 +195,19 @@ def _mentions_us(path: Path) -> bool:
 
 
 def read_settings(path: Path, *, required: bool) -> Mapping[str, Any]:
-    """Return the checked values of `[tool.tarl-lint]`, or of the top level of a file of its own."""
+    """Return the checked values of `[tool.tarl-lint]`, or of the top level of a separate settings file."""
     try:
         data = path.read_bytes()
     except OSError as error:
         raise ConfigError(f"The settings file {shown(path)} cannot be read: {error.strerror}.") from None
     table = _table(path, data)
     if table is None and required:
-        raise ConfigError(f"{shown(path)} has no [tool.{TABLE}] table: add one, or leave out --config.")
+        raise ConfigError(f"{shown(path)} has no [tool.{TABLE}] table: add one, or omit --config.")
     return {key: _check(path, key, value) for key, value in (table or {}).items()}
 
 
 def _table(path: Path, data: bytes) -> dict[str, Any] | None:
-    """Parse TOML and return our table, None when there is none."""
+    """Parse TOML and return the table, None if there is none."""
     document = _parse_toml(path, data)
     tool = document.get("tool")
     if isinstance(tool, dict) and TABLE in tool:
@@ -229,12 +229,12 @@ def _parse_toml(path: Path, data: bytes) -> dict[str, Any]:
     toml = importlib.import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
     try:
         return cast("dict[str, Any]", toml.loads(data.decode("utf-8-sig")))
-    except ValueError as error:  # also bytes that are not UTF-8
+    except ValueError as error:  # includes bytes that are not UTF-8
         raise ConfigError(f"{shown(path)} is not valid TOML: {error}.") from None
 
 
 def _check(path: Path, key: str, value: Any) -> Any:
-    """Return a value as `Config` holds it; raises ConfigError that names the key, or the one meant."""
+    """Return a value in the form of `Config`. Raises ConfigError with the key, or a suggestion for it."""
     if key not in KEYS:
         meant = suggestion(key.replace("_", "-"), KEYS)
         raise ConfigError(
@@ -251,9 +251,9 @@ def _check(path: Path, key: str, value: Any) -> Any:
 
 
 def suggestion(word: str, known: Mapping[str, Any] | Sequence[str], cutoff: float = 0.72) -> str:
-    """Return ": did you mean 'x'?" for a word that is nearly a known one, else a full stop."""
-    import difflib  # only mistakes need it
+    """Return ": did you mean 'x'?" if a known word is similar, else a full stop."""
+    import difflib  # imported only for mistakes
 
-    bare = {name.lstrip("-"): name for name in known}  # what all options begin with makes none alike
+    bare = {name.lstrip("-"): name for name in known}  # the common prefix "--" must not count as similarity
     close = difflib.get_close_matches(word.lstrip("-"), list(bare), n=1, cutoff=cutoff)
     return f": did you mean {bare[close[0]]!r}?" if close else "."

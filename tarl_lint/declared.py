@@ -1,11 +1,11 @@
-"""What packages name for others to start: classes of plugins and simulators, functions of console scripts.
+"""Entry points that packages declare: classes of plugins and simulators, functions of console scripts.
 
 `plugin.xml`, robot descriptions, `setup.py`, `setup.cfg`, `pyproject.toml` and `CMakeLists.txt` are read as text;
 nothing is run.
 """
 
 # ruff: noqa: PTH113, PTH118, PTH120, PTH123
-# Paths are texts here, as in layout.py: trees are large.
+# Paths are strings here, as in layout.py: trees are large.
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from collections.abc import Iterator
 from typing import Final
 
 PACKAGE: Final = ("package.xml", "setup.py", "setup.cfg", "pyproject.toml")
-PLACES: Final = ("", "resource", "urdf", "description", "plugins", "config")  # in a package, for descriptions
+PLACES: Final = ("", "resource", "urdf", "description", "plugins", "config")  # in a package
 SETTINGS: Final = ("setup.py", "setup.cfg", "pyproject.toml")
 NAMING: Final = (
     "package.xml",
     "CMakeLists.txt",
-)  # they name descriptions of plugins that are called otherwise
+)  # files that name plugin descriptions with other names
 LARGEST: Final = 500_000  # bytes of a description
 NAMED: Final = re.compile(r"(?<![\w./])(\w+(?:\.\w+)*)[.:](\w+)(?![\w./])")
 XML: Final = re.compile(r"[\w./-]+\.xml\b")
 
 
 class Declarations:
-    """Asks each package once. Paths are absolute."""
+    """The declarations of each package, read once. Paths are absolute."""
 
     def __init__(self) -> None:
-        self._packages: dict[str, str] = {}  # directory → the package it lies in, "" for none
+        self._packages: dict[str, str] = {}  # directory → enclosing package, "" for none
         self._named: dict[str, dict[str, set[str]]] = {}
 
     def of(self, path: str, module: str) -> tuple[str, ...]:
-        """Return the names in a module that its package has others start."""
+        """Return the names in a module that its package declares as entry points."""
         package = self._package(os.path.dirname(path))
         if not package:
             return ()
@@ -61,7 +61,7 @@ def _named(package: str) -> dict[str, set[str]]:
 
 
 def _texts(package: str) -> Iterator[str]:
-    """Yield the texts that may name classes and functions to be started."""
+    """Yield the texts that may declare classes and functions."""
     for name in SETTINGS:
         text = _read(os.path.join(package, name))
         if "entry_points" in text or "scripts" in text:
@@ -92,7 +92,7 @@ def _descriptions(package: str) -> Iterator[str]:
 
 
 def _read(path: str) -> str:
-    """Return the text of a file that is there and not too large, else nothing."""
+    """Return the text of a file, "" if it is missing or too large."""
     try:
         if not os.path.isfile(path) or os.path.getsize(path) > LARGEST:  # noqa: PTH202
             return ""

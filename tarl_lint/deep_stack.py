@@ -1,9 +1,9 @@
-"""A stack for deep recursion: calls of ours nest as deep as calls and expressions of the programs that are read.
+"""A stack for deep recursion: the analysis recurses as deeply as calls and expressions in the analysed programs.
 
 CPython keeps frames in chunks of 16 KB, which it maps when a call crosses their end and unmaps when that call returns;
-an interpreter that goes up and down there spends up to a third of its time in the system. The size of a chunk is that
-of the frame that needs it, rounded up to a power of two: a function that asks for a little more than half of a large
-chunk leaves the rest to all that it calls.
+code that moves up and down across a chunk's end spends up to a third of its time in the system. The size of a chunk
+is that of the frame that needs it, rounded up to a power of two: a function that needs slightly more than half of a
+large chunk leaves the rest to its callees.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from collections.abc import Callable
 from typing import Final, TypeVar
 
 MAX_RECURSION: Final = 5_000
-HALF_A_CHUNK: Final = 2**18  # words; what is not used is never touched, so it takes no memory
+HALF_A_CHUNK: Final = 2**18  # words; untouched pages take no memory
 
 Result = TypeVar("Result")
 
 
 def with_deep_stack(work: Callable[[], Result]) -> Result:
-    """Return what a function returns that may recurse deeply."""
+    """Call a function that may recurse deeply and return its result."""
     before = sys.getrecursionlimit()
     sys.setrecursionlimit(max(before, MAX_RECURSION))
     try:

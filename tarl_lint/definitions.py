@@ -1,4 +1,4 @@
-"""Fields of the messages that every robot has, for telling that a copy has nothing left of what it was made from."""
+"""Fields of common messages, used to detect that all fields of a copy were replaced."""
 
 from __future__ import annotations
 
@@ -52,4 +52,4 @@ FIELDS: Final[Mapping[str, Mapping[str, str]]] = {
     | _fields(
         "angle_min angle_max angle_increment time_increment scan_time range_min range_max ranges intensities"
     ),
-}  # type → field → its type where that has fields, too
+}  # type → field → its type, if that has fields too

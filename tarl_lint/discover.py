@@ -1,7 +1,7 @@
-"""Which files are analysed, what they are called, and what is left out (counted, so that it can be said)."""
+"""Find the files to analyse and their names; count what is skipped, for the report."""
 
 # ruff: noqa: PTH100, PTH110, PTH112, PTH120, PTH123
-# Paths are texts here: trees are large, and Path objects cost several times as much.
+# Paths are strings here: trees are large, and Path objects cost several times as much.
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ _CPP_NODE = (
     b"RCLCPP_COMPONENTS_REGISTER_NODE",
 )
 _LAUNCH = (".launch", ".launch.xml", ".launch.py", ".launch.yaml", ".launch.yml")
-_ENOUGH = 200_000  # bytes read of a file that only is to be counted
+_ENOUGH = 200_000  # bytes read of a file that is only counted
 
 
 class SourceFile(NamedTuple):
-    """A file to analyse: where it is, its path for people, its dotted name, whether it is `__init__.py`.
+    """A file to analyse: its place, its displayed path, its dotted name, whether it is `__init__.py`.
 
-    `started` are the names in it that its package has others start.
+    `started` are the entry points in it that its package declares.
     """
 
     path: Path
@@ -49,7 +49,7 @@ class SourceFile(NamedTuple):
 
 @dataclass(frozen=True)
 class Notes:
-    """What was seen but not analysed: counts, and the directories that cannot be read."""
+    """What was found but not analysed: counts, and unreadable directories."""
 
     cpp_nodes: int = 0
     remapping_launch_files: int = 0
@@ -59,16 +59,16 @@ class Notes:
 
 @dataclass(frozen=True)
 class Discovery:
-    """The files of a run, sorted by the path that people see, and what was left out."""
+    """The files of a run, sorted by displayed path, and notes on skipped files."""
 
     files: tuple[SourceFile, ...] = ()
     notes: Notes = field(default_factory=Notes)
 
 
 def find(paths: Sequence[Path], config: Config, stdin: Stdin | None = None) -> Discovery:
-    """Return the Python files at and below `paths`; what is named itself is taken even if excluded.
+    """Return the Python files at and below `paths`; a path that is named itself is included even if excluded.
 
-    Raises UsageError for a path that does not exist, unless its text comes through the standard input.
+    Raises UsageError for a path that does not exist, unless its text comes from standard input.
     """
     walk = _Walk(config)
     for path in paths:
@@ -83,7 +83,7 @@ def find(paths: Sequence[Path], config: Config, stdin: Stdin | None = None) -> D
 
 
 class _Walk:
-    """One search. Links are followed last, so that the place they lead to goes first."""
+    """One search. Links are followed last, so that their targets take precedence."""
 
     def __init__(self, config: Config) -> None:
         root = _absolute(config.root or Path.cwd())
@@ -95,18 +95,18 @@ class _Walk:
         self._unreadable: list[str] = []
 
     def tree(self, directory: str) -> None:
-        """Search a directory that the user named."""
+        """Search a directory given by the user."""
         self._search(directory, _ignores_above(directory))
 
     def take(self, path: str, real: str = "") -> None:
-        """Add a file, unless it is there already under another name. `real` is where it is without links, if known."""
+        """Add a file, unless it was found under another name. `real` is its path without links, if known."""
         real = real or os.path.realpath(path)
         if real in self._files and self._files[real] != path:
             self._duplicates += 1
         self._files.setdefault(real, path)
 
     def follow_links(self) -> None:
-        """Search what links lead to, as far as it was not reached without them."""
+        """Search the targets of links that were not reached otherwise."""
         while self._links:
             path, ignores = self._links.pop(0)
             if not os.path.isdir(path):
@@ -117,7 +117,7 @@ class _Walk:
                 self._search(path, ignores)
 
     def discovery(self) -> Discovery:
-        """Return what was found."""
+        """Return the result of the search."""
         layout, here = Layout(), _absolute(Path()).rstrip("/") + "/"
         declared = Declarations()
         files = []
@@ -171,7 +171,7 @@ class _Walk:
 
 
 def _below(directory: str, entry: os.DirEntry[str]) -> str:
-    """Return where an entry that is no link is, in a directory that is reached without links."""
+    """Return the real path of an entry that is not a link, in a directory reached without links."""
     return f"{directory.rstrip('/')}/{entry.name}"
 
 
@@ -180,7 +180,7 @@ def _absolute(path: Path) -> str:
 
 
 def _not_ours(path: str, name: str) -> bool:
-    """Tell whether a directory holds what tools made or installed: hidden, environments, colcon's."""
+    """Return whether tools created a directory: hidden, virtual environments, colcon's output."""
     if name.startswith(".") or name in _NEVER:
         return True
     if name in _COLCON and not os.path.exists(f"{path}/__init__.py"):
@@ -189,29 +189,29 @@ def _not_ours(path: str, name: str) -> bool:
 
 
 def _leads_above_itself(path: str) -> bool:
-    """Tell whether a link leads to a directory that it lies in, which would go round for ever."""
+    """Return whether a link leads to a directory that contains it, an endless loop."""
     parent = os.path.realpath(os.path.dirname(path))
     target = os.path.realpath(path)
     return parent == target or parent.startswith(target.rstrip("/") + "/")
 
 
 def _exists(path: Path) -> bool:
-    """Tell whether something is there, whatever it is; a link that leads round in a circle is not."""
+    """Return whether a path exists; a circular link does not."""
     try:
         return path.exists()
-    except OSError:  # Python 3.12 and older on circles of links
+    except OSError:  # circular links, Python 3.12 and older
         return False
 
 
 def _is_directory(entry: os.DirEntry[str]) -> bool:
     try:
         return entry.is_dir()
-    except OSError:  # a link that leads round in a circle
+    except OSError:  # circular link
         return False
 
 
 def _is_python(entry: os.DirEntry[str]) -> bool:
-    """Tell whether a file is Python by its name, or by its first line where it has no extension."""
+    """Return whether a file is Python by its extension or, without one, by its first line."""
     try:
         if not entry.is_file():
             return False
@@ -257,15 +257,15 @@ def _above(directory: str) -> Iterator[str]:
 
 
 def _missing(path: Path) -> str:
-    """Say that a path does not exist, and which neighbour may have been meant."""
-    import difflib  # only mistakes need it
+    """Return the message for a missing path, with a suggestion."""
+    import difflib  # imported only for mistakes
 
     if path.is_symlink():
         target = path.readlink()
-        return f"{path.as_posix()} is a link to {target}, which leads nowhere: name the file itself."
+        return f"{path.as_posix()} is a broken link to {target}: name the file itself."
     parent = path.parent
     if not parent.is_dir():
-        return f"There is no {path.as_posix()}: the directory {parent.as_posix()} does not exist either."
+        return f"{path.as_posix()}: no such file or directory, and no directory {parent.as_posix()} either."
     close = difflib.get_close_matches(path.name, [p.name for p in parent.iterdir()], n=1)
-    hint = f"did you mean {(parent / close[0]).as_posix()}?" if close else "check the path."
-    return f"There is no {path.as_posix()}: {hint}"
+    hint = f": did you mean {(parent / close[0]).as_posix()}?" if close else "."
+    return f"{path.as_posix()}: no such file or directory{hint}"

@@ -1,4 +1,4 @@
-"""Modules and settings become flows and findings. Pure: the same files give the same answer everywhere."""
+"""Compute flows and findings from modules and settings. Pure: the same files give the same result everywhere."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ HAZARDS: Final = tuple(
 
 
 def lint(modules: Sequence[Module], config: Config) -> tuple[Finding, ...]:
-    """Return every finding: flows, and hazards of the rules that are wanted."""
+    """Return every finding: flows, and hazards of the enabled rules."""
     return tuple(f for group in groups(modules, config) for f in examine(group, config)[0])
 
 
 def examine(
     modules: Sequence[Module], config: Config, *, isolate: bool = False
 ) -> tuple[tuple[Finding, ...], dict[str, Exception], tuple[Cut, ...], tuple[str, ...]]:
-    """Return the findings in modules that belong together, on which files we failed, programs that were too much.
+    """Return the findings in a group of modules, the failures by file, and the programs that exhausted their budget.
 
-    The last are the classes that are not here and that flows ended at: methods that these pass data to.
+    The last element is the classes outside the files at which flows ended.
 
-    Unless isolated, failures are raised. The rest is found all the same, as if what failed did nothing.
+    Failures are raised unless isolated. The rest is analysed as if the failed code did nothing.
     """
     if one_sided(modules, config, HAZARDS):
         return (), {}, (), ()
@@ -72,7 +72,7 @@ def analyse(modules: Sequence[Module], config: Config) -> tuple[Flow, ...]:
 def trace(
     modules: Sequence[Module], config: Config, *, thorough: bool = True
 ) -> tuple[Linker, tuple[Flow, ...]]:
-    """Return the flows and the machine that found them, which can be asked more when it was thorough."""
+    """Return the flows and the interpreter that found them, which answers further queries if it was thorough."""
 
     def linked() -> tuple[Linker, tuple[Flow, ...]]:
         machine = Linker(relevant(modules, config), config, thorough=thorough)
@@ -95,7 +95,7 @@ def _finding(flow: Flow) -> Finding:
 
 
 def hazards(tracer: Tracer, flows: Sequence[Flow], config: Config) -> tuple[Finding, ...]:
-    """Return what is wrong or risky rather than merely there, of the rules that are wanted."""
+    """Return the hazards of the enabled rules."""
     wanted = [rule for rule in HAZARDS if config.enabled(rule.CODE)]
     if not wanted or not tracer.machine.modules:
         return ()

@@ -1,4 +1,4 @@
-"""What hazards are found from: the linked modules, their graph, their flows, and who reads which name."""
+"""Data for hazard rules: the modules, their value-flow graph, their flows, and the reads of each name."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ PROGRAM: Final = re.compile(r"__main__|\bdef main\(|\binit_node\(|\brclpy\.init\
 Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 DEFINITIONS: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 BY_TEXT: Final = frozenset(["getattr", "hasattr", "vars", "globals", "locals", "eval", "exec"])
-LOOK_UPS: Final = frozenset(["getattr", "hasattr", "attrgetter", "methodcaller"])  # of a name given as a text
+LOOK_UPS: Final = frozenset(["getattr", "hasattr", "attrgetter", "methodcaller"])  # take a name as a string
 LOCKS: Final = frozenset(["Lock", "RLock", "Condition", "Semaphore", "BoundedSemaphore"])
 
 
 @dataclass(slots=True)
 class Read:
-    """One use of a name: the expression, and the expressions and statements around it from the inside out."""
+    """One use of a name: the expression, and its enclosing expressions and statements, innermost first."""
 
     path: str
     node: ast.expr
@@ -33,21 +33,19 @@ class Read:
 
 @dataclass(slots=True)
 class Outline:
-    """The tree of one module with the way up from each node."""
+    """The syntax tree of one module with the parent of each node."""
 
     tree: ast.Module
     parents: dict[ast.AST, ast.AST] = field(default_factory=dict)
     calls: dict[tuple[int, int], list[ast.Call]] = field(default_factory=dict)
-    definitions: list[Definition] = field(default_factory=list)  # in the order of their lines
-    locks: dict[str, str] = field(default_factory=dict)  # name of a lock → the lock, which a condition shares
-    assigned: dict[str, list[ast.expr]] = field(default_factory=dict)  # last part of a name → what is stored
+    definitions: list[Definition] = field(default_factory=list)  # sorted by line
+    locks: dict[str, str] = field(default_factory=dict)  # name → lock; a condition has the name of its lock
+    assigned: dict[str, list[ast.expr]] = field(default_factory=dict)  # last part of a name → values
     declared: set[str] = field(default_factory=set)  # names that functions declare global
-    shared: frozenset[str] | None = None  # globals that functions change, once somebody asked
-    held: dict[ast.AST, frozenset[str]] = field(
-        default_factory=dict
-    )  # locks held at nodes that were asked for
-    lock_calls: dict[ast.AST, list[tuple[str, str, int]]] = field(default_factory=dict)  # of functions
-    by_text: bool = False  # names may be looked up by texts made at run time
+    shared: frozenset[str] | None = None  # globals that functions change; None until computed
+    held: dict[ast.AST, frozenset[str]] = field(default_factory=dict)  # node → held locks, a cache
+    lock_calls: dict[ast.AST, list[tuple[str, str, int]]] = field(default_factory=dict)  # by function
+    by_text: bool = False  # whether names may be looked up by computed strings
 
     def __post_init__(self) -> None:
         pending: list[ast.AST] = [self.tree]
@@ -87,7 +85,7 @@ class Outline:
             self.locks[name] = self.locks.get(shared, shared) or name
 
     def around(self, node: ast.AST) -> Iterator[ast.AST]:
-        """Yield what is around a node, from the inside out."""
+        """Yield the enclosing nodes, innermost first."""
         while (outer := self.parents.get(node)) is not None:
             yield outer
             node = outer
@@ -98,7 +96,7 @@ class Outline:
         return next((c for c in found if (c.end_lineno, c.end_col_offset) == (pos[2], pos[3])), None)
 
     def qualname(self, line: int) -> str:
-        """Return the dotted name of the innermost function or class that has a line, "" for the module."""
+        """Return the dotted name of the innermost function or class at a line, "" for the module."""
         holding = [d for d in self.definitions if d.lineno <= line <= (d.end_lineno or 0)]
         return ".".join(d.name for d in sorted(holding, key=lambda d: d.lineno))
 
@@ -108,10 +106,10 @@ class Outline:
 
 
 class Evidence:
-    """Everything that a rule about hazards may ask."""
+    """The data available to hazard rules."""
 
     def __init__(self, tracer: Tracer, flows: Sequence[Flow]) -> None:
-        self.tracer = tracer  # who follows the graph
+        self.tracer = tracer  # searches the value-flow graph
         self.machine = machine = tracer.machine
         self.flows = flows
         self.ours = frozenset(f.function.name for f in machine.frames.values())
@@ -119,7 +117,7 @@ class Evidence:
         self._limited: dict[int, bool] = {}
 
     def limited(self, statement: ast.AST) -> bool:
-        """Tell whether what a statement computes stays within limits, as far as its text says."""
+        """Return whether the syntax of a statement limits the value that it computes."""
         known = self._limited.get(id(statement))
         if known is None:
             known = self._limited[id(statement)] = limits(statement, self.ours)
@@ -140,11 +138,11 @@ class Evidence:
         return self.tracer.source(self.machine.sources[path, pos])
 
     def finding(self, code: str, span: Span, message: str, about: str) -> Finding:
-        """Return a hazard. `about` is what it speaks of, without lines and names of local variables."""
+        """Return a hazard. `about` identifies it without lines and names of local variables."""
         return Finding(code, span, message, about=about, place=self.outline(span.path).qualname(span.line))
 
     def complete(self, path: str) -> bool:
-        """Tell whether a module is part of a program that is here whole, rather than a library for others."""
+        """Return whether a module is part of a complete program, not a library for other programs."""
         module = self.machine.modules[path]
         if PROGRAM.search(module.text):
             return True
@@ -152,7 +150,7 @@ class Evidence:
         return any(last in m.text and PROGRAM.search(m.text) for m in self.machine.modules.values())
 
     def reads(self, name: str, *, attribute: bool, path: str = "") -> Iterator[Read]:
-        """Yield every place that may read a name, in one module or in all; texts that it is looked up by count."""
+        """Yield every place that may read a name, including strings used for look-ups."""
         for module in self.machine.modules.values():
             if name not in module.text or (path and module.path != path):
                 continue
@@ -164,14 +162,14 @@ class Evidence:
                     yield Read(module.path, node, list(outline.around(node)))
 
     def _looked_up(self, node: ast.Constant, outline: Outline) -> bool:
-        """Tell whether a text may name something that is looked up, rather than a topic of the same name."""
+        """Return whether a string may be used to look up a name, rather than being a topic of the same name."""
         outer = outline.parents.get(node)
         if isinstance(outer, ast.Call) and _last(outer.func) in LOOK_UPS:
             return True
         return any(self.outline(path).by_text for path in self.machine.modules)
 
     def imported(self, name: str) -> bool:
-        """Tell whether any module imports a name from another one."""
+        """Return whether any module imports a name from another one."""
         return any(
             alias.name == name
             for module in self.machine.modules.values()
@@ -196,7 +194,7 @@ def _last(expr: ast.expr) -> str:
 
 
 def _by_text(call: ast.Call) -> bool:
-    """Tell whether a call looks names up that are not written there."""
+    """Return whether a call looks up computed names."""
     if not isinstance(call.func, ast.Name) or call.func.id not in BY_TEXT:
         return False
     if call.func.id in ("getattr", "hasattr"):

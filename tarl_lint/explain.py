@@ -1,4 +1,4 @@
-"""What a rule is about, from the rule's own file: for `--explain` and for its page in docs/rules."""
+"""Documentation of a rule, from its own file: for `--explain` and for its page in docs/rules."""
 
 from __future__ import annotations
 
@@ -16,33 +16,35 @@ from tarl_lint.config import suggestion
 from tarl_lint.errors import UsageError
 from tarl_lint.report.line import Line
 
-ALIKE: Final = 0.8  # of codes, all of which begin alike
+ALIKE: Final = 0.8  # similarity of codes, which all have the prefix TARL
 _HEADINGS: Final = (("INVALID", "Reported"), ("VALID", "Not reported"))
 
 
 def known_rules() -> Mapping[str, ModuleType]:
-    """Return code → file of the rule, sorted by code. Every file in `rules` that has a `CODE` is a rule."""
+    """Return code → module of the rule, sorted by code. Every module in `rules` with a `CODE` is a rule."""
     files = (import_module(f"{rules.__name__}.{m.name}") for m in pkgutil.iter_modules(rules.__path__))
     return dict(sorted((file.CODE, file) for file in files if hasattr(file, "CODE")))
 
 
 def check_codes(codes: Sequence[str], where: str) -> None:
-    """Raise UsageError for a code, or beginning of one, that no rule has."""
+    """Raise UsageError for a code or prefix that no rule has."""
     known = list(known_rules())
     for code in codes:
         if not any(k.startswith(code) for k in known):
             meant = suggestion(code, known, ALIKE)
-            raise UsageError(f"{where} names {code!r}, which is no rule{meant} Rules are {', '.join(known)}.")
+            raise UsageError(
+                f"{where} names {code!r}, which is not a rule{meant} Rules are {', '.join(known)}."
+            )
 
 
 def explanation(code: str) -> Iterator[Line]:
-    """Yield what a rule is about, for the terminal. Raises UsageError for an unknown code."""
+    """Yield the documentation of a rule for the terminal. Raises UsageError for an unknown code."""
     inside, before = False, ""
     for line in page(code.upper()).splitlines():
         if line.startswith("```"):
             inside = not inside
             if inside and before == "```":
-                yield (("    " + "-" * 8, "quiet"),)  # or two examples would read as one
+                yield (("    " + "-" * 8, "quiet"),)  # separates two examples
                 yield ()
             before = line
         elif inside:
@@ -68,7 +70,7 @@ def page(code: str) -> str:
 
 
 def _examples(rule: ModuleType) -> str:
-    """Return the snippets that are the rule's tests, as code blocks below headings."""
+    """Return the rule's snippets, which are its tests, as code blocks below headings."""
     return "".join(
         f"\n## {heading}\n" + "".join(map(_block, snippets))
         for name, heading in _HEADINGS

@@ -1,4 +1,4 @@
-"""Files: how they are named to people, and how they are written whole or not at all."""
+"""Display of paths, and atomic writing of files."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from pathlib import Path
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Write a file under another name and rename it, so that nobody ever reads half of it.
+    """Write a file under another name and rename it, so that no reader sees a partial file.
 
-    What is no file, as a device or a pipe, is written to and never replaced.
+    A device or pipe is written to directly and never replaced.
     """
-    target = path.resolve()  # through a link, not over it
+    target = path.resolve()  # follow a link instead of replacing it
     if target.exists() and not target.is_file():
         target.write_text(text, encoding="utf-8", errors="surrogateescape", newline="\n")
         return
@@ -29,7 +29,7 @@ def write_whole(path: Path, text: str) -> None:
 
 
 def shown(path: Path) -> str:
-    """Write a path for people: with slashes, relative to the working directory when below it."""
+    """Return a path for display: with slashes, relative to the working directory if below it."""
     try:
         return path.absolute().relative_to(Path.cwd()).as_posix()
     except ValueError:

@@ -1,4 +1,4 @@
-"""What a finding is, apart from its place and its steps: the identity that a baseline accepts."""
+"""Fingerprints: the identity of a finding in a baseline, independent of position and steps."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ UNKNOWN: Final = "?"
 
 @dataclass(frozen=True)
 class OfFlow:
-    """A flow. Topics are texts, `?` when unknown; the package is the ROS package, else Python's, else the script."""
+    """A flow. Topics are strings, `?` if unknown; the package is the ROS package, else Python's, else the script."""
 
     package: str
-    owner: str  # the class that subscribes, "" for none
+    owner: str  # the subscribing class, "" for none
     source: str
     callback: str
     sink: str
-    place: str  # qualified name of what publishes
+    place: str  # qualified name of the publishing function
     kind: Kind
 
     @property
@@ -39,7 +39,7 @@ class OfFlow:
 
 @dataclass(frozen=True)
 class OfHazard:
-    """A hazard: which rule, what it speaks of (topics, an attribute), and the function it is in."""
+    """A hazard: its rule, its subject (topics, an attribute), and its function."""
 
     package: str
     rule: str
@@ -64,21 +64,21 @@ Fingerprint = OfFlow | OfHazard
 
 
 def digest(texts: Sequence[str]) -> str:
-    """Return 16 hexadecimal digits for some texts."""
-    import hashlib  # OpenSSL, only where there are findings
+    """Return a digest of texts as 16 hexadecimal digits."""
+    import hashlib  # imports OpenSSL, needed only for findings
 
     return hashlib.sha256("\0".join(texts).encode("utf-8", "surrogatepass")).hexdigest()[:16]
 
 
 def of_finding(finding: Finding, package: str, module: str) -> Fingerprint:
-    """Return a finding's identity. `package` and `module` are those of the file where it begins."""
+    """Return the fingerprint of a finding. `package` and `module` are those of the file where it begins."""
     if finding.flow is not None:
         return of_flow(finding.flow, package)
     return OfHazard(_package(package, module), finding.code, finding.about, finding.place)
 
 
 def of_flow(flow: Flow, package: str) -> OfFlow:
-    """Return a flow's identity. `package` is the ROS package of its source, "" where there is none."""
+    """Return the fingerprint of a flow. `package` is the ROS package of its source, "" if there is none."""
     source, sink = flow.source, flow.sink
     return OfFlow(
         package=_package(package, source.module),
@@ -96,5 +96,5 @@ def _package(package: str, module: str) -> str:
 
 
 def topic_text(topics: Sequence[str]) -> str:
-    """Write the topics that one call may have: `odom`, `left or right`, `?` when unknown."""
+    """Return the possible topics of one call: `odom`, `left or right`, `?` if unknown."""
     return " or ".join(topics) or UNKNOWN

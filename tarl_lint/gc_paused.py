@@ -1,4 +1,4 @@
-"""Room for objects: the garbage collector has nothing to find while trees and graphs only grow."""
+"""Pause of the garbage collector, which finds nothing while trees and graphs only grow."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def without_collection() -> Iterator[None]:
-    """Keep the garbage collector from walking the live trees again and again."""
+    """Prevent the garbage collector from repeatedly traversing live trees."""
     active = gc.isenabled()
     gc.disable()
     try:

@@ -1,4 +1,4 @@
-"""Patterns of .gitignore files and which paths they leave out: without git, so that all machines agree."""
+"""Matching of .gitignore patterns, without git, so that results are the same on all machines."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-DIRECTORIES: Final = None  # the component that stands for any number of directories, none too
+DIRECTORIES: Final = None  # component for any number of directories, including none
 Component = re.Pattern[str] | None
 
 
@@ -20,10 +20,10 @@ class Pattern:
     directories_only: bool
 
     def matches(self, path: str) -> bool:
-        """Tell whether a relative path is meant. Takes time in proportion to path times pattern at most."""
+        """Return whether the pattern matches a relative path, in time at most proportional to path × pattern."""
         names = path.split("/")
         at = place = 0
-        retry: tuple[int, int] | None = None  # where the last `**` goes on with one directory more
+        retry: tuple[int, int] | None = None  # backtracking point: the last `**` takes one more directory
         while place < len(names):
             component = self.components[at] if at < len(self.components) else _NOTHING
             if component is DIRECTORIES:
@@ -42,13 +42,13 @@ class Pattern:
 
 @dataclass(frozen=True)
 class Ignore:
-    """The patterns of one .gitignore file (or of a setting) and the directory that they are relative to."""
+    """The patterns of one .gitignore file, or of a setting, and their base directory."""
 
     directory: str
     patterns: tuple[Pattern, ...]
 
     def verdict(self, path: str, *, is_directory: bool) -> bool | None:
-        """Tell whether an absolute path is left out; None when no pattern speaks of it. The last one wins."""
+        """Return whether an absolute path is excluded, None if no pattern matches. The last match wins."""
         prefix = self.directory.rstrip("/") + "/"
         if not path.startswith(prefix):
             return None
@@ -60,13 +60,13 @@ class Ignore:
 
 
 def ignored(path: str, ignores: Sequence[Ignore], *, is_directory: bool) -> bool:
-    """Tell whether a path is left out: the nearest to speak of it decides (`ignores`: nearest last)."""
+    """Return whether a path is excluded: the nearest file with a match decides (`ignores`: nearest last)."""
     verdicts = (ignore.verdict(path, is_directory=is_directory) for ignore in reversed(ignores))
     return next((v for v in verdicts if v is not None), False)
 
 
 def parse(directory: str, lines: Iterable[str]) -> Ignore:
-    """Read the lines of a .gitignore file in `directory` (absolute). Bad patterns match nothing."""
+    """Parse the lines of a .gitignore file in `directory` (absolute). Invalid patterns match nothing."""
     patterns = (_pattern(line) for line in lines)
     return Ignore(directory, tuple(p for p in patterns if p is not None))
 
@@ -100,12 +100,12 @@ _ANYTHING: Final = re.compile(".*", re.DOTALL)
 
 
 def _components(text: str) -> tuple[Component, ...]:
-    """Return what a pattern says of each directory on the way and of the name at its end.
+    """Return the components of a pattern: one per directory, and one for the name at the end.
 
-    `*` and `?` stay inside a component, `**` stands for several.
+    `*` and `?` match inside a component, `**` matches several components.
     """
     found: list[Component] = []
-    pieces: list[str] = [""]  # what stands between the stars of the present component
+    pieces: list[str] = [""]  # pieces between the stars of the current component
     for match in re.finditer(_PIECES, text, re.DOTALL):
         kind = match.lastgroup
         if kind == "dirs":
@@ -123,7 +123,7 @@ def _components(text: str) -> tuple[Component, ...]:
 
 
 def _component(pieces: Sequence[str]) -> re.Pattern[str]:
-    """Return an expression for a name. Each piece is taken where it comes first, which no later one can regret."""
+    """Return a regular expression for a name. Matching each piece at its first occurrence needs no backtracking."""
     first, *rest = pieces
     if not rest:
         return re.compile(first, re.DOTALL)
@@ -132,16 +132,16 @@ def _component(pieces: Sequence[str]) -> re.Pattern[str]:
 
 
 def _piece(match: re.Match[str]) -> str:
-    """Write what stands for one character as a regular expression."""
+    """Return the regular expression for a piece that matches one character."""
     text = match[0]
     if match["set"] is not None:
         return f"(?!/)[{'^' if match['negated'] else ''}{_members(match['set'])}]"
     if text in ("[", "\\"):
-        return "(?!)"  # never closed, or nothing escaped: git matches nothing with it
+        return "(?!)"  # unclosed bracket or trailing backslash: git matches nothing
     return "." if text == "?" else re.escape(match["escaped"] or text)
 
 
 def _members(text: str) -> str:
-    """Write what stands between brackets as a regular expression has it there; `-` makes ranges in both."""
+    """Return the contents of brackets in regular-expression syntax; `-` makes ranges in both."""
     pieces = re.findall(r"\\.|.", text, re.DOTALL)
     return "".join("-" if piece == "-" else re.escape(piece[-1]) for piece in pieces).replace("--", r"\-\-")

@@ -1,8 +1,8 @@
-"""Where `tarl-lint` imports from: the standard library and what is installed, never the files that it lints.
+"""Restrict imports of `tarl-lint` to the standard library and installed packages, never linted files.
 
-Python puts the working directory (`python -m`), the directory of a script and what `PYTHONPATH` names before its own
-library, and editable installations append source trees; a file `types.py` in any of them would run in place of ours.
-Only `sys` and `os`, which Python has loaded before, are imported here (`from __future__` imports a file, too).
+Python puts the working directory (`python -m`), the directory of a script and the entries of `PYTHONPATH` before its
+own library, and editable installations append source trees; a file `types.py` in any of them could be imported.
+Only `sys` and `os`, which Python has already loaded, are imported here (`from __future__` imports a file too).
 """
 
 import os
@@ -10,7 +10,7 @@ import sys
 
 
 def restrict() -> None:
-    """Keep of `sys.path` what belongs to the interpreter and its installed packages."""
+    """Reduce `sys.path` to the entries of the interpreter and its installed packages."""
     trusted = {os.path.normcase(os.path.abspath(entry)) for entry in (*_standard(), *_site(), *_beside_us())}
     sys.path[:] = [e for e in sys.path if e and os.path.normcase(os.path.abspath(e)) in trusted]
 
@@ -22,7 +22,7 @@ def _standard() -> list[str]:
 
 
 def _site() -> list[str]:
-    """Return the directories that packages are installed in; none where Python runs without `site`."""
+    """Return the directories of installed packages; none if Python runs without `site`."""
     site = sys.modules.get("site")
     if site is None:
         return []
@@ -31,7 +31,7 @@ def _site() -> list[str]:
 
 
 def _beside_us() -> list[str]:
-    """Return the directory that this package is in, if it was installed there, as by `pip install --target`."""
+    """Return the directory of this package if it was installed there, as by `pip install --target`."""
     holder = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     installed = any(n.startswith("tarl-") and n.endswith(".dist-info") for n in os.listdir(holder))
     return [holder] if installed else []

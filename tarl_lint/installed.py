@@ -1,7 +1,7 @@
-"""Sources of installed packages that the settings name: located as files of a virtual environment, never imported.
+"""Sources of installed packages named in the settings: read as files of a virtual environment, never imported.
 
-`pyvenv.cfg`, the site-packages and the lines of `.pth` files that hold a path are read; lines that Python would run are
-not.
+`pyvenv.cfg`, the site-packages and the lines of `.pth` files that contain a path are read; lines with code are
+ignored.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from tarl_lint.model import Finding
 from tarl_lint.prefilter.by_words import reached
 from tarl_lint.source import Script
 
-MOST_FILES: Final = 5_000  # of one package
+MOST_FILES: Final = 5_000  # files per package
 SITES: Final = ("lib/python3*/site-packages", "lib64/python3*/site-packages", "Lib/site-packages")
 SYSTEM_SITES: Final = (*SITES, "lib/python3/dist-packages", "lib/python3*/dist-packages")
 
 
 @dataclass(frozen=True)
 class Followed:
-    """The files of installed packages that are analysed too, what they belong to, and what was not found."""
+    """The analysed files of installed packages, the packages' versions, and messages for missing packages."""
 
     scripts: tuple[Script, ...] = ()
     packages: tuple[str, ...] = ()  # "robot_base 1.4.0"
@@ -36,9 +36,9 @@ class Followed:
 
 
 def follow(scripts: Sequence[Script], config: Config) -> Followed:
-    """Return the files of the named packages that `scripts` import, directly or not.
+    """Return the files of the named packages that `scripts` import, directly or indirectly.
 
-    Raises ConfigError where no virtual environment is named, or what is named is none.
+    Raises ConfigError if no virtual environment is named, or the named directory is not one.
     """
     if not config.follow_installed:
         return Followed()
@@ -55,8 +55,8 @@ def follow(scripts: Sequence[Script], config: Config) -> Followed:
         files = [script for site in sites for script in _scripts(site, name)][:MOST_FILES]
         if not files:
             missing.append(
-                f"'follow-installed' names {name!r}, of which {shown(home)} holds no Python source: install it there, "
-                "or take the name out."
+                f"'follow-installed' names {name!r}, but {shown(home)} contains no Python source of it: install it "
+                "there, or remove the name."
             )
             continue
         found += files
@@ -66,7 +66,7 @@ def follow(scripts: Sequence[Script], config: Config) -> Followed:
 
 
 def without(report: Report, followed: Followed) -> Report:
-    """Return a report without what lies in installed packages alone: flows in which no statement of ours takes part."""
+    """Return a report without the flows that lie entirely in installed packages."""
     theirs = {script.path for script in followed.scripts}
     if not theirs:
         return report
@@ -88,12 +88,12 @@ def _ours(finding: Finding, theirs: Set[str]) -> bool:
 
 
 def search_path(home: Path) -> list[Path]:
-    """Return the directories that a virtual environment finds packages in."""
+    """Return the directories in which a virtual environment finds packages."""
     try:
         text = (home / "pyvenv.cfg").read_text("utf-8", errors="replace")
     except OSError:
         raise ConfigError(
-            f"'python' is {shown(home)}, which is no virtual environment: there is no pyvenv.cfg in it."
+            f"'python' is {shown(home)}, which is not a virtual environment: it contains no pyvenv.cfg."
         ) from None
     settings = dict(re.findall(r"^\s*([\w-]+)\s*=\s*(.*?)\s*$", text, re.MULTILINE))
     sites = [site for pattern in SITES for site in sorted(home.glob(pattern))]
@@ -106,7 +106,7 @@ def search_path(home: Path) -> list[Path]:
 
 
 def _listed(site: Path) -> Iterator[Path]:
-    """Yield the directories that `.pth` files add, as editable installs do; lines that are code are left out."""
+    """Yield the directories that `.pth` files add, as for editable installs; lines with code are ignored."""
     for file in sorted(site.glob("*.pth")):
         try:
             lines = file.read_text("utf-8", errors="replace").splitlines()
@@ -119,7 +119,7 @@ def _listed(site: Path) -> Iterator[Path]:
 
 
 def _scripts(site: Path, name: str) -> Iterator[Script]:
-    """Yield the sources of a package, or of a module that is a file; what is compiled stays opaque."""
+    """Yield the sources of a package or single-file module; compiled modules stay opaque."""
     top = site / name
     files = sorted(top.rglob("*.py")) if (top / "__init__.py").is_file() else [site / f"{name}.py"]
     for file in files:
@@ -134,7 +134,7 @@ def _scripts(site: Path, name: str) -> Iterator[Script]:
 
 
 def version(sites: Iterable[Path], name: str) -> str:
-    """Return the version of the distribution that holds a package, "" where nothing tells."""
+    """Return the version of the distribution that contains a package, "" if unknown."""
     for site in sites:
         for directory in sorted(site.glob("*.dist-info")):
             if _holds(directory, name):

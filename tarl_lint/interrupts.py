@@ -1,4 +1,4 @@
-"""Ctrl-C in a terminal reaches every process: one of them says so, the others end without a word."""
+"""Ctrl-C in a terminal reaches every process: the main process prints a message, the others end silently."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from contextlib import contextmanager
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Let Ctrl-C wait, also for the processes that are started meanwhile, until they say `end_silently`."""
-    import signal  # only runs with several processes need it
+    """Block Ctrl-C, also in processes started meanwhile, until they call `end_silently`."""
+    import signal  # needed only with several processes
 
     mask = getattr(signal, "pthread_sigmask", None)
     if mask is None:  # Windows
@@ -23,7 +23,7 @@ def uninterrupted() -> Iterator[None]:
 
 
 def end_silently() -> None:
-    """Let Ctrl-C end this process without a traceback."""
+    """Make Ctrl-C end this process without a traceback."""
     import signal
 
     signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -32,7 +32,7 @@ def end_silently() -> None:
 
 
 def over() -> None:
-    """Let no second Ctrl-C disturb the end of this process."""
+    """Ignore a second Ctrl-C while this process ends."""
     import signal
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,4 +1,4 @@
-"""The keys of `[tool.tarl-lint]` and what their values must be."""
+"""The keys of `[tool.tarl-lint]` and the types of their values."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ FAIL_ON: Final[tuple[FailOn, ...]] = get_args(FailOn)
 
 @dataclass(frozen=True)
 class Wrapper:
-    """A function that does what one of ROS does: `like` names that one, the rest says where arguments stand.
+    """A function that does the same as the ROS function `like`; the other fields give the places of its arguments.
 
-    A number is a position, a text a keyword; None means that the argument stands where it does in `like`.
+    A number is a position, a string a keyword; None means the same place as in `like`.
     """
 
     name: str
@@ -41,7 +41,7 @@ def _patterns(value: Any) -> tuple[str, ...] | None:
 
 
 def check_pattern(pattern: str) -> str:
-    """Return a pattern; raises ValueError for one with the slashes of Windows, which would match nothing."""
+    """Return a pattern. Raises ValueError if it has backslashes, which would match nothing."""
     if re.search(r"\\(\w|$)", pattern):
         meant = pattern.replace("\\", "/")
         raise ValueError(f"{pattern!r} has backslashes: patterns are written as in .gitignore: {meant!r}.")
@@ -54,14 +54,14 @@ def _codes(value: Any) -> tuple[str, ...] | None:
 
 
 def _names(value: Any) -> tuple[str, ...] | None:
-    """Accept names with dots, such as `robot.bus.listen`: a name alone would mean a function of no module."""
+    """Return dotted names such as `robot.bus.listen`, None if one has no module."""
     names = _texts(value)
     good = names is not None and all("." in name and _identifiers(name) for name in names)
     return names if good else None
 
 
 def _packages(value: Any) -> tuple[str, ...] | None:
-    """Accept names of packages as they are imported, without dots."""
+    """Return names of packages as imported, None if one contains dots."""
     names = _texts(value)
     return names if names is not None and all(name.isidentifier() for name in names) else None
 
@@ -105,7 +105,7 @@ def _remaps(value: Any) -> tuple[tuple[str, str], ...] | None:
 
 
 def _place(value: Any) -> bool:
-    """Tell whether a value says where an argument stands: its position from 0 or its keyword."""
+    """Return whether a value is the place of an argument: a position from 0 or a keyword."""
     return (type(value) is int and value >= 0) or (isinstance(value, str) and value.isidentifier())
 
 

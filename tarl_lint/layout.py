@@ -1,7 +1,7 @@
-"""What directories say about the files in them: dotted module names from import roots, ROS packages."""
+"""Module names and ROS packages of files, derived from directories."""
 
 # ruff: noqa: PTH113, PTH120
-# Paths are texts here: trees are large, and Path objects cost several times as much.
+# Paths are strings here: trees are large, and Path objects cost several times as much.
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _SETUP = frozenset({"setup", "generate_distutils_setup"})
 
 
 class Layout:
-    """Names modules and packages, asking each directory once. Paths are absolute.
+    """Names modules and packages; examines each directory once. Paths are absolute.
 
     The nearest import root counts: a script's own directory, the directory that holds the outermost package
-    (`src/`, `include/`, `scripts/` alike), or what `package_dir` in setup.py or setup.cfg says.
+    (`src/`, `include/`, `scripts/` alike), or the `package_dir` in setup.py or setup.cfg.
     """
 
     def __init__(self) -> None:
@@ -36,11 +36,11 @@ class Layout:
         return f"{prefix}.{stem}" if prefix else stem, False
 
     def ros_package(self, path: str) -> str:
-        """Return the name in the nearest package.xml above a file, "" when there is none."""
+        """Return the name in the nearest package.xml above a file, "" if there is none."""
         return self._ros_of(os.path.dirname(path))
 
     def _prefix(self, directory: str) -> str:
-        """Return what the names of the modules in a directory begin with, "" at an import root."""
+        """Return the prefix of module names in a directory, "" at an import root."""
         if directory not in self._prefixes:
             self._prefixes[directory] = self._ask_prefix(directory)
         return self._prefixes[directory]

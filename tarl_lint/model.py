@@ -1,4 +1,4 @@
-"""The values that every stage of the linter hands on: frozen, standard library only."""
+"""Data types shared by all stages of the linter: frozen, standard library only."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from tarl_lint.rule_codes import rule_codes
 Dependence = Literal["data", "control", "context"]
 Kind = Literal["explicit", "implicit"]
 CODES: Final[Mapping[Kind, str]] = {"explicit": "TARL101", "implicit": "TARL102"}
-OFF_BY_DEFAULT: Final = frozenset({"TARL103"})  # wanted only where they are named in full
+OFF_BY_DEFAULT: Final = frozenset({"TARL103"})  # enabled only by their full code
 RULES: Final = rule_codes()
 Role = Literal["register", "receive", "assign", "call", "return", "condition", "publish"]
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Span:
-    """A stretch of source text. Lines and columns count from 1; `end_column` is one past the last character.
+    """A range of source text. Lines and columns count from 1; `end_column` is one past the last character.
 
-    Columns are characters of the line, not UTF-8 bytes.
+    Columns count characters, not UTF-8 bytes.
     """
 
     path: str
@@ -34,7 +34,7 @@ class Span:
 class SiteId:
     """A statement's identity, which survives moved lines.
 
-    `text` is the statement as `ast.unparse` writes it, of a compound statement only its header;
+    `text` is the statement as `ast.unparse` formats it, for a compound statement only its header;
     `ordinal` counts statements with the same module, qualified name and text, from 0 in file order.
     """
 
@@ -50,7 +50,7 @@ class SiteId:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One statement of a flow. Of a compound statement, `span` and `code` cover the header only."""
+    """One statement of a flow. For a compound statement, `span` and `code` cover the header only."""
 
     site: SiteId
     span: Span
@@ -61,7 +61,7 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A message arriving through a subscription. `span` is the subscription call; `topics` is empty when unknown."""
+    """A subscription at which messages arrive. `span` is the subscription call; `topics` is empty if unknown."""
 
     id: str
     span: Span
@@ -77,7 +77,7 @@ class Source:
 
 @dataclass(frozen=True, slots=True)
 class Sink:
-    """The argument of a publish call. `span` is the call; `topics` is empty when unknown."""
+    """The argument of a publish call. `span` is the call; `topics` is empty if unknown."""
 
     id: str
     span: Span
@@ -92,8 +92,8 @@ class Sink:
 class Flow:
     """One (subscription, publish call) pair with its taint list: `steps` in topological order from the source.
 
-    `chain` holds the places in `steps` of the shortest path from the message's arrival to the publish call: of data
-    for an explicit flow, of data and decisions for an implicit one. It is empty where no single path was found.
+    `chain` contains the indices in `steps` of the shortest path from the message's arrival to the publish call: of data
+    for an explicit flow, of data and conditions for an implicit one. It is empty if no single path was found.
     """
 
     kind: Kind
@@ -107,9 +107,9 @@ class Flow:
 class Finding:
     """One diagnostic: a flow (TARL101 to TARL103) or a hazard (TARL2xx).
 
-    `package` is the ROS package, else Python's, else the script, that a finding begins in. Of a hazard, `about` is
-    what it speaks of and `place` the qualified name of the function it is in: neither lines nor local names, so that it
-    is known again in an edited file.
+    `package` is the ROS package, else Python's, else the script, in which a finding begins. For a hazard, `about` is
+    its subject and `place` the qualified name of its function. Neither contains lines or local names, so the hazard
+    is recognised in an edited file.
     """
 
     code: str
@@ -125,9 +125,9 @@ class Finding:
 
 @dataclass(frozen=True, slots=True, order=True)
 class Cut:
-    """A program that was too large to follow in every detail: flows of it may be missing.
+    """A program that exhausted its budget: some of its flows may be missing.
 
-    `path` is the file that is run, `node` the name of its node, "" where that is not written there.
+    `path` is the file that is run, `node` the name of its node, "" if it is not a literal.
     """
 
     path: str
@@ -135,18 +135,18 @@ class Cut:
 
     @property
     def message(self) -> str:
-        """Say what that means."""
+        """Return the message for the user."""
         node = f" (node {self.node})" if self.node else ""
-        return f"{self.path}{node}: too large to follow in every detail; flows may be missing"
+        return f"{self.path}{node}: too large to analyse completely; flows may be missing"
 
 
 @dataclass(frozen=True, slots=True)
 class Operand:
-    """The use of a constant by a site: what a repair may replace.
+    """A use of a constant by a site, which a repair may replace.
 
     `span` is the expression that uses it, on the site's own lines; `code` its text (`5`, `self.kp`).
-    `value` is the constant, or None when it is known only at run time (a parameter without default).
-    `definition` is where the constant is written, equal to `span` for a literal.
+    `value` is the constant, or None if it is known only at run time (a parameter without default).
+    `definition` is the place where the constant is defined, equal to `span` for a literal.
     """
 
     site: SiteId
@@ -157,5 +157,5 @@ class Operand:
 
     @property
     def literal(self) -> bool:
-        """Tell whether the constant is written at its use."""
+        """Return whether the constant is a literal at its use."""
         return self.definition == self.span

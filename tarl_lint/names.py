@@ -1,4 +1,4 @@
-"""Modules by name: which file an import means, where several could be meant."""
+"""Resolve module names to files, also if several files have the same name."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from typing import Final, Generic, Protocol, TypeVar
 
 LIBRARIES: Final = frozenset(
     ["rospy", "rclpy", "message_filters", "actionlib", "tf2_ros"]
-)  # known by the catalog
+)  # described by the catalog
 
 KNOWN: Final = (
     sys.stdlib_module_names | LIBRARIES | {"smach", "typing_extensions"}
-)  # their classes take no data
+)  # their classes receive no data
 
 
 def unfollowed(classes: Iterable[str]) -> tuple[str, ...]:
-    """Return the classes that are neither of Python nor of ROS as the catalog describes it."""
+    """Return the classes that belong neither to Python nor to the ROS packages in the catalog."""
     return tuple(name for name in classes if name.partition(".")[0] not in KNOWN)
 
 
 class Named(Protocol):
-    """A file of Python, parsed or not."""
+    """A Python file, parsed or not."""
 
     @property
     def path(self) -> str:
-        """Return the path as shown to people."""
+        """Return the displayed path."""
 
     @property
     def name(self) -> str:
@@ -38,14 +38,14 @@ class Named(Protocol):
 
     @property
     def is_package(self) -> bool:
-        """Tell whether it is a package's `__init__.py`."""
+        """Return whether it is a package's `__init__.py`."""
 
 
 M = TypeVar("M", bound=Named)
 
 
 class Index(Generic[M]):
-    """The modules of one run by dotted name; a monorepo may have several of one name."""
+    """The modules of one run by dotted name; a monorepo may have several with the same name."""
 
     def __init__(self, modules: Iterable[M]) -> None:
         self._by_name: dict[str, list[M]] = {}
@@ -53,9 +53,9 @@ class Index(Generic[M]):
             self._by_name.setdefault(module.name, []).append(module)
 
     def find(self, name: str, importer: Named) -> M | None:
-        """Return the module that `importer` means: of several, the one that shares most of its path.
+        """Return the module that `importer` imports: of several, the one with the longest common path.
 
-        What the catalog describes is never looked up in its source, which may be among the files.
+        Packages in the catalog are never resolved to source files, even if these are among the files.
         """
         candidates = self._by_name.get(name) or self._beside(name, importer)
         if not candidates or name.partition(".")[0] in LIBRARIES:
@@ -65,7 +65,7 @@ class Index(Generic[M]):
         return max(candidates, key=lambda m: (_shared(m.path, importer.path), m.path))
 
     def _beside(self, name: str, importer: Named) -> list[M]:
-        """Return what a file of a package means that is run as a script: a module in its own directory."""
+        """Return the modules beside a file of a package that is run as a script."""
         package = importer.name if importer.is_package else importer.name.rpartition(".")[0]
         if not package or name.partition(".")[0] in sys.stdlib_module_names:
             return []
@@ -78,7 +78,7 @@ class Index(Generic[M]):
 
 
 def _shared(a: str, b: str) -> int:
-    """Count the leading directories that two paths have in common."""
+    """Return the number of leading directories that two paths share."""
     pairs = zip(posixpath.dirname(a).split("/"), posixpath.dirname(b).split("/"), strict=False)
     count = 0
     for x, y in pairs:

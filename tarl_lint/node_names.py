@@ -1,4 +1,4 @@
-"""The name that a program gives its node, read off the syntax."""
+"""The name of a program's node, from the syntax."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ NODES: Final = frozenset(["Node", "LifecycleNode"])
 
 
 def node_name(tree: ast.Module) -> str:
-    """Return the name of the first node that a file starts, "" where it is made at run time or there is none."""
+    """Return the name of the first node that a file starts, "" if it is computed or there is none."""
     bases = {id(c): _names_node(c) for c in ast.walk(tree) if isinstance(c, ast.ClassDef)}
     inside = {id(n) for c in ast.walk(tree) if bases.get(id(c)) for n in ast.walk(c)}
     for call in walk(tree):
@@ -29,7 +29,7 @@ def _names_node(cls: ast.ClassDef) -> bool:
 
 
 def _super(call: ast.Call) -> bool:
-    """Tell whether it is `super().__init__(...)`."""
+    """Return whether a call is `super().__init__(...)`."""
     function = call.func
     return (
         isinstance(function, ast.Attribute)

@@ -1,4 +1,4 @@
-"""The command line: what can be typed, what it means, and what to say when it is mistyped."""
+"""The command line: options, their meaning, and messages for mistakes."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ _DESCRIPTION: Final = (
     "Find every flow from a subscribed ROS topic to a published one, with the statements on its path."
 )
 _EPILOG: Final = (
-    "Exit code: 0 nothing to fail on, 1 findings to fail on (--fail-on), 2 the command line, the settings or "
-    "the baseline cannot be used, 130 interrupted. Settings are read from [tool.tarl-lint] in pyproject.toml."
+    "Exit codes: 0 no findings that fail the run, 1 findings that do (see --fail-on), 2 invalid command line, settings "
+    "or baseline, 130 interrupted. Settings are read from [tool.tarl-lint] in pyproject.toml."
 )
 _DASH: Final = Path("-")
-MOST_SHOWN: Final = 100  # flows one by one in a report for people, some ten screens
+MOST_SHOWN: Final = 100  # flows shown individually in a text report, about ten screens
 
 
 class _Help(argparse.HelpFormatter):
-    """Asks for the width itself: argparse imports shutil for that, with every option that is added."""
+    """Determines the terminal width itself: argparse would import shutil whenever an option is added."""
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, width=max(40, _columns() - 2))
@@ -49,7 +49,7 @@ def _columns() -> int:
 
 
 class _Parser(argparse.ArgumentParser):
-    """Raises UsageError with a sentence instead of printing the usage and leaving."""
+    """Raises UsageError with a sentence instead of printing the usage and exiting."""
 
     def error(self, message: str) -> NoReturn:
         known = [option for action in self._actions for option in action.option_strings]
@@ -57,7 +57,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _sentence(message: str, known: Sequence[str]) -> str:
-    """Say what argparse says in words of ours, with what was probably meant."""
+    """Return argparse's message as a sentence, with a suggestion."""
     if found := re.fullmatch(r"unrecognized arguments: (.*)", message):
         option = found[1].split()[0].split("=")[0]
         return f"There is no option {option}{suggestion(option, [k for k in known if k.startswith('--')])}"
@@ -66,7 +66,7 @@ def _sentence(message: str, known: Sequence[str]) -> str:
         return f"{found[1]} cannot be {found[2]!r}{suggestion(found[2], choices)} It can be {', '.join(choices)}."
     if found := re.fullmatch(r"argument (\S+): expected one argument", message):
         return f"{found[1]} needs a value."
-    if found := re.fullmatch(r"argument (\S+): ('.*' (?:has|is) .*?)\.?", message):
+    if found := re.fullmatch(r"argument (\S+): ('.*' (?:has|is|does) .*?)\.?", message):
         return f"{found[1]}: {found[2]}."
     return message[:1].upper() + message[1:] + "."
 
@@ -76,7 +76,7 @@ def _codes(text: str) -> tuple[str, ...]:
 
 
 def _patterns(text: str) -> tuple[str, ...]:
-    """Split at commas, except in braces and brackets, which patterns may hold."""
+    """Split at commas, except inside the braces and brackets of patterns."""
     return tuple(_pattern(p.strip()) for p in re.split(r",(?![^\[{]*[\]}])", text) if p.strip())
 
 
@@ -88,14 +88,16 @@ def _pattern(text: str) -> str:
 
 
 def _per_file(text: str) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """Read `PATTERN:CODES PATTERN:CODES …`, as flake8 writes them."""
+    """Parse `PATTERN:CODES PATTERN:CODES …`, the syntax of flake8."""
     return tuple(_pair(part) for part in re.split(r"(?<=[A-Za-z0-9])\s+(?=\S+:)", text.strip()))
 
 
 def _pair(text: str) -> tuple[str, tuple[str, ...]]:
     pattern, _, codes = text.rpartition(":")
     if not pattern or not _codes(codes):
-        raise argparse.ArgumentTypeError(f"{text!r} has no form PATTERN:CODES, such as 'tests/:TARL1'")
+        raise argparse.ArgumentTypeError(
+            f"{text!r} does not have the form PATTERN:CODES, such as 'tests/:TARL1'"
+        )
     return _pattern(pattern), _codes(codes)
 
 
@@ -109,15 +111,15 @@ def parser() -> argparse.ArgumentParser:
         nargs="*",
         type=Path,
         metavar="PATH",
-        help="files and directories (default: .); - is the standard input",
+        help="files and directories (default: .); - reads standard input",
     )
     made.add_argument("--version", action="version", version=f"tarl-lint {__version__}")
-    made.add_argument("--explain", metavar="CODE", help="explain a rule, with examples, and stop")
-    made.add_argument("--show-settings", action="store_true", help="show the settings in use and stop")
-    _add_output(made.add_argument_group("what is shown"))
-    _add_choice(made.add_argument_group("what is reported"))
-    _add_policy(made.add_argument_group("when to fail"))
-    _add_speed(made.add_argument_group("how fast"))
+    made.add_argument("--explain", metavar="CODE", help="explain a rule, with examples, and exit")
+    made.add_argument("--show-settings", action="store_true", help="show the settings in use and exit")
+    _add_output(made.add_argument_group("output"))
+    _add_choice(made.add_argument_group("rules and files"))
+    _add_policy(made.add_argument_group("failing and the baseline"))
+    _add_speed(made.add_argument_group("speed"))
     return made
 
 
@@ -130,29 +132,27 @@ def _add_output(group: argparse._ArgumentGroup) -> None:
         help=f"one of {', '.join(FORMATS)} (default: text)",
     )
     group.add_argument(
-        "--show-paths", action="store_true", help="list the shortest chain of statements of every flow"
+        "--show-paths", action="store_true", help="show the shortest chain of statements of every flow"
     )
     group.add_argument(
-        "--all-steps", action="store_true", help="list all statements of the flows, also those that decide"
+        "--all-steps", action="store_true", help="show all statements of the flows, including conditions"
     )
     group.add_argument(
         "--max-paths",
         type=_number,
         default=MOST_SHOWN,
         metavar="N",
-        help=f"show at most N flows one by one, and count the rest; 0 shows all (default: {MOST_SHOWN})",
+        help=f"show at most N flows individually and count the rest; 0 shows all (default: {MOST_SHOWN})",
     )
-    group.add_argument("--statistics", action="store_true", help="count what was found")
-    group.add_argument(
-        "--output-file", type=Path, metavar="FILE", help="write the report there, not to the screen"
-    )
+    group.add_argument("--statistics", action="store_true", help="show statistics of the findings")
+    group.add_argument("--output-file", type=Path, metavar="FILE", help="write the report to this file")
 
 
 def _add_choice(group: argparse._ArgumentGroup) -> None:
     for option, meaning in (
-        ("select", "only these rules: TARL101,TARL2 …"),
-        ("extend-select", "these rules too, also those that are off by default: TARL103"),
-        ("ignore", "not these rules"),
+        ("select", "enable only these rules: TARL101,TARL2 …"),
+        ("extend-select", "enable these rules too, including ones that are off by default: TARL103"),
+        ("ignore", "disable these rules"),
     ):
         group.add_argument(f"--{option}", action="extend", type=_codes, metavar="CODES", help=meaning)
     group.add_argument(
@@ -160,20 +160,24 @@ def _add_choice(group: argparse._ArgumentGroup) -> None:
         action="extend",
         type=_patterns,
         metavar="PATTERNS",
-        help="leave out paths, as .gitignore does: vendor/,*_gen.py; instead of those of the settings",
+        help="exclude paths, with patterns as in .gitignore: vendor/,*_gen.py; replaces the setting",
     )
     group.add_argument(
-        "--extend-exclude", action="extend", type=_patterns, metavar="PATTERNS", help="leave out these too"
+        "--extend-exclude",
+        action="extend",
+        type=_patterns,
+        metavar="PATTERNS",
+        help="exclude these paths too",
     )
     group.add_argument(
         "--per-file-ignores",
         action="extend",
         type=_per_file,
         metavar="PATTERN:CODES",
-        help="not these rules in the files that match: 'tests/:TARL1 *_demo.py:TARL102,TARL2'",
+        help="disable rules in matching files: 'tests/:TARL1 *_demo.py:TARL102,TARL2'",
     )
     group.add_argument(
-        "--stdin-filename", type=Path, metavar="FILE", help="which file's text the standard input holds"
+        "--stdin-filename", type=Path, metavar="FILE", help="path of the file whose text is on standard input"
     )
     group.add_argument(
         "--config", type=Path, metavar="FILE", help="settings file (default: nearest pyproject.toml)"
@@ -184,18 +188,16 @@ def _add_policy(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--fail-on",
         choices=FAIL_ON,
-        help="fail on hazards, on new explicit flows too (default), on new implicit ones too, or never",
+        help="fail never, on new hazards, also on new explicit flows (default), or also on new implicit ones",
     )
     group.add_argument(
-        "--exit-zero", action="store_true", help="fail on nothing that is found, whatever --fail-on says"
+        "--exit-zero", action="store_true", help="exit with 0 whatever is found; overrides --fail-on"
     )
     group.add_argument(
-        "--baseline", type=Path, metavar="FILE", help=f"what is accepted (default: {BASELINE_NAME})"
+        "--baseline", type=Path, metavar="FILE", help=f"file of accepted findings (default: {BASELINE_NAME})"
     )
-    group.add_argument("--no-baseline", action="store_true", help="report what is accepted, too")
-    group.add_argument(
-        "--write-baseline", action="store_true", help="accept the flows and hazards that are there"
-    )
+    group.add_argument("--no-baseline", action="store_true", help="report accepted findings too")
+    group.add_argument("--write-baseline", action="store_true", help="accept all current flows and hazards")
 
 
 def _add_speed(group: argparse._ArgumentGroup) -> None:
@@ -203,12 +205,12 @@ def _add_speed(group: argparse._ArgumentGroup) -> None:
         "--jobs",
         type=_jobs,
         metavar="N",
-        help="analyse in N processes; auto (default): as many as there are processors, for large trees",
+        help="number of processes; auto (default): one per processor for large trees",
     )
     group.add_argument(
         "--no-cache",
         action="store_true",
-        help="neither read nor write .tarl/cache/lint, where results are kept",
+        help="do not read or write the cache of results, .tarl/cache/lint",
     )
 
 
@@ -227,10 +229,10 @@ def _jobs(text: str) -> int | None:
 
 
 def options(typed: argparse.Namespace) -> Options:
-    """Return what the user typed, as far as it decides what is found. Raises UsageError for contradictions."""
+    """Return the options that determine findings. Raises UsageError for contradictions."""
     if typed.no_baseline and (typed.write_baseline or typed.baseline):
         other = "--write-baseline" if typed.write_baseline else "--baseline"
-        raise UsageError(f"--no-baseline and {other} contradict each other: leave one out.")
+        raise UsageError(f"--no-baseline and {other} cannot be used together: omit one.")
     stdin = _stdin(typed)
     paths = tuple(stdin.path if stdin and path == _DASH else path for path in typed.paths)
     return Options(
@@ -257,11 +259,11 @@ def _given(values: list[T] | None) -> tuple[T, ...] | None:
 
 
 def _stdin(typed: argparse.Namespace) -> Stdin | None:
-    """Return the text that came through the standard input, where it is asked for."""
+    """Return the text from standard input, if requested."""
     if _DASH not in typed.paths:
         if typed.stdin_filename:
-            raise UsageError("--stdin-filename is for text on the standard input: add - to the paths.")
+            raise UsageError("--stdin-filename needs text on standard input: add - to the paths.")
         return None
     if sys.stdin is None:
-        raise UsageError("The standard input is closed: leave out -, or pipe the text of a file to it.")
+        raise UsageError("Standard input is closed: omit -, or pipe the text of a file to it.")
     return Stdin(typed.stdin_filename or Path("stdin.py"), sys.stdin.buffer.read(LARGEST + 1))

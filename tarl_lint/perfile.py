@@ -1,4 +1,4 @@
-"""Rules that are not wanted in some files: `per-file-ignores`."""
+"""Rules that are disabled in some files: `per-file-ignores`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tarl_lint.model import Finding
 
 
 class FileIgnores:
-    """Tells which findings are not wanted where they are. Patterns are as in .gitignore, relative to `root`."""
+    """Decides which findings are disabled in their files. Patterns are as in .gitignore, relative to `root`."""
 
     def __init__(self, root: Path, table: Sequence[tuple[str, tuple[str, ...]]]) -> None:
         top = os.path.abspath(root)  # noqa: PTH100 - also for what does not exist
@@ -20,7 +20,7 @@ class FileIgnores:
         self._codes: dict[str, tuple[str, ...]] = {}
 
     def silences(self, finding: Finding) -> bool:
-        """Tell whether a finding's rule is not wanted in its file."""
+        """Return whether a finding's rule is disabled in its file."""
         if not self._rules:
             return False
         path = finding.span.path
@@ -30,7 +30,7 @@ class FileIgnores:
         return bool(codes) and finding.code.startswith(codes)
 
     def _ask(self, path: str) -> tuple[str, ...]:
-        """Return the codes that are not wanted in a file: its own patterns' and its directories'."""
+        """Return the codes that are disabled in a file, by patterns for the file and for its directories."""
         return tuple(code for ignore, codes in self._rules if self._matches(ignore, path) for code in codes)
 
     def _matches(self, ignore: gitignore.Ignore, path: str) -> bool:

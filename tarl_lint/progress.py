@@ -1,4 +1,4 @@
-"""What a long run is at, on one line of a terminal that comes late, and is gone at the end."""
+"""Progress of a long run, on one terminal line that appears after a delay and is cleared at the end."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from typing import Final, TextIO
 
 Tell = Callable[[str], None]
 
-PATIENCE: Final = 1.0  # seconds in which nobody asks
+PATIENCE: Final = 1.0  # seconds before progress is shown
 EVERY: Final = 0.25
 _CLEAR: Final = "\r\x1b[K"
 
 
 def silent(_text: str) -> None:
-    """Tell nobody."""
+    """Show nothing."""
 
 
 @contextmanager
 def paused(tell: Tell) -> Iterator[None]:
-    """Have no thread show progress meanwhile: a process with threads cannot be forked safely."""
+    """Stop the progress thread meanwhile: a process with threads cannot be forked safely."""
     owner = getattr(tell, "__self__", None)
     if not isinstance(owner, Progress):
         yield
@@ -34,7 +34,7 @@ def paused(tell: Tell) -> Iterator[None]:
 
 
 class Progress:
-    """Shows what was told last, and for how long the run has been going on."""
+    """Shows the latest text and the elapsed time."""
 
     def __init__(self, stream: TextIO, *, patience: float = PATIENCE, every: float = EVERY) -> None:
         self._stream = stream
@@ -53,20 +53,20 @@ class Progress:
         self.stop()
 
     def start(self) -> None:
-        """Show what is told from now on."""
-        import threading  # only terminals need it
+        """Start to show progress."""
+        import threading  # needed only on terminals
 
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._paint, daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
-        """Clear the line, and show nothing more."""
+        """Clear the line and stop."""
         self._over.set()
         self._thread.join()
 
     def tell(self, text: str) -> None:
-        """Say what the run is at."""
+        """Set the text that is shown."""
         self._text = text
 
     def _paint(self) -> None:

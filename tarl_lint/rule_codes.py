@@ -1,4 +1,4 @@
-"""Which rules there are, told by the files in `rules`, without importing them."""
+"""Codes of all rules, from the file names in `rules`, without importing them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 
 
 def rule_codes() -> tuple[str, ...]:
-    """Return the codes of all rules, sorted: every file in `rules` that is called `tarl` and a number is one."""
+    """Return the codes of all rules, sorted: every file in `rules` named `tarl` and a number is a rule."""
     directory = os.path.join(os.path.dirname(__file__), "rules")  # noqa: PTH118, PTH120 - pathlib takes long to import
     try:
         names = os.listdir(directory)  # noqa: PTH208

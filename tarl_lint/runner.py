@@ -8,12 +8,13 @@ from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final
 
 from tarl_lint import baseline, batch, cache, discover, installed, names, source, suppress
 from tarl_lint.baseline import Accepted, Baseline
 from tarl_lint.cache import Cache, Report
-from tarl_lint.config import Config, Options, Stdin
+from tarl_lint.config import Config, Options
 from tarl_lint.discover import Notes, SourceFile
 from tarl_lint.errors import AnalysisBug, UsageError
 from tarl_lint.fingerprints import Fingerprint, of_finding
@@ -26,11 +27,12 @@ from tarl_lint.suppress import Suppression
 from tarl_lint.unmatched import unmatched
 
 UNREADABLE: Final = "TARL001"
+NO_BUFFERS: Final[Mapping[Path, bytes]] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
 class Statistics:
-    """Counts of one run: files and lines analysed, what was left out, programs not followed in every detail."""
+    """Counts of one run: analysed files and lines, skipped files, programs that exhausted their budget."""
 
     files: int = 0
     lines: int = 0
@@ -40,15 +42,15 @@ class Statistics:
 
 @dataclass(frozen=True)
 class Result:
-    """Everything that a run found: what all reports are made from.
+    """The result of a run, from which all reports are made.
 
-    `findings` are sorted by place and carry fingerprint and status; `silenced` are those that comments speak
-    of. `found` are the findings as a baseline holds them, `vanished` and `kept` what the baseline holds beyond
-    that. `unmatched` are sentences about settings that speak of nothing here. `followed` are installed
-    packages that were analysed too, `ended` classes that are not here and that flows ended at. `texts` are the files.
-    `left_out` counts what `per-file-ignores` speaks of, `off_by_default` what rules found that nobody asked for.
-    Without `names_errors` files that cannot be read are counted but not listed for people; only flows of the `kinds`
-    were asked for, hazards with `reports_hazards`. New findings of the codes in `failing` make the run fail.
+    `findings` are sorted by place and have a fingerprint and a status; `silenced` are those silenced by comments.
+    `found` are the findings in the form of a baseline, `vanished` and `kept` the further entries of the baseline.
+    `unmatched` are messages about settings without effect. `followed` are the analysed installed packages, `ended`
+    the classes outside the files at which flows ended. `texts` maps paths to the texts of the files.
+    `left_out` counts findings disabled by `per-file-ignores`, `off_by_default` those of rules that are off by default.
+    Without `names_errors`, text reports count unreadable files without listing them. Only flows of the `kinds` were
+    requested, and hazards if `reports_hazards`. New findings with codes in `failing` fail the run.
     """
 
     findings: tuple[Finding, ...] = ()
@@ -73,24 +75,37 @@ class Result:
 
     @property
     def new(self) -> tuple[Finding, ...]:
-        """Return the findings that the baseline does not hold."""
+        """Return the findings that are not in the baseline."""
         return tuple(f for f in self.findings if f.status == "new")
 
 
-def run(options: Options, config: Config, tell: Tell = silent) -> Result:
-    """Lint the files at and below the paths, telling what it is at.
+def run(
+    options: Options,
+    config: Config,
+    tell: Tell = silent,
+    buffers: Mapping[Path, bytes] = NO_BUFFERS,
+    known: Cache | None = None,
+) -> Result:
+    """Lint the files at and below the paths, reporting progress to `tell`.
 
-    Raises UsageError when there is nothing to lint, BaselineError when the baseline is unusable, AnalysisBug
-    when the analysis crashed.
+    `buffers` maps absolute paths to the texts of unsaved files in an editor; `known` is a cache to use
+    instead of the one on disk.
+
+    Raises UsageError if there is nothing to lint, BaselineError if the baseline is unusable, AnalysisBug if the
+    analysis crashed.
     """
     tell("Looking for files")
     discovery = discover.find(options.paths, config, options.stdin)
     if not discovery.files:
         raise UsageError(_nothing(options.paths, discovery.notes))
-    known = _accepted(options, config)
-    scripts, unread = read(discovery.files, options.stdin, tell)
+    accepted = _accepted(options, config)
+    if options.stdin is not None:
+        buffers = {**buffers, options.stdin.path.absolute(): options.stdin.data}
+    scripts, unread = read(discovery.files, buffers, tell)
     followed = installed.follow(scripts, config)
-    report = installed.without(_examine((*scripts, *followed.scripts), options, config, tell), followed)
+    report = installed.without(
+        _examine((*scripts, *followed.scripts), options, config, tell, known), followed
+    )
     errors = tuple(sorted((*unread, *report.errors), key=lambda e: (e.path, e.line)))
     found_in = {finding.span.path for finding in report.findings}
     broken = {error.path for error in errors if not error.bug} - found_in
@@ -102,10 +117,10 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
     heard, silenced, unused = suppress.apply(wanted, texts)
     elsewhere = FileIgnores(config.root or Path.cwd(), config.per_file_ignores)
     reported = [f for f in heard if not elsewhere.silences(f)]
-    findings = baseline.subtract(reported, known.counts())
+    findings = baseline.subtract(reported, accepted.counts())
     unasked = {f.fingerprint for f in marked if f.code in OFF_BY_DEFAULT and not config.enabled(f.code)}
     judged = _judge(discovery.files, errors, config, unasked)
-    vanished, kept = baseline.missing(known, Counter(f.fingerprint for f in wanted), judged)
+    vanished, kept = baseline.missing(accepted, Counter(f.fingerprint for f in wanted), judged)
     lines = sum(text.count("\n") for text in texts.values())
     return Result(
         findings=tuple(sorted(findings, key=_place)),
@@ -120,7 +135,7 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
         ended=names.unfollowed(report.ended),
         texts={**texts, **beside},
         statistics=Statistics(len(texts), lines, discovery.notes, report.cut),
-        baseline=config.baseline if known.entries else None,
+        baseline=config.baseline if accepted.entries else None,
         names_errors=config.enabled(UNREADABLE),
         left_out=len(heard) - len(reported),
         off_by_default=sum(f.fingerprint in unasked for f in marked),
@@ -131,13 +146,13 @@ def run(options: Options, config: Config, tell: Tell = silent) -> Result:
 
 
 def _in_vain(comment: Suppression, config: Config) -> bool:
-    """Tell whether all rules were looked for that a comment may silence; one without a code means the usual rules."""
+    """Return whether all rules that a comment may silence are enabled; without a code, these are the default rules."""
     rules = comment.rules if comment.code else [r for r in comment.rules if r not in OFF_BY_DEFAULT]
     return all(map(config.enabled, rules))
 
 
 def exceeds(result: Result, config: Config) -> bool:
-    """Tell whether the findings are what `fail_on` fails on."""
+    """Return whether the findings fail the run according to `fail_on`."""
     return bool(failing(result.new, config))
 
 
@@ -155,18 +170,17 @@ def failing(findings: Sequence[Finding], config: Config) -> frozenset[str]:
 
 
 def read(
-    files: Sequence[SourceFile], stdin: Stdin | None = None, tell: Tell = silent
+    files: Sequence[SourceFile], buffers: Mapping[Path, bytes] = NO_BUFFERS, tell: Tell = silent
 ) -> tuple[tuple[Script, ...], tuple[SourceError, ...]]:
-    """Read the files. One that cannot be read becomes an error."""
+    """Read the files; an unreadable one becomes an error entry."""
     tell(f"Reading {len(files)} {'file' if len(files) == 1 else 'files'}")
-    found = [_read(file, stdin) for file in files]
+    found = [_read(file, buffers) for file in files]
     scripts = tuple(f for f in found if isinstance(f, Script))
     return scripts, tuple(f for f in found if isinstance(f, SourceError))
 
 
-def _read(file: SourceFile, stdin: Stdin | None) -> Script | SourceError:
-    typed = stdin is not None and stdin.path.absolute() == file.path
-    data = source.contents(file.path, file.shown, stdin.data if stdin is not None and typed else None)
+def _read(file: SourceFile, buffers: Mapping[Path, bytes]) -> Script | SourceError:
+    data = source.contents(file.path, file.shown, buffers.get(file.path))
     if isinstance(data, SourceError):
         return data
     found = source.read(file.shown, data, file.name)
@@ -175,10 +189,13 @@ def _read(file: SourceFile, stdin: Stdin | None) -> Script | SourceError:
     return found
 
 
-def _examine(scripts: Sequence[Script], options: Options, config: Config, tell: Tell) -> Report:
+def _examine(
+    scripts: Sequence[Script], options: Options, config: Config, tell: Tell, known: Cache | None
+) -> Report:
     keeps = options.cache and options.stdin is None
     try:
-        known = cache.opened(options.paths, config) if keeps else Cache(None)
+        if known is None:
+            known = cache.opened(options.paths, config) if keeps else Cache(None)
         return batch.examine(scripts, config, known, options.jobs, tell)
     except Exception as error:
         if batch.debugging():
@@ -189,12 +206,12 @@ def _examine(scripts: Sequence[Script], options: Options, config: Config, tell: 
         what = f"{type(error).__name__}: {error}".rstrip(": ")
         raise AnalysisBug(
             f"tarl-lint has a bug and could not finish ({what}, {Path(last.filename).name}:{last.lineno}). "
-            "Run it with TARL_DEBUG=1 for the traceback and report that, please; --exclude helps meanwhile."
+            "Please report it with the traceback from TARL_DEBUG=1; meanwhile, --exclude may help."
         ) from None
 
 
 def _accepted(options: Options, config: Config) -> Baseline:
-    """Load the baseline, if there is one; one that is about to be written may still be missing."""
+    """Load the baseline, if there is one; it may be missing if it is about to be written."""
     path = config.baseline
     if path is None or (options.write_baseline and not path.exists()):
         return Baseline()
@@ -202,7 +219,7 @@ def _accepted(options: Options, config: Config) -> Baseline:
 
 
 class _Identities:
-    """Knows each finding's fingerprint, by way of the ROS package and of where the baseline is."""
+    """Computes the fingerprints of findings from their ROS package and the place of the baseline."""
 
     def __init__(self, files: Sequence[SourceFile], config: Config) -> None:
         self._files = {file.shown: file for file in files}
@@ -220,12 +237,12 @@ class _Identities:
         return replace(finding, fingerprint=digest, package=fingerprint.package)
 
     def entries(self, findings: Sequence[Finding]) -> tuple[Accepted, ...]:
-        """Return the findings as a baseline holds them."""
+        """Return the findings as entries of a baseline."""
         each = (Accepted(self._by_digest[f.fingerprint], 1, self._places(f)) for f in findings)
         return baseline.merged(each, ()).entries
 
     def _places(self, finding: Finding) -> tuple[str, ...]:
-        """Name the files of a finding as seen from the baseline."""
+        """Return the files of a finding, relative to the baseline."""
         flow = finding.flow
         shown = {flow.source.span.path, flow.sink.span.path} if flow else {finding.span.path}
         files = ((path, self._files.get(path)) for path in shown)
@@ -234,20 +251,20 @@ class _Identities:
 
 
 def _home(config: Config) -> Path:
-    """Return the directory that file names in the baseline are relative to."""
+    """Return the base directory of file names in the baseline."""
     return config.baseline.absolute().parent if config.baseline else Path.cwd()
 
 
 def _judge(
     files: Sequence[SourceFile], errors: Sequence[SourceError], config: Config, unasked: Set[str]
 ) -> Callable[[Accepted], bool]:
-    """Return the test whether this run can know that an accepted flow is gone.
+    """Return a function that tells whether this run can judge that an accepted finding is gone.
 
-    `unasked` are the fingerprints that rules found which are off by default: baselines of before these rules hold them.
+    `unasked` are the fingerprints of findings of rules that are off by default: older baselines contain them.
     """
     home = _home(config)
 
-    @lru_cache(maxsize=1)  # only baselines with entries ask
+    @lru_cache(maxsize=1)  # used only by baselines with entries
     def analysed() -> set[str]:
         unreadable = {error.path for error in errors}
         return {os.path.realpath(f.path) for f in files if f.shown not in unreadable}
@@ -264,15 +281,17 @@ def _judge(
 
 
 def _place(finding: Finding) -> tuple[object, ...]:
-    """Sort by publish call, then rule, then subscription."""
+    """Return the sort key: publish call, then rule, then subscription."""
     source = (finding.flow.source.span,) if finding.flow else ()
     return (finding.span, finding.code, source, finding.message)
 
 
 def _nothing(paths: Sequence[Path], notes: Notes) -> str:
     places = ", ".join(path.as_posix() for path in paths)
-    nodes = f" (there are {notes.cpp_nodes} C++ nodes, which it does not read)" if notes.cpp_nodes else ""
+    nodes = (
+        f" (there are {notes.cpp_nodes} C++ nodes, which tarl-lint does not read)" if notes.cpp_nodes else ""
+    )
     return (
-        f"There is no Python file to lint in {places}{nodes}: name a file, or a directory that holds some. "
-        "What .gitignore or exclude names, is hidden, or was installed is left out."
+        f"There is no Python file to lint in {places}{nodes}: name a file, or a directory with Python files. "
+        "Hidden and installed files, and those that .gitignore or exclude match, are skipped."
     )

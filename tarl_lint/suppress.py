@@ -10,7 +10,7 @@ from typing import Final
 
 from tarl_lint.model import RULES, Finding
 
-_COMMENT: Final = (  # compiled when first needed, which in most runs is never
+_COMMENT: Final = (  # compiled on first use, which most runs never reach
     r"(?i:#\s*(?:tarl:\s*ignore\b\s*(?:\[(?P<own>[^\]]*)\]?)?"
     r"|noqa:\s*(?P<noqa>[A-Z]+[0-9]+(?:[\s,]+[A-Z]+[0-9]+)*)))"
 )
@@ -18,9 +18,9 @@ _COMMENT: Final = (  # compiled when first needed, which in most runs is never
 
 @dataclass(frozen=True)
 class Suppression:
-    """What is silenced on one line. Lines and columns count from 1.
+    """One comment that silences rules. Lines and columns count from 1.
 
-    `code` is a rule, the beginning of several (`TARL1`), or "" for all.
+    `code` is a rule, a prefix (`TARL1`), or "" for all.
     """
 
     path: str
@@ -29,24 +29,24 @@ class Suppression:
     code: str = ""
 
     def covers(self, finding: Finding) -> bool:
-        """Tell whether the comment stands on a line of the finding and speaks of its rule."""
+        """Return whether the comment is on a line of the finding and names its rule."""
         span = finding.span
         on_it = self.path == span.path and span.line <= self.line <= span.end_line
         return on_it and self.code in ("", *_beginnings(finding.code))
 
     @property
     def rules(self) -> tuple[str, ...]:
-        """Return the rules that the comment speaks of; none when there is no such rule."""
+        """Return the rules that the comment silences; none if the code is unknown."""
         return tuple(rule for rule in RULES if self.code in ("", *_beginnings(rule)))
 
 
 def _beginnings(rule: str) -> tuple[str, ...]:
-    """Return what stands for a rule: `TARL`, `TARL1`, `TARL10` and `TARL101`."""
+    """Return the prefixes of a rule: `TARL`, `TARL1`, `TARL10` and `TARL101`."""
     return tuple(rule[:end] for end in range(4, len(rule) + 1))
 
 
 def suppressions(path: str, text: str) -> tuple[Suppression, ...]:
-    """Return what the comments of a file silence. A plain `# noqa` belongs to other tools and is not ours."""
+    """Return the suppressions in a file. A plain `# noqa` belongs to other tools and is ignored."""
     if "tarl" not in text.lower():
         return ()
     return tuple(
@@ -58,7 +58,7 @@ def suppressions(path: str, text: str) -> tuple[Suppression, ...]:
 
 
 def _codes(comment: re.Match[str]) -> tuple[str, ...]:
-    """Return the rules that a comment names; "" stands for all. Other tools' rules in a noqa are not ours."""
+    """Return the rules that a comment names; "" means all. Codes of other tools in a noqa are ignored."""
     if comment["noqa"] is not None:
         words = re.split(r"[\s,]+", comment["noqa"].upper())
         return tuple(word for word in words if word.startswith("TARL"))
@@ -68,7 +68,7 @@ def _codes(comment: re.Match[str]) -> tuple[str, ...]:
 
 
 def _comments(text: str) -> Iterator[tuple[int, int, str]]:
-    """Yield (line, column, text) of each comment, as far as the text can be read as tokens."""
+    """Yield (line, column, text) of each comment, as far as the text can be tokenised."""
     import tokenize
 
     try:
@@ -82,7 +82,7 @@ def _comments(text: str) -> Iterator[tuple[int, int, str]]:
 def apply(
     findings: Sequence[Finding], texts: Mapping[str, str]
 ) -> tuple[tuple[Finding, ...], tuple[Finding, ...], tuple[Suppression, ...]]:
-    """Return the findings that no comment silences, those that one does, and the comments that silence nothing."""
+    """Return the findings that are not silenced, those that are, and the comments that silence nothing."""
     every = {path: suppressions(path, text) for path, text in texts.items()}
     kept: list[Finding] = []
     silenced: list[Finding] = []

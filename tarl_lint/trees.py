@@ -1,4 +1,4 @@
-"""Ways through syntax trees, faster than those of `ast`: each kind of node is asked only for what can hold others."""
+"""Traversal of syntax trees, faster than that of `ast`: only the fields that can contain nodes are visited."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ALIASES: Final = (ast.Import, ast.ImportFrom)  # whose names are nodes
 
 
 def children(node: ast.AST) -> list[ast.AST]:
-    """Return the nodes directly inside a node, in order, without operators and contexts."""
+    """Return the child nodes of a node, in order, without operators and contexts."""
     found: list[ast.AST] = []
     kind = type(node)
     names = _HOLDING.get(kind)
@@ -30,7 +30,7 @@ def children(node: ast.AST) -> list[ast.AST]:
 
 
 def walk(*trees: ast.AST) -> Iterator[ast.AST]:
-    """Yield nodes and all that is inside them, in the order of the text."""
+    """Yield nodes and all their descendants, in source order."""
     pending = [*reversed(trees)]
     while pending:
         node = pending.pop()

@@ -1,4 +1,4 @@
-"""Names in the settings that no file mentions: a typing error there would otherwise find nothing, silently."""
+"""Names in the settings that no file mentions: a misspelt name would otherwise have no effect, silently."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tarl_lint.config import Config
 
 
 def unmatched(config: Config, texts: Iterable[str]) -> tuple[str, ...]:
-    """Return sentences about sources, sinks, sanitizers and wrappers that no text mentions."""
+    """Return a message for each source, sink, sanitizer and wrapper that no text mentions."""
     if not config.named:
         return ()
     known = list(texts)
@@ -30,7 +30,7 @@ def _names(config: Config) -> Iterator[tuple[str, str]]:
 
 
 def _mentions(text: str, name: str) -> bool:
-    """Tell whether a file defines the last part of a name, or uses it and names where it comes from."""
+    """Return whether a file defines the last part of a name, or uses it and mentions its module."""
     first, last = re.escape(name.partition(".")[0]), re.escape(name.rpartition(".")[2])
     if not re.search(rf"\b{last}\b", text):
         return False

@@ -1,9 +1,9 @@
-"""Worker processes. None of them can import what is linted, and Ctrl-C ends them without a word.
+"""Worker processes. They cannot import linted files, and Ctrl-C ends them silently.
 
-Workers are forked where the system can: a copy of this process has its modules and its `sys.path`, so it looks nothing
-up. A spawned worker starts with the working directory on its path, before any of our code runs; Windows, which knows
-no other way, is told not to (`PYTHONSAFEPATH`, Python 3.11). Forking is safe only while there is one thread; where a
-program that calls us has more, there are no workers.
+Workers are forked if possible: a copy of this process has its modules and its `sys.path`, so it imports nothing. A
+spawned worker starts with the working directory on its path, before any code of tarl-lint runs; on Windows, which
+cannot fork, `PYTHONSAFEPATH` prevents this (Python 3.11). Forking is safe only with a single thread; if the calling
+program has more, no workers are used.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ Answer = TypeVar("Answer")
 def in_processes(
     perform: Callable[[Work], Answer], work: Sequence[Work], sizes: Sequence[int], workers: int, tell: Tell
 ) -> list[Answer] | None:
-    """Return the answers in the order of the work, or None where no process can be started safely.
+    """Return the answers in the order of the work, or None if no process can be started safely.
 
-    The largest come first, so that nobody waits for a large one that came last.
+    The largest tasks start first, so that no large one runs alone at the end.
     """
     order = sorted(range(len(work)), key=lambda number: -sizes[number])
     with paused(tell):
@@ -72,7 +72,7 @@ def _context() -> BaseContext | None:
 
 @contextmanager
 def _safe_path() -> Iterator[None]:
-    """Have Python processes that are started meanwhile leave the working directory off their path."""
+    """Make Python processes started meanwhile omit the working directory from their path."""
     before = os.environ.get("PYTHONSAFEPATH")
     os.environ["PYTHONSAFEPATH"] = "1"
     try:

@@ -1,4 +1,4 @@
-"""Functions that the settings call wrappers, as facts of the catalog."""
+"""Wrappers from the settings, as facts of the catalog."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ KINDS: Final = frozenset(
 
 @cache
 def facts(wrappers: tuple[Wrapper, ...]) -> Mapping[str, Fact]:
-    """Return qualified name → what it does. Raises ConfigError where `like` names nothing that can be wrapped."""
+    """Return qualified name → fact. Raises ConfigError if `like` names nothing that can be wrapped."""
     return {wrapper.name: _fact(wrapper) for wrapper in wrappers}
 
 
@@ -29,7 +29,7 @@ def _fact(wrapper: Wrapper) -> Fact:
     known = {name: fact for name, fact in every if fact.kind in KINDS}
     if wrapper.like not in known:
         raise ConfigError(
-            f"The wrapper {wrapper.name!r} is said to be like {wrapper.like!r}, which cannot be wrapped"
+            f"The wrapper {wrapper.name!r} is like {wrapper.like!r}, which cannot be wrapped"
             f"{suggestion(wrapper.like, known)} It can be like {', '.join(sorted(known))}."
         )
     fact = known[wrapper.like]

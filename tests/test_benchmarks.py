@@ -22,10 +22,13 @@ SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 # What makes each script do the least that it can; {tmp} is a folder of the test.
 SMALLEST = {
     "bags": ["--seconds", "1"],
+    "editing": ["{tmp}"],
     "episodes": ["--episodes", "2"],
     "gate": ["--repetitions", "2", "--workers", "1", "--worlds", "corridor", "--sizes", "0"],
+    "limits": ["--share", "0.001"],
     "lint_speed": ["--repetitions", "1", "--growth", "1", "--", "{tmp}"],
-    "observe": ["--cycles", "20"],
+    "observe": ["--cycles", "20", "--blocks", "2"],
+    "observe_day": ["--hours", "0.02", "--growth", "50"],
     "recording": ["--quick"],
     "ros": ["--seconds", "0.05"],
     "same_world": ["--comparisons", "1", "--workers", "1", "--found", "{tmp}/found.json"],

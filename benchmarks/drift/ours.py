@@ -37,7 +37,8 @@ def prepared(stage: Stage, seed: int, budget: int = Options.budget, search: str 
     fixture = Fixture(
         stage.test, seed, marked.sensors, stage.sites.lists, offline.topics, offline.sample, tables
     )
-    options = Options(mode="repair", seed=seed, budget=budget, searches=(search,))
+    plugged = ":" in search  # a peer changes constants only
+    options = Options(mode="repair", seed=seed, budget=budget, searches=(search,), structure=not plugged)
     online = run_online(stage.rollout, fixture, marked, options, stage.sites, stage.drift, quiet)
     patches = stage.folder / ".tarl" / "patches"
     return Order(

@@ -155,13 +155,14 @@ def _turn(
     ]
     candidate = Candidate(tuple(kept), guard)
     first = len(trials.totals) % len(order.goal.pairs)
+    seed = order.goal.pairs[first].seed
     try:
-        outcome = trials(candidate, order.goal.pairs[first].seed)
+        outcome = trials(candidate, seed)
     except RepairError:
         optimiser.tell(point, -order.worst)
         return None
     optimiser.tell(point, -outcome.total)
-    if kept and order.goal.reached(outcome) and confirmed(candidate, trials, order.goal, first):
+    if kept and order.goal.reached(outcome, seed) and confirmed(candidate, trials, order.goal, first):
         return candidate
     return None
 

@@ -26,7 +26,11 @@ from fauxpy_peer import FAUXPY, localised
 from stage import HERE, Stage, answers_in, tasks_in, visit
 from table import tables
 
-OURS = ("ours", "ours, halving")
+OURS = {  # method → search; all of them meet the same acceptance
+    "ours": "sweep",
+    "ours, halving": "halving",
+    "random, same acceptance": "random_search:Random",
+}
 PEERS = ("random", "CMA-ES", "Optuna")
 METHODS = ("ours", *(f"{name}{guard}" for name in PEERS for guard in ("", ", our guard")), *FAUXPY)
 
@@ -45,7 +49,7 @@ def _found(stage: Stage, methods: Sequence[str], seed: int, python: str | None) 
     from peers import BUDGET, peer
 
     if methods[0] in OURS:
-        return {name: ours(stage, seed, name.partition(", ")[2] or "sweep") for name in methods}
+        return {name: ours(stage, seed, OURS[name]) for name in methods}
     if methods[0] in FAUXPY:
         return {name: localised(stage, seed, name, python) for name in methods}
     order = prepared(stage, seed, BUDGET)
@@ -88,7 +92,7 @@ def _jobs(arguments: argparse.Namespace, tasks: Sequence[str], results: Mapping[
     """Return what has no result yet: peers that share a recording go together, all others alone."""
     jobs = []
     asked = arguments.methods.split(";")
-    peers = tuple(name for name in asked if name.partition(", ")[0] in PEERS)
+    peers = tuple(name for name in asked if name.partition(", ")[0] in PEERS and name not in OURS)
     groups = [peers, *((name,) for name in asked if name not in peers)]
     for seed in range(arguments.seeds):
         for task in tasks:

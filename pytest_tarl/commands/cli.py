@@ -1,4 +1,4 @@
-"""The command line of `tarl`: fixtures to look at, robots to observe and watch, patches to apply."""
+"""The command line of `tarl`: inspect recordings, observe and watch robots, apply patches."""
 
 from __future__ import annotations
 
@@ -9,13 +9,20 @@ from collections.abc import Iterable, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
+from pytest_tarl.commands.parser import Parser
+from pytest_tarl.commands.robots import add_observe, add_watch
 from pytest_tarl.errors import RefusedError, TarlError
+from pytest_tarl.extras import missing_extra, missing_server
 from pytest_tarl.printable import printable, printable_line
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command; return 0, 1 where it found what it was told to fail on or refused, 2 for what cannot be done."""
-    arguments = _parser().parse_args(argv)
+    """Run a command. Return 0; 1 if it refuses or finds what it should fail on; 2 if it cannot be done."""
+    arguments = parser().parse_args(argv)
+    sentence = arguments.needs(f"tarl {arguments.command}")
+    if sentence is not None:
+        print(f"tarl: {sentence}", file=sys.stderr)
+        return 2
     try:
         return int(arguments.run(arguments))
     except RefusedError as refused:
@@ -25,7 +32,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(printable(f"tarl: {problem}"), file=sys.stderr)
         return 2
     except BrokenPipeError:
-        sys.stdout = open(os.devnull, "w")  # noqa: PTH123, SIM115 - what is left to print goes nowhere
+        sys.stdout = open(os.devnull, "w")  # noqa: PTH123, SIM115 - discard the remaining output
         return 0
     except KeyboardInterrupt:
         print("tarl: interrupted.", file=sys.stderr)
@@ -33,36 +40,35 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _print(lines: Iterable[str]) -> None:
-    """Print lines that hold texts of others: code, topics, headers of patches."""
+    """Print lines that contain untrusted text: code, topics, headers of patches."""
     print("\n".join(map(printable_line, lines)))
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="tarl", description="Look at what TARL recorded, apply what it found."
-    )
+def parser() -> Parser:
+    """Return the parser of the command line."""
+    parser = Parser(prog="tarl", description="Inspect recordings, watch robots, and apply repairs of TARL.")
     parser.add_argument("--version", action="version", version=f"%(prog)s {version('tarl')}")
-    commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    show = commands.add_parser("show", help="tell in a screenful what a fixture holds")
-    show.add_argument("fixture", type=Path, help="a file below .tarl/utility or .tarl/online")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND", dest="command")
+    show = commands.add_parser("show", help="show a summary of a recording")
+    show.add_argument("fixture", type=Path, help="a file in .tarl/utility or .tarl/online")
     show.add_argument(
-        "--sites", action="store_true", help="list the statements of every taint list, however many"
+        "--sites", action="store_true", help="list the statements of every taint list, even if there are many"
     )
     show.set_defaults(run=_show)
-    diff = commands.add_parser("diff", help="compare two fixtures")
+    diff = commands.add_parser("diff", help="compare two recordings")
     diff.add_argument("first", type=Path)
     diff.add_argument("second", type=Path)
     diff.add_argument(
         "--fail-if-worse",
         action="store_true",
-        help="exit with 1 when the second one earns significantly less",
+        help="exit with 1 if the second one earns significantly less",
     )
     diff.add_argument(
         "--max-loss",
         metavar="R",
         type=float,
         default=0.0,
-        help="with --fail-if-worse: a loss of reward per episode that nobody minds (default 0)",
+        help="with --fail-if-worse: tolerated loss of reward per episode (default 0)",
     )
     diff.add_argument(
         "--alpha", metavar="P", type=float, help="with --fail-if-worse: rate of false alarms (default 0.05)"
@@ -70,40 +76,71 @@ def _parser() -> argparse.ArgumentParser:
     diff.add_argument(
         "--fail-if-changed",
         action="store_true",
-        help="exit with 1 when a recorded statement was edited or the sensors are others",
+        help="exit with 1 if a recorded statement was edited or the sensors differ",
     )
     diff.set_defaults(run=_diff)
-    _add_observe(commands)
-    _add_watch(commands)
+    summary = commands.add_parser("summary", help="print the results of the last comparisons as Markdown")
+    summary.add_argument(
+        "results", type=Path, nargs="?", default=Path(".tarl/results"), help="default .tarl/results"
+    )
+    summary.set_defaults(run=_summary)
+    add_observe(commands)
+    add_watch(commands)
     _add_patches(commands)
+    for command in commands.choices.values():
+        command.set_defaults(parser=command, needs=missing_extra)
+    lsp = commands.add_parser("lsp", help="run the language server for editors, on standard streams")
+    lsp.set_defaults(run=_lsp, parser=lsp, needs=missing_server)
     return parser
 
 
-def _add_patches(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    apply = commands.add_parser("apply", help="apply patches of repairs, after checking that they still fit")
+def _summary(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.commands.summary import markdown
+
+    sys.stdout.write(printable(markdown(arguments.results)))
+    return 0
+
+
+def _lsp(_: argparse.Namespace) -> int:
+    from tarl_lint import import_path
+
+    import_path.restrict()  # import nothing from the workspace, even if the server was started there
+    from pytest_tarl.editor.server import main as serve
+
+    return serve(_applied)
+
+
+def _applied(patch: Path) -> list[str]:
+    from pytest_tarl.commands import applying
+
+    return list(applying.apply([patch], None, force=False, partial=False))
+
+
+def _add_patches(commands: argparse._SubParsersAction[Parser]) -> None:
+    apply = commands.add_parser("apply", help="apply patches, after checking that they still fit")
     apply.add_argument(
-        "--force", action="store_true", help="where the file has changed, or has changes to lose"
+        "--force", action="store_true", help="apply even if the file has changed or has uncommitted changes"
     )
-    apply.add_argument("--partial", action="store_true", help="a partial repair, too, which was not accepted")
-    revert = commands.add_parser("revert", help="undo patches of repairs, and nothing else")
-    suggest = commands.add_parser(
-        "suggest", help="print a patch as suggestions for a review, or as a SARIF fix"
+    apply.add_argument(
+        "--partial", action="store_true", help="also apply a partial repair, which was not accepted"
     )
+    revert = commands.add_parser("revert", help="undo patches and keep other edits")
+    suggest = commands.add_parser("suggest", help="print a patch as review suggestions or as a SARIF fix")
     suggest.add_argument(
         "--format",
         choices=("markdown", "github", "sarif"),
         default="markdown",
-        help="suggestion blocks to read and paste (default), a review for GitHub's API, or SARIF 2.1.0",
+        help="suggestion blocks to paste (default), a review for GitHub's API, or SARIF 2.1.0",
     )
     for command in (apply, revert):
-        command.add_argument("patch", type=Path, nargs="+", help="a file below .tarl/patches")
+        command.add_argument("patch", type=Path, nargs="+", help="a file in .tarl/patches")
         command.add_argument(
             "--directory",
             type=Path,
             metavar="DIR",
-            help="where the paths of a patch begin; known as long as the patch is below .tarl",
+            help="folder that the paths of a patch are relative to; known if the patch is in .tarl",
         )
-    suggest.add_argument("patch", type=Path, help="a file below .tarl/patches")
+    suggest.add_argument("patch", type=Path, help="a file in .tarl/patches")
     apply.set_defaults(run=_apply)
     revert.set_defaults(run=_revert)
     suggest.set_defaults(run=_suggest)
@@ -136,129 +173,6 @@ def _suggest(arguments: argparse.Namespace) -> int:
     whole([patch])
     sys.stdout.write(printable(forms[arguments.format](patch)))
     return 0
-
-
-def _add_observe(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    observe = commands.add_parser(
-        "observe", help="run a node on a robot and log its missions for pytest --tarl-online --tarl-log"
-    )
-    flag = observe.add_argument
-    flag("node", type=Path, help="the node's script")
-    flag("argv", nargs="*", metavar="-- ARGUMENT", help="what the node itself is given, after --")
-    flag("--entry", metavar="FUNCTION", help="call this function of it, as the entry point in setup.py does")
-    flag(
-        "--log", type=Path, default=Path(".tarl/missions.log"), help="default .tarl/missions.log; appended to"
-    )
-    flag(
-        "--fixture", type=Path, help="the utility fixture whose sensors are watched; found where there is one"
-    )
-    flag("--module", type=Path, action="append", default=[], help="a further file of the node; repeatable")
-    flag("--reward-topic", default="", metavar="TOPIC[:TYPE]", help="the monitor's reward (std_msgs/Float64)")
-    flag(
-        "--step", type=float, metavar="SECONDS", help="close a step this often; the marker's judge rewards it"
-    )
-    flag(
-        "--mission-topic",
-        default="",
-        metavar="TOPIC[:TYPE]",
-        help="begin, succeeded, failed (std_msgs/String)",
-    )
-    flag(
-        "--idle", type=float, metavar="SECONDS", help="a mission ends when nothing was published for so long"
-    )
-    observe.set_defaults(run=_observe)
-
-
-def _observe(arguments: argparse.Namespace) -> int:
-    from pytest_tarl.observing.command import Order, observe
-
-    order = Order(
-        node=arguments.node,
-        argv=tuple(arguments.argv),
-        entry=arguments.entry,
-        log=arguments.log,
-        fixture=arguments.fixture,
-        modules=tuple(arguments.module),
-        reward=arguments.reward_topic,
-        mission=arguments.mission_topic,
-        idle=arguments.idle,
-        step=arguments.step,
-    )
-    print(printable(observe(order)), file=sys.stderr)
-    return 0
-
-
-def _add_watch(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    watch = commands.add_parser(
-        "watch",
-        help="judge logged missions as they come: is the stated bound kept, is the world as off-line?",
-    )
-    flag = watch.add_argument
-    flag("logs", type=Path, nargs="+", metavar="LOG", help="logs of `tarl observe`, which may still grow")
-    flag("--fixture", type=Path, required=True, help="the utility fixture that the missions are held against")
-    flag("--once", action="store_true", help="read what is there, tell it and end")
-    flag("--until-alarm", action="store_true", help="end with the first alarm")
-    flag(
-        "--alpha",
-        metavar="P",
-        type=float,
-        default=0.05,
-        help="probability of ever a false alarm (default 0.05)",
-    )
-    flag(
-        "--seed",
-        metavar="N",
-        type=int,
-        default=0,
-        help="decides how ties between missions are broken (default 0)",
-    )
-    flag(
-        "--state",
-        type=Path,
-        metavar="FILE",
-        help="default .tarl/watch/FIXTURE.npz; goes on from it where it exists",
-    )
-    flag(
-        "--json",
-        type=Path,
-        metavar="FILE",
-        help="keep the account there for other programs; - for standard output",
-    )
-    flag(
-        "--interval",
-        metavar="SECONDS",
-        type=float,
-        default=1.0,
-        help="between two looks at the logs (default 1)",
-    )
-    flag(
-        "--every",
-        metavar="SECONDS",
-        type=float,
-        default=60.0,
-        help="between two lines of output (default 60)",
-    )
-    flag("--diagnostics", choices=("rclpy", "rospy"), help="be a ROS node that publishes on /diagnostics")
-    watch.set_defaults(run=_watch)
-
-
-def _watch(arguments: argparse.Namespace) -> int:
-    from pytest_tarl.commands import watch
-
-    order = watch.Order(
-        logs=tuple(arguments.logs),
-        fixture=arguments.fixture,
-        state=arguments.state or watch.default_state(arguments.fixture),
-        json=arguments.json,
-        alpha=arguments.alpha,
-        seed=arguments.seed,
-        interval=arguments.interval,
-        every=arguments.every,
-        once=arguments.once,
-        until_alarm=arguments.until_alarm,
-        ros=arguments.diagnostics or "",
-    )
-    return watch.run(order)
 
 
 def _show(arguments: argparse.Namespace) -> int:

@@ -9,6 +9,7 @@ from typing import Any
 
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.formulas.parsing import Formula, formula
+from pytest_tarl.formulas.said import NOTHING_SAID, Said
 from pytest_tarl.formulas.signals import NANOSECONDS, Signal
 from pytest_tarl.options import number_within
 from pytest_tarl.sensors import Sensor
@@ -28,6 +29,7 @@ class Requirements:
     rewarding: bool = False
     cap: float = CAP
     followed: bool = False  # whether signals are followed from the beginning of an episode
+    said: Said = NOTHING_SAID
 
     @property
     def topics(self) -> frozenset[str]:
@@ -38,11 +40,18 @@ class Requirements:
 NOTHING_REQUIRED = Requirements()
 
 
-def requirements(where: str, given: Mapping[str, Any], sensors: Sequence[Sensor]) -> Requirements:
-    """Check those arguments of a marker that are about formulas. Raises SettingsError."""
-    signals = _signals(where, given.get("signals", ()), sensors)
+def requirements(
+    where: str, given: Mapping[str, Any], sensors: Sequence[Sensor], said: Said = NOTHING_SAID
+) -> Requirements:
+    """Check those arguments of a marker that are about formulas; `said` is what the test says of them elsewhere.
+
+    A name that a formula uses and that is neither sensor nor signal is one that the test observes. Raises
+    SettingsError.
+    """
+    declared = _signals(where, given.get("signals", ()), sensors)
+    signals = (*declared, *_observed(given.get("requires", ()), said, [*sensors, *declared]))
     names = (*(sensor.name for sensor in sensors if not sensor.categories), *(one.name for one in signals))
-    formulas = _formulas(where, given.get("requires", ()), names, sensors)
+    formulas = _formulas(where, given.get("requires", ()), names, sensors, said)
     rewarding = _rewarding(where, given.get("reward"), formulas)
     if "robustness_cap" in given and not rewarding:
         raise SettingsError(
@@ -50,8 +59,8 @@ def requirements(where: str, given: Mapping[str, Any], sensors: Sequence[Sensor]
         )
     cap = number_within(where, "robustness_cap", given.get("robustness_cap", CAP), float, 1e-9, 1e9)
     _check_lasting(where, given.get("lasts"), formulas)
-    followed = "requires" in given or "signals" in given
-    return Requirements(signals, formulas, names, rewarding, cap, followed)
+    followed = "requires" in given or "signals" in given or said.requires
+    return Requirements(signals, formulas, names, rewarding, cap, followed, said)
 
 
 def _signals(where: str, given: Any, sensors: Sequence[Sensor]) -> tuple[Signal, ...]:
@@ -73,8 +82,20 @@ def _signals(where: str, given: Any, sensors: Sequence[Sensor]) -> tuple[Signal,
     return signals
 
 
+def _observed(given: Any, said: Said, declared: Sequence[Sensor | Signal]) -> tuple[Signal, ...]:
+    """Return the signals that the test observes and that a formula names, without those that are declared."""
+    known = {one.name for one in declared}
+    texts = " ".join(
+        one for one in (*(given if isinstance(given, Sequence) else ()), *said.texts) if isinstance(one, str)
+    )
+    used = {*re.findall(r"\b[A-Za-z_]\w*", texts)}
+    return tuple(
+        Signal(name) for name in said.observed if name in used and name not in known and name.isascii()
+    )
+
+
 def _formulas(
-    where: str, given: Any, names: tuple[str, ...], sensors: Sequence[Sensor]
+    where: str, given: Any, names: tuple[str, ...], sensors: Sequence[Sensor], said: Said
 ) -> tuple[Formula, ...]:
     if isinstance(given, str) or not isinstance(given, Sequence):
         raise SettingsError(
@@ -82,7 +103,7 @@ def _formulas(
         )
     for text in given:
         check_texts(where, text, sensors)
-    return tuple(dict.fromkeys(formula(where, text, names) for text in given))
+    return tuple(dict.fromkeys(formula(where, text, names, said) for text in given))
 
 
 def check_texts(where: str, text: Any, sensors: Sequence[Sensor]) -> None:

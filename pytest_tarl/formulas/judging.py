@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.formulas.parsing import Formula, formula
+from pytest_tarl.formulas.said import NOTHING_SAID, Said
 from pytest_tarl.formulas.signals import NANOSECONDS, Timeline
 
 if TYPE_CHECKING:
@@ -36,8 +37,9 @@ class Judged(NamedTuple):
 class Judge:
     """Follows the signals of one episode and judges its formulas when it is over."""
 
-    def __init__(self, names: Sequence[str], formulas: Sequence[Formula]) -> None:
+    def __init__(self, names: Sequence[str], formulas: Sequence[Formula], said: Said = NOTHING_SAID) -> None:
         self.names = tuple(names)
+        self.said = said
         self.timeline = Timeline(names)
         self.formulas = list(formulas)
         self.steps: list[int] = []  # when each step ended, in ns since the episode began
@@ -49,7 +51,7 @@ class Judge:
 
     def require(self, text: str) -> None:
         """Add a formula. Raises SettingsError for what is none."""
-        added = formula("tarl.require", text, self.names)
+        added = formula("tarl.require", text, self.names, self.said)
         if added not in self.formulas:
             self.formulas.append(added)
 

@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.formulas.said import NOTHING_SAID, Said
 
 NEWEST = (3, 12)  # for which the parser that rtamt is built on can be imported
 EXAMPLE = 'such as "always (gap > 0.3)"'
@@ -26,8 +27,11 @@ class Formula:
     tree: Any = field(compare=False, repr=False)
 
 
-def formula(where: str, text: Any, names: Sequence[str]) -> Formula:
-    """Read a formula over those signals. Raises SettingsError; `where` begins its sentence."""
+def formula(where: str, text: Any, names: Sequence[str], said: Said = NOTHING_SAID) -> Formula:
+    """Read a formula over those signals. Raises SettingsError; `where` begins its sentence.
+
+    `said` tells what else the test observes, so that the sentence on an unknown name can be of help.
+    """
     if not isinstance(text, str) or not text.strip():
         raise SettingsError(f"{where}: a formula is a text {EXAMPLE}, got {text!r}.")
     require_rtamt(where)
@@ -38,7 +42,8 @@ def formula(where: str, text: Any, names: Sequence[str]) -> Formula:
     except ReadingError as problem:
         raise SettingsError(f"{where}: the formula {text!r} cannot be used: {problem}.") from None
     except _UnknownError as problem:
-        raise SettingsError(f"{where}: the formula {text!r} names {problem}") from None
+        unknown = _unknown(problem.name, names, said)
+        raise SettingsError(f"{where}: the formula {text!r} names {unknown}") from None
 
 
 def require_rtamt(where: str) -> None:
@@ -57,6 +62,10 @@ def require_rtamt(where: str) -> None:
 class _UnknownError(Exception):
     """A formula names what is no signal."""
 
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
+        self.name = name
+
 
 @lru_cache(maxsize=256)
 def _formula(text: str, names: tuple[str, ...]) -> Formula:
@@ -70,7 +79,7 @@ def _formula(text: str, names: tuple[str, ...]) -> Formula:
         raise grammar.ReadingError(f"{reserved} is a word of the language, so no signal may have that name")
     unknown = next((name for name in used if name not in names), None)
     if unknown is not None:
-        raise _UnknownError(_unknown(unknown, names, grammar.WORDS))
+        raise _UnknownError(unknown)
     tree = grammar.tree(plain, names)
     problem = unjudged(tree)
     if problem:
@@ -78,14 +87,23 @@ def _formula(text: str, names: tuple[str, ...]) -> Formula:
     return Formula(text, grammar.signals(tree), tree)
 
 
-def _unknown(name: str, names: Sequence[str], words: Sequence[str]) -> str:
+def _unknown(name: str, names: Sequence[str], said: Said) -> str:
+    from pytest_tarl.formulas.grammar import WORDS
+
     if "/" in name and name.partition("/")[0] in names:
         return f"{name!r}, which is no signal; write a division with spaces, {name.replace('/', ' / ')}."
-    close = difflib.get_close_matches(name, [*names, *words], 1)
+    known = [*dict.fromkeys((*names, *said.observed))]
+    close = difflib.get_close_matches(name, [*known, *WORDS], 1)
+    told = ", ".join(known) or "there is none"
     if close:
-        return f"{name!r}, which is no signal; did you mean {close[0]!r}?"
-    known = ", ".join(names) or "none is declared"
+        return f"{name!r}, which is no signal; did you mean {close[0]!r}? The signals are: {told}."
+    first = name.partition(".")[0]
+    if said.computed:
+        return (
+            f"{name!r}, which is no signal ({told}): the test computes names that it observes, which cannot be read "
+            f"from its source; declare this one in the marker, signals=[{first!r}]."
+        )
     return (
-        f"{name!r}, which is no signal ({known}): declare it in the marker, signals=[{name!r}], and give its value by "
-        f"tarl.observe({name.partition('.')[0]}=…)."
+        f"{name!r}, which is no signal ({told}): it is no sensor and the test never observes it. Give its value by "
+        f"tarl.observe({first}=…), or read it from a message, signals=[Signal({first!r}, topic=…, field=…)]."
     )

@@ -9,8 +9,9 @@ from __future__ import annotations
 import ast
 import sys
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import TypedDict
+
+from pytest_tarl.instrumentation.constants import BUFFER, FLOAT, HOOK, TYPE, Mark
 
 _BRANCHING = (ast.BoolOp, ast.IfExp, ast.NamedExpr)
 INLINED_COMPREHENSIONS = sys.version_info >= (3, 12)
@@ -91,81 +92,48 @@ def first_evaluated(node: ast.expr) -> ast.expr:
         node = inner
 
 
-@dataclass(frozen=True, slots=True)
-class Names:
-    """The globals that instrumented code uses. With `inline`, plain floats are appended without a call."""
-
-    hook: str
-    inline: bool = False
-
-    @property
-    def all(self) -> list[str]:
-        """List them."""
-        return [self.hook, self.buffer, self.type, self.float]
-
-    @property
-    def buffer(self) -> str:
-        """Name the list of events of the running thread."""
-        return _derived(self.hook, "list")
-
-    @property
-    def type(self) -> str:
-        """Name the builtin `type`, which the program may have hidden."""
-        return _derived(self.hook, "type")
-
-    @property
-    def float(self) -> str:
-        """Name the builtin `float`."""
-        return _derived(self.hook, "float")
-
-
-def _derived(hook: str, suffix: str) -> str:
-    """Keep two underscores at both ends, or classes would mangle the name."""
-    return f"{hook.removesuffix('__')}_{suffix}__"
-
-
-def recorded(value: ast.expr, number: int, names: Names, then: Where | None = None) -> ast.Call:
+def recorded(value: ast.expr, number: int, then: Where | None = None) -> ast.Call:
     """Build `hook(number, value)`, which gives `value` back to what stands at `then`."""
     start = start_of(value)
     return ast.Call(
-        func=ast.Name(names.hook, ast.Load(), **start),
+        func=_marked(HOOK, start),
         args=[ast.Constant(number, **start), value],
         keywords=[],
         **end_of(value, then or start),
     )
 
 
-def note(name: str, number: int, names: Names, at: Where) -> ast.stmt:
+def note(name: str, number: int, at: Where, *, inline: bool) -> ast.stmt:
     """Build the statement that records the value of a plain name."""
     value = ast.Name(name, ast.Load(), **at)
-    by_hook = _called(value, number, names, at)
-    if not names.inline:
+    by_hook = _called(value, number, at)
+    if not inline:
         return by_hook
-    plain = _is_float(name, names, at)
-    appended = _appended(ast.Name(name, ast.Load(), **at), number, names, at)
+    plain = _is_float(name, at)
+    appended = _appended(ast.Name(name, ast.Load(), **at), number, at)
     return ast.If(plain, appended, [by_hook], **at)
 
 
-def note_constant(value: float, number: int, names: Names, at: Where) -> list[ast.stmt]:
+def note_constant(value: float, number: int, at: Where, *, inline: bool) -> list[ast.stmt]:
     """Build the statements that record a value known beforehand: a truth value, or 0 for nothing."""
     constant = ast.Constant(value, **at)
-    if names.inline:
-        return _appended(constant, number, names, at)
-    return [_called(constant, number, names, at)]
+    if inline:
+        return _appended(constant, number, at)
+    return [_called(constant, number, at)]
 
 
-def note_all(events: Iterable[tuple[str, int]], names: Names, at: Where) -> ast.stmt:
+def note_all(events: Iterable[tuple[str, int]], at: Where) -> ast.stmt:
     """Build the statement that records names which hold floats, with their numbers, in one go."""
     entries: list[ast.expr] = []
     for name, number in events:
         entries += [ast.Constant(number, **at), ast.Name(name, ast.Load(), **at)]
-    method = ast.Attribute(ast.Name(names.buffer, ast.Load(), **at), "extend", ast.Load(), **at)
+    method = ast.Attribute(_marked(BUFFER, at), "extend", ast.Load(), **at)
     return ast.Expr(ast.Call(method, [ast.Tuple(entries, ast.Load(), **at)], [], **at), **at)
 
 
-def all_floats(inputs: Iterable[str], names: Names, at: Where) -> ast.expr:
+def all_floats(inputs: Iterable[str], at: Where) -> ast.expr:
     """Build the condition that all these names hold floats, of no subclass."""
-    tests: list[ast.expr] = [_is_float(name, names, at) for name in inputs]
+    tests: list[ast.expr] = [_is_float(name, at) for name in inputs]
     return tests[0] if len(tests) == 1 else ast.BoolOp(ast.And(), tests, **at)
 
 
@@ -177,7 +145,7 @@ def truth(test: ast.expr) -> ast.expr:
     return ast.IfExp(test, ast.Constant(True, **at), ast.Constant(False, **at), **at)
 
 
-def reached(call: ast.Call, number: int, names: Names) -> ast.Call:
+def reached(call: ast.Call, number: int) -> ast.Call:
     """Build the call with 0 recorded just before it happens, after its arguments are known.
 
     A publish may hand over to other nodes and to the world: recorded afterwards, its event would land in
@@ -185,20 +153,20 @@ def reached(call: ast.Call, number: int, names: Names) -> ast.Call:
     """
     if call.keywords:
         last = call.keywords[-1]
-        changed = ast.keyword(last.arg, _then(last.value, number, names), **where(last))
+        changed = ast.keyword(last.arg, _then(last.value, number), **where(last))
         return ast.Call(call.func, call.args, [*call.keywords[:-1], changed], **where(call))
     *before, final = call.args
     if isinstance(final, ast.Starred):
-        final = ast.Starred(_then(final.value, number, names), final.ctx, **where(final))
+        final = ast.Starred(_then(final.value, number), final.ctx, **where(final))
     else:
-        final = _then(final, number, names)
+        final = _then(final, number)
     return ast.Call(call.func, [*before, final], [], **where(call))
 
 
-def _then(value: ast.expr, number: int, names: Names) -> ast.expr:
+def _then(value: ast.expr, number: int) -> ast.expr:
     """Build `(value, hook(number, 0.0))[0]`."""
     at = where(value)
-    hook = ast.Call(ast.Name(names.hook, ast.Load(), **at), _arguments(number, at), [], **at)
+    hook = ast.Call(_marked(HOOK, at), _arguments(number, at), [], **at)
     both = ast.Tuple([value, hook], ast.Load(), **at)
     return ast.Subscript(both, ast.Constant(0, **at), ast.Load(), **at)
 
@@ -207,21 +175,26 @@ def _arguments(number: int, at: Where) -> list[ast.expr]:
     return [ast.Constant(number, **at), ast.Constant(0.0, **at)]
 
 
-def _is_float(name: str, names: Names, at: Where) -> ast.Compare:
-    kind = ast.Call(ast.Name(names.type, ast.Load(), **at), [ast.Name(name, ast.Load(), **at)], [], **at)
-    return ast.Compare(kind, [ast.Is()], [ast.Name(names.float, ast.Load(), **at)], **at)
+def _is_float(name: str, at: Where) -> ast.Compare:
+    kind = ast.Call(_marked(TYPE, at), [ast.Name(name, ast.Load(), **at)], [], **at)
+    return ast.Compare(kind, [ast.Is()], [_marked(FLOAT, at)], **at)
 
 
-def _called(value: ast.expr, number: int, names: Names, at: Where) -> ast.Expr:
-    hook = ast.Name(names.hook, ast.Load(), **at)
+def _called(value: ast.expr, number: int, at: Where) -> ast.Expr:
+    hook = _marked(HOOK, at)
     return ast.Expr(ast.Call(hook, [ast.Constant(number, **at), value], [], **at), **at)
 
 
-def _appended(value: ast.expr, number: int, names: Names, at: Where) -> list[ast.stmt]:
-    return [_append(ast.Constant(number, **at), names, at), _append(value, names, at)]
+def _appended(value: ast.expr, number: int, at: Where) -> list[ast.stmt]:
+    return [_append(ast.Constant(number, **at), at), _append(value, at)]
 
 
-def _append(entry: ast.expr, names: Names, at: Where) -> ast.stmt:
+def _append(entry: ast.expr, at: Where) -> ast.stmt:
     # As a method call on the list: CPython 3.11 and later specialise exactly this form.
-    method = ast.Attribute(ast.Name(names.buffer, ast.Load(), **at), "append", ast.Load(), **at)
+    method = ast.Attribute(_marked(BUFFER, at), "append", ast.Load(), **at)
     return ast.Expr(ast.Call(method, [entry], [], **at), **at)
+
+
+def _marked(mark: Mark, at: Where) -> ast.Constant:
+    """Build what `constants.bound` replaces."""
+    return ast.Constant(mark, **at)

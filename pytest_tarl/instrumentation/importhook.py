@@ -10,7 +10,7 @@ import contextlib
 import sys
 import warnings
 from collections.abc import Callable, Collection, Mapping
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib import import_module
 from importlib.machinery import ModuleSpec, SourceFileLoader
 from itertools import accumulate
@@ -20,7 +20,7 @@ from types import CodeType, FrameType, MappingProxyType, ModuleType
 from typing import Any
 
 from pytest_tarl.instrumentation.codecache import CodeCache
-from pytest_tarl.instrumentation.instrument import HOOK
+from pytest_tarl.instrumentation.constants import bound
 from pytest_tarl.instrumentation.launching import (
     importable,
     on_search_path,
@@ -32,7 +32,7 @@ from pytest_tarl.instrumentation.nodecode import NodeCode
 from pytest_tarl.instrumentation.sites import Position, Positions
 from pytest_tarl.stale import holders, of_tests, outlived
 
-Bind = Callable[[dict[str, Any]], None]
+Bind = Callable[[CodeType], CodeType]
 _INSTALLED = frozenset({"site-packages", "dist-packages"})
 _OURS = frozenset({"pytest_tarl", "tarl_lint"})
 
@@ -46,8 +46,8 @@ class NodeImports:
 
     `plan` tells by file where sites stand, `overlay` gives other text to some files (sites keep their lines
     there where they can). While entered as a context, imports of those files go through here, and whatever
-    project modules a node imports are forgotten at the end. `bind`, when given, puts the recorder's globals
-    into a module (`Recorder.bind`), else `hook` alone is put there.
+    project modules a node imports are forgotten at the end. `bind`, when given, gives code what it records
+    with (`Recorder.bind`), else it is `hook` alone.
     """
 
     def __init__(
@@ -65,7 +65,7 @@ class NodeImports:
             plan, overlay, publishes, inline=bind is not None, cache=code_cache(_resolved(root))
         )
         self._overlay = overlay
-        self._bind = bind or (lambda namespace: namespace.update({HOOK: hook}))
+        self._bind = bind or partial(bound, hook=hook)
         self._tails = {_tail(path) for path in self._code.files}
         self._executed: set[Path] = set()
         self._imported: set[str] = set()  # names of modules that belong to this episode
@@ -101,7 +101,8 @@ class NodeImports:
 
     def compile_file(self, path: Path) -> CodeType:
         """Compile a file with its sites recorded. Raises SyntaxError and OSError as an import does."""
-        return self._code.compile(path)
+        code = self._code.compile(path)
+        return self._bind(code) if self._code.recorded(path.resolve()) else code
 
     def run(self, path: Path, entry: str | None = None) -> None:
         """Run a node's file: as a script, or by the function that its entry point names."""
@@ -146,13 +147,11 @@ class NodeImports:
             raise SystemExit(found)
 
     def prepare(self, module: ModuleType, path: Path) -> None:
-        """Give a module what its instrumented code needs, before it is executed."""
+        """Note a module whose code is about to be executed."""
         file = path.resolve()
         self._executed.add(file)
         self._projects.add(workspace(file))
         self._namespaces.append(module.__dict__)
-        if self._code.recorded(file):
-            self._bind(module.__dict__)
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
         """Find a file of the plan or overlay; of all other imports only note whether a node asks for them."""
@@ -264,7 +263,7 @@ class NodeLoader(SourceFileLoader):
         return super().get_data(path) if edited is None else edited
 
     def exec_module(self, module: ModuleType) -> None:
-        """Execute the module with the names of the recorder in it."""
+        """Execute the module."""
         self._imports.prepare(module, Path(self.path))
         super().exec_module(module)
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import warnings
 from collections.abc import Collection, Mapping
+from types import CodeType
 from typing import Literal, TypeVar
 
 from pytest_tarl.instrumentation.blocks import (
@@ -14,7 +16,6 @@ from pytest_tarl.instrumentation.blocks import (
     parameters,
 )
 from pytest_tarl.instrumentation.forms import (
-    Names,
     Where,
     all_floats,
     note,
@@ -32,7 +33,6 @@ from pytest_tarl.instrumentation.magnitude import magnitude
 Offset = tuple[int, int]  # line from 1 and column in UTF-8 bytes from 0, as `ast` counts
 Scope = Literal["module", "class", "function"]
 
-HOOK = "__tarl__"
 # They make names known to the compiler, or nothing at all: there is no value to record.
 _SILENT = (ast.ClassDef, ast.Import, ast.ImportFrom, ast.Global, ast.Nonlocal)
 Function = TypeVar("Function", ast.FunctionDef, ast.AsyncFunctionDef)
@@ -43,7 +43,6 @@ Block = TypeVar("Block", ast.With, ast.AsyncWith)
 def instrument(
     tree: ast.Module,
     sites: Mapping[Offset, int],
-    hook: str = HOOK,
     *,
     publishes: Collection[int] = (),
     inline: bool = False,
@@ -51,26 +50,35 @@ def instrument(
 ) -> ast.Module:
     """Return the module with every statement (or lambda body) that starts at a position of `sites` recorded.
 
-    `hook(number, value)` must give `value` back. Sites in `publishes`, and calls of methods named publish,
+    What it is recorded with are constants: compile the tree with `compiled`, give it a hook and a buffer by
+    `constants.bound`. Sites in `publishes`, and calls of methods named publish,
     are recorded with 0 when they are reached. A condition is recorded as 1 or 0, the head of a function as
     its message parameter, a loop as its target at each turn. With `inline`, plain floats are appended to
-    the list in `Names(hook).buffer` without a call. `tree` is used up; the positions at which something
+    the buffer without a call. `tree` is used up; the positions at which something
     stood are added to `placed`.
     """
     found: set[Offset] = set() if placed is None else placed
-    changed = _Recording(sites, Names(hook, inline), frozenset(publishes), found).visit(tree)
+    changed = _Recording(sites, frozenset(publishes), found, inline=inline).visit(tree)
     assert isinstance(changed, ast.Module)  # noqa: S101 - for the type checker
     return changed
+
+
+def compiled(tree: ast.Module, path: str) -> CodeType:
+    """Compile an instrumented module without the compiler's warnings: it takes the marks for what they look like."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        code: CodeType = compile(tree, path, "exec", dont_inherit=True)
+    return code
 
 
 class _Recording(ast.NodeTransformer):
     """One walk over a module."""
 
     def __init__(
-        self, sites: Mapping[Offset, int], names: Names, publishes: frozenset[int], placed: set[Offset]
+        self, sites: Mapping[Offset, int], publishes: frozenset[int], placed: set[Offset], *, inline: bool
     ) -> None:
         self._sites = sites
-        self._names = names
+        self._inline = inline
         self._publishes = publishes
         self._placed = placed
         self._scope: list[Scope] = ["module"]
@@ -102,11 +110,8 @@ class _Recording(ast.NodeTransformer):
         self._scope.pop()
 
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.ClassDef:
-        """Enter a class, whose namespace may answer to any name: ours are looked up outside of it."""
-        before = len(self._placed)
+        """Enter a class."""
         self._inside(node, "class")
-        if len(self._placed) > before:
-            enter(node, ast.Global(self._names.all, **start_of(node)))
         return node
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
@@ -120,12 +125,12 @@ class _Recording(ast.NodeTransformer):
     def _function(self, node: Function) -> Function:
         numbers = [(self._number(parameter), parameter) for parameter in parameters(node.args)]
         at = entry_of(node)
-        if self._names.inline:
+        if self._inline:
             gather(node, self._sites)
         self._inside(node, "function")
         for number, parameter in reversed(numbers):
             if number is not None:
-                enter(node, note(parameter.arg, number, self._names, at))
+                enter(node, self._note(parameter.arg, number, at))
         return node
 
     def visit_Run(self, node: Run) -> ast.If:
@@ -133,9 +138,9 @@ class _Recording(ast.NodeTransformer):
         begins = start_of(first_evaluated_in(node.body))
         numbers = [(target_of(statement).id, self._number(statement)) for statement in node.body]
         events = [(name, number) for name, number in numbers if number is not None]
-        fused = [*node.body, note_all(events, self._names, where(target_of(node.body[-1])))]
+        fused = [*node.body, note_all(events, where(target_of(node.body[-1])))]
         self.generic_visit(node)
-        return ast.If(all_floats(node.inputs, self._names, begins), fused, node.body, **begins)
+        return ast.If(all_floats(node.inputs, begins), fused, node.body, **begins)
 
     def visit_Lambda(self, node: ast.Lambda) -> ast.Lambda:
         """Record the body, and the message where the site is the lambda itself."""
@@ -148,7 +153,7 @@ class _Recording(ast.NodeTransformer):
         received = parameters(node.args)
         if receives is not None and received and not same:
             at = start_of(node.body)
-            message = recorded(ast.Name(received[0].arg, ast.Load(), **at), receives, self._names)
+            message = recorded(ast.Name(received[0].arg, ast.Load(), **at), receives)
             pair = ast.Tuple([message, node.body], ast.Load(), **at)
             node.body = ast.Subscript(pair, ast.Constant(1, **at), ast.Load(), **at)
         return node
@@ -158,7 +163,7 @@ class _Recording(ast.NodeTransformer):
         number = self._number(node)
         self.generic_visit(node)
         if number is not None:
-            node.body[:0] = note_constant(0.0, number, self._names, start_of(first_evaluated_in(node.body)))
+            node.body[:0] = self._note_constant(0.0, number, start_of(first_evaluated_in(node.body)))
         return node
 
     def visit_match_case(self, node: ast.match_case) -> ast.match_case:
@@ -166,7 +171,7 @@ class _Recording(ast.NodeTransformer):
         number = self._number(node.pattern)
         self.generic_visit(node)
         if number is not None and node.guard is not None:
-            node.guard = recorded(truth(node.guard), number, self._names)
+            node.guard = recorded(truth(node.guard), number)
         return node
 
     # Statements
@@ -175,10 +180,10 @@ class _Recording(ast.NodeTransformer):
         at = entry_of(node)
         message = message_parameter(node, in_class=self._scope[-1] == "class")
         if message is None:
-            for statement in reversed(note_constant(0.0, number, self._names, at)):
+            for statement in reversed(self._note_constant(0.0, number, at)):
                 enter(node, statement)
         else:
-            enter(node, note(message, number, self._names, at))
+            enter(node, self._note(message, number, at))
         return [node]
 
     _record_asyncfunctiondef = _record_functiondef
@@ -189,7 +194,7 @@ class _Recording(ast.NodeTransformer):
         target = node.targets[0]
         plain = len(node.targets) == 1 and isinstance(target, ast.Name) and self._rereadable()
         if plain and isinstance(target, ast.Name) and not self._publishing(node.value, number):
-            return [node, note(target.id, number, self._names, where(target))]
+            return [node, self._note(target.id, number, where(target))]
         return self._before_or_around(node, node.value, number)
 
     def _record_annassign(self, node: ast.AnnAssign, number: int) -> list[ast.stmt]:
@@ -200,7 +205,7 @@ class _Recording(ast.NodeTransformer):
 
     def _record_augassign(self, node: ast.AugAssign, number: int) -> list[ast.stmt]:
         if isinstance(node.target, ast.Name):
-            return [node, note(node.target.id, number, self._names, where(node.target))]
+            return [node, self._note(node.target.id, number, where(node.target))]
         return self._before_or_around(node, node.value, number)
 
     def _record_return(self, node: ast.Return, number: int) -> list[ast.stmt]:
@@ -215,7 +220,7 @@ class _Recording(ast.NodeTransformer):
         if isinstance(value, ast.Yield):
             if value.value is None:
                 return [*self._nothing(node, number), node]
-            value.value = recorded(value.value, number, self._names, where(value))
+            value.value = recorded(value.value, number, where(value))
             return [node]
         return self._before_or_around(node, value, number)
 
@@ -224,24 +229,24 @@ class _Recording(ast.NodeTransformer):
 
     def _record_assert(self, node: ast.Assert, number: int) -> list[ast.stmt]:
         # A failing one leaves no event: the exception tells, and its caret depends on how the test is compiled.
-        return [node, *note_constant(1.0, number, self._names, start_of(node.test))]
+        return [node, *self._note_constant(1.0, number, start_of(node.test))]
 
     def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:
         if isinstance(node.test, ast.Constant):
             return [node]  # nothing is evaluated, `while True` has no line of its own
         true = start_of(first_evaluated_in(node.body))
         false = start_of(first_evaluated_in(node.orelse) if node.orelse else node.test)
-        node.body[:0] = note_constant(1.0, number, self._names, true)
-        node.orelse[:0] = note_constant(0.0, number, self._names, false)
+        node.body[:0] = self._note_constant(1.0, number, true)
+        node.orelse[:0] = self._note_constant(0.0, number, false)
         return [node]
 
     _record_while = _record_if
 
     def _record_for(self, node: Loop, number: int) -> list[ast.stmt]:
         if isinstance(node.target, ast.Name) and self._rereadable():
-            node.body.insert(0, note(node.target.id, number, self._names, where(node.target)))
+            node.body.insert(0, self._note(node.target.id, number, where(node.target)))
         else:
-            node.iter = recorded(node.iter, number, self._names, where(node.iter))
+            node.iter = recorded(node.iter, number, where(node.iter))
         return [node]
 
     _record_asyncfor = _record_for
@@ -249,18 +254,24 @@ class _Recording(ast.NodeTransformer):
     def _record_with(self, node: Block, number: int) -> list[ast.stmt]:
         last = node.items[-1]
         if isinstance(last.optional_vars, ast.Name) and self._rereadable():
-            node.body.insert(0, note(last.optional_vars.id, number, self._names, where(last.optional_vars)))
+            node.body.insert(0, self._note(last.optional_vars.id, number, where(last.optional_vars)))
         else:
-            last.context_expr = recorded(last.context_expr, number, self._names)
+            last.context_expr = recorded(last.context_expr, number)
         return [node]
 
     _record_asyncwith = _record_with
 
     def _record_match(self, node: ast.Match, number: int) -> list[ast.stmt]:
-        node.subject = recorded(node.subject, number, self._names)
+        node.subject = recorded(node.subject, number)
         return [node]
 
     # Values
+
+    def _note(self, name: str, number: int, at: Where) -> ast.stmt:
+        return note(name, number, at, inline=self._inline)
+
+    def _note_constant(self, value: float, number: int, at: Where) -> list[ast.stmt]:
+        return note_constant(value, number, at, inline=self._inline)
 
     def _rereadable(self) -> bool:
         """Tell whether a plain name can be read again without running code: not so in a class body."""
@@ -270,9 +281,9 @@ class _Recording(ast.NodeTransformer):
         self, node: ast.Assign | ast.AugAssign | ast.Return | ast.Expr, value: ast.expr, number: int
     ) -> list[ast.stmt]:
         if isinstance(value, ast.Name) and self._rereadable() and not isinstance(node, ast.AugAssign):
-            return [note(value.id, number, self._names, where(value)), node]
+            return [self._note(value.id, number, where(value)), node]
         if isinstance(value, ast.Constant):
-            return [*note_constant(magnitude(value.value), number, self._names, start_of(value)), node]
+            return [*self._note_constant(magnitude(value.value), number, start_of(value)), node]
         publish = self._publishing(value, number)
         if publish and isinstance(value, ast.Call) and not (value.args or value.keywords):
             return [*self._nothing(node, number), node]
@@ -287,8 +298,8 @@ class _Recording(ast.NodeTransformer):
 
     def _value(self, value: ast.expr, number: int, then: Where, *, publish: bool = False) -> ast.expr:
         if publish and isinstance(value, ast.Call) and (value.args or value.keywords):
-            return reached(value, number, self._names)
-        return recorded(value, number, self._names, then)
+            return reached(value, number)
+        return recorded(value, number, then)
 
     def _nothing(self, node: ast.stmt, number: int) -> list[ast.stmt]:
-        return note_constant(0.0, number, self._names, start_of(first_evaluated_in([node])))
+        return self._note_constant(0.0, number, start_of(first_evaluated_in([node])))

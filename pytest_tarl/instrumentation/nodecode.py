@@ -11,10 +11,10 @@ from importlib.util import decode_source
 from pathlib import Path
 from types import CodeType
 
-from pytest_tarl.instrumentation import blocks, forms, fusing
+from pytest_tarl.instrumentation import blocks, constants, forms, fusing
 from pytest_tarl.instrumentation import instrument as transform
 from pytest_tarl.instrumentation.codecache import CodeCache, entry_name
-from pytest_tarl.instrumentation.instrument import Offset, instrument
+from pytest_tarl.instrumentation.instrument import Offset, compiled, instrument
 from pytest_tarl.instrumentation.sites import Position, Positions, relocate
 
 
@@ -83,7 +83,7 @@ class NodeCode:
                 inline=self._inline,
                 placed=placed,
             )
-            code: CodeType = compile(tree, str(path), "exec", dont_inherit=True)
+        code = compiled(tree, str(path))
         missing = tuple(position for position, offset in offsets.items() if offset not in placed)
         if missing:
             self.unrecorded[path] = missing
@@ -103,5 +103,7 @@ def _offsets(text: str, positions: Positions) -> dict[Position, Offset]:
 @lru_cache(maxsize=1)
 def _transform_digest() -> str:
     """Identify the transform itself, so that code of another version of it is not taken."""
-    texts = [Path(module.__file__ or "").read_bytes() for module in (forms, blocks, fusing, transform)]
+    texts = [
+        Path(module.__file__ or "").read_bytes() for module in (constants, forms, blocks, fusing, transform)
+    ]
     return hashlib.sha256(b"".join(texts)).hexdigest()

@@ -10,13 +10,14 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from types import CodeType
 from typing import Any, TypeVar
 
 import numpy as np
 
+from pytest_tarl.instrumentation.constants import bound
+from pytest_tarl.instrumentation.entries import Entries, SharedEntries
 from pytest_tarl.instrumentation.events import Pairs, joined, paired, sizes
-from pytest_tarl.instrumentation.forms import Names
-from pytest_tarl.instrumentation.instrument import HOOK
 from pytest_tarl.instrumentation.magnitude import magnitude
 from pytest_tarl.instrumentation.threads import ThreadWatch
 from pytest_tarl.instrumentation.trace import Floats, Ints, Trace
@@ -52,10 +53,10 @@ class _Buffer:
 class Recorder:
     """Record one episode.
 
-    `hook` may be called from any thread. `bind` gives instrumented code the names that it uses, by default
-    faster ones: they write to the buffer of the thread that made the recorder and are exchanged for the
-    general ones before a second thread runs its first line. The general ones are bound at once where another
-    thread is there already that may run code of the program, and with `threads=True`: for real ROS.
+    `hook` may be called from any thread. `bind` gives instrumented code a faster one and the buffer of the thread
+    that made the recorder. Before a second thread runs its first line, that buffer is made to pass on what comes
+    from other threads; at once where another thread is there already that may run code of the program, and with
+    `threads=True`: for real ROS.
     """
 
     _packing = True  # whether `reward` may take entries out of the buffer of the recorder's own thread
@@ -64,27 +65,27 @@ class Recorder:
         self._lock = threading.Lock()
         self._local = threading.local()
         self._buffers: list[_Buffer] = []
-        self._namespaces: list[tuple[dict[str, Any], Names]] = []
         self._cells: dict[Cell, int] = {}
         self._latched: list[int] = []  # at each mark, the cell that holds from there on
         self._rewards: list[int] = []  # the marks that close a step
         self._totals: list[float] = []
         self._parts: list[Mapping[str, float]] = []
         self.hook: Callable[[int, T], T] = _threaded_hook(self._entries)
-        own = self._entries()
+        self._maker, self._own = threading.get_ident(), _Buffer(Entries(self._entries))
+        self._buffers.append(self._own)
+        self._local.entries = self._own.entries
         self._single = not threads and _alone()
-        self._fast = _plain_hook(own), own
-        self._maker, self._own = threading.get_ident(), self._buffers[0]
-        self._watch = ThreadWatch(self._second_thread)
+        self._bound_hook = _plain_hook(self._own.entries) if self._single else self.hook
+        if not self._single:
+            self._share()
+        self._watch, self._watching = ThreadWatch(self._share), False
 
-    def bind(self, namespace: dict[str, Any], hook: str = HOOK) -> None:
-        """Put the globals of instrumented code into a module's namespace."""
-        names = Names(hook)
-        namespace[names.type], namespace[names.float] = type, float
-        if self._single and not self._namespaces:
+    def bind(self, code: CodeType) -> CodeType:
+        """Return instrumented code that records here."""
+        if self._single and not self._watching:
+            self._watching = True
             self._watch.begin()
-        self._namespaces.append((namespace, names))
-        self._put(namespace, names)
+        return bound(code, self._bound_hook, self._own.entries)
 
     def latch(self, cell: Cell | None) -> None:
         """Note the cell that the node has now been told; None when it is unknown again."""
@@ -139,17 +140,10 @@ class Recorder:
             entries = self._local.entries = buffer.entries
         return entries
 
-    def _put(self, namespace: dict[str, Any], names: Names) -> None:
-        if self._single:
-            namespace[names.hook], namespace[names.buffer] = self._fast
-        else:
-            namespace[names.hook], namespace[names.buffer] = self.hook, _ThreadedList(self._entries)
-
-    def _second_thread(self) -> None:
-        """Exchange the names, before the thread runs its first line."""
+    def _share(self) -> None:
+        """Have the buffer tell threads apart from now on."""
         self._single = False
-        for namespace, names in self._namespaces:
-            self._put(namespace, names)
+        self._own.entries.__class__ = SharedEntries
 
     def _columns(self, buffer: _Buffer, number: int) -> tuple[Ints, Floats, Ints, Ints, Ints]:
         """Return site, flow, cell, step and thread of every event of one thread."""
@@ -170,23 +164,6 @@ class Recorder:
         return {name: np.array([parts.get(name, 0.0) for parts in self._parts], np.float64) for name in names}
 
 
-class _ThreadedList:
-    """Stand in for the buffer when several threads record: append to that of the running one."""
-
-    __slots__ = ("_entries",)
-
-    def __init__(self, entries: Callable[[], list[Any]]) -> None:
-        self._entries = entries
-
-    def append(self, entry: object) -> None:
-        """Append half an event."""
-        self._entries().append(entry)
-
-    def extend(self, entries: tuple[object, ...]) -> None:
-        """Append several events."""
-        self._entries().extend(entries)
-
-
 def _alone() -> bool:
     """Tell whether every other thread belongs to a tool that runs tests, and so never runs the program's code."""
     return all(
@@ -200,7 +177,7 @@ def _of_tool(thread: threading.Thread) -> bool:
 
 
 def _plain_hook(entries: list[Any]) -> Hook:
-    """Make the hook of code that runs in one thread only."""
+    """Make the hook of code that starts in one thread; `entries` tells others apart once there are some."""
     size = magnitude
 
     def hook(number: int, value: Any) -> Any:
@@ -225,11 +202,11 @@ def _plain_hook(entries: list[Any]) -> Hook:
 
 def _threaded_hook(own: Callable[[], list[Any]]) -> Hook:
     """Make the hook that any thread may call."""
-    size = magnitude
+    size, extend = magnitude, list.extend
 
     def hook(number: int, value: Any) -> Any:
         flow = value if type(value) is float else size(value)
-        own().extend((number, flow))
+        extend(own(), (number, flow))
         return value
 
     return hook

@@ -12,8 +12,11 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
+from pytest_tarl.memory import available
+
 FREE = 256_000_000  # bytes that any file may unpack to
 RATIO = 100  # bytes more for each byte of the file; recordings take 2 to 20
+NEEDED = 9  # bytes of memory for each unpacked one while a recording is read (benchmarks/limits.py, case recording)
 KINDS = "biuf"  # booleans and numbers
 ENDING = ".npy"
 
@@ -22,14 +25,27 @@ class DamagedError(ValueError):
     """An archive is not what a recording writes; the argument is a half-sentence that says why."""
 
 
+class TooLargeError(ValueError):
+    """There is not the memory to read an archive; the argument is a half-sentence that says how much it takes."""
+
+
 def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
-    """Return the arrays by name. Raises DamagedError, and whatever else zip and npy headers can be damaged to."""
+    """Return the arrays by name.
+
+    Raises TooLargeError before anything is unpacked, DamagedError, and whatever else zip and npy headers can be damaged
+    to.
+    """
     with ZipFile(io.BytesIO(content)) as archive:
         members = archive.infolist()
         unpacked = sum(one.file_size for one in members)
         if unpacked > FREE + RATIO * len(content):
             raise DamagedError(
                 f"its {len(content):,} bytes would unpack to {unpacked:,}, which no recording does"
+            )
+        free = available()
+        if free is not None and NEEDED * unpacked > free:
+            raise TooLargeError(
+                f"takes about {NEEDED * unpacked / 1e9:.1f} GB of memory to read, and {free / 1e9:.1f} GB are free"
             )
         names = [one.filename for one in members]
         if len({*names}) < len(names):

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import comb, inf
-from statistics import NormalDist
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pytest_tarl.learning.bounds import Range, loss_between
+from pytest_tarl.learning.bounds import Range, detectable_loss, loss_between
 from pytest_tarl.learning.evidence import gathered
 from pytest_tarl.learning.marginal import groups, left_out, projected
 from pytest_tarl.learning.merging import aligned
@@ -24,7 +23,6 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.model import LossInterval, Region, Result, Verdict
 from pytest_tarl.sensors import Cell, Sensor
 
-POWER = 0.8  # of the smallest loss that is called detectable
 MATERIAL = 0.1  # a cell belongs to the region from this share of the largest significant difference
 
 
@@ -71,8 +69,9 @@ def compare(
     without = left_out(offline, online)
     if without:
         region, changes = _compared_without(without, offline, online, alpha, generator, sensors, region)
-    detectable = max(margin, smallest_detectable_loss(offline.total, online.total, alpha))
-    interval = LossInterval(*loss_bounds(offline.total, online.total, alpha, declared), 1 - 2 * alpha)
+    detectable = max(margin, detectable_loss(offline.total, online.total, alpha))
+    bounds = loss_bounds(offline.total, online.total, alpha, declared)
+    interval = LossInterval(*bounds, 1 - 2 * alpha, declared is not None)
     verdict = judged(Verdict("no difference", p_drift, p_loss, loss, detectable, margin, interval), alpha)
     found = region if verdict.result != "no difference" else Region()
     return Difference(verdict, found, changes)
@@ -99,18 +98,6 @@ def loss_bounds(
     """Return the losses that are neither too small nor too large at `risk`."""
     bound = loss_between(offline.tolist(), online.tolist(), 1.0 - risk, declared)
     return bound.low, bound.high
-
-
-def smallest_detectable_loss(offline: Floats, online: Floats, alpha: float) -> float:
-    """Return the loss that a test of this size would have seen four times in five, by normal approximation.
-
-    Infinite where so few episodes can be shuffled in so few ways that no loss is significant.
-    """
-    if alpha * comb(offline.size + online.size, online.size) <= 1:
-        return inf
-    spread = np.sqrt(_variance(offline) / offline.size + _variance(online) / online.size)
-    normal = NormalDist()
-    return float((normal.inv_cdf(1 - alpha) + normal.inv_cdf(POWER)) * spread)
 
 
 def _compared_without(
@@ -204,7 +191,3 @@ def paper_region(offline: Floats, online: Floats) -> Ints:
     """
     gap = np.abs(np.nansum(online - offline, axis=1))
     return np.flatnonzero(gap >= 0.5 * gap.max()) if gap.max(initial=0.0) > 0 else np.empty(0, dtype=np.int64)
-
-
-def _variance(values: NDArray[np.float64]) -> float:
-    return float(values.var(ddof=1)) if values.size > 1 else 0.0

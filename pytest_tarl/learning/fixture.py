@@ -26,7 +26,7 @@ import numpy as np
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.files import advice_on, check_writable, write_atomically
 from pytest_tarl.formulas.signals import Signal
-from pytest_tarl.learning.archive import DamagedError, numbers, read_arrays
+from pytest_tarl.learning.archive import DamagedError, TooLargeError, numbers, read_arrays
 from pytest_tarl.learning.packing import (
     narrowed,
     packed_chain,
@@ -128,6 +128,11 @@ def load(path: Path) -> Fixture:
         header = json.loads(numbers(columns, HEADER, None).tobytes().decode())
         del columns[HEADER]
         found = header["format"]
+    except TooLargeError as problem:
+        raise FixtureError(
+            f"The utility fixture {path} {problem}.",
+            "Read it where there is more memory, or record fewer episodes with --tarl-episodes.",
+        ) from problem
     except Exception as problem:  # zip, npy and JSON can be damaged in more ways than they list
         raise FixtureError(
             f"The utility fixture {path} is damaged or is not one{_why(problem)}.",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 MOST = 1024  # moments that are kept
@@ -15,14 +16,15 @@ class Moments:
     stride: int = 1
     times: list[float] = field(default_factory=list)
 
-    def add(self, number: int, time: float) -> None:
-        """Note when a mission began; they come in the order of their numbers."""
-        if number % self.stride:
-            return
-        self.times.append(time)
-        if len(self.times) == MOST:
-            self.times = self.times[::2]
-            self.stride *= 2
+    def add(self, first: int, times: Sequence[float]) -> None:
+        """Note when missions began, the first of which has that number; they come in the order of their numbers."""
+        number = first + -first % self.stride
+        while number < first + len(times):
+            self.times.append(times[number - first])
+            if len(self.times) == MOST:
+                self.times = self.times[::2]
+                self.stride *= 2
+            number += self.stride - number % self.stride
 
     def at(self, number: int) -> float | None:
         """Return when the latest kept mission up to this one began."""

@@ -62,8 +62,7 @@ class Monitor:
     def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
         """Take missions over the scale's cells and one more for all others, the `new` ones; total NaN: unknown."""
         bins = binned(self.scale, sample)
-        for number, began in enumerate(time.tolist(), self.counts.missions):
-            self.moments.add(number, began)
+        self.moments.add(self.counts.missions, time.tolist())
         for begin in range(0, sample.episodes, conformal.TOGETHER):
             some = slice(begin, begin + conformal.TOGETHER)
             self._judge(sample.passed[some], sample.total[some], bins[some])

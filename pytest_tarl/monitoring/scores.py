@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +16,7 @@ from pytest_tarl.errors import FixtureError
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.packing import represented_chain
 from pytest_tarl.learning.residuals import Model, fitted, in_fit, residuals
-from pytest_tarl.learning.statistics import summed, total_reward
+from pytest_tarl.learning.statistics import summed, total_rewards
 from pytest_tarl.learning.tables import END, Chain, Floats, Ints, Sample, sum_by
 from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.monitoring.conformal import BINS, edges
@@ -102,8 +101,8 @@ def binned(scale: Scale, sample: Sample) -> Ints:
 def _binned(scale: Scale, values: Floats) -> Ints:
     found = np.full(values.shape, -1, np.int64)
     for column in np.flatnonzero(~np.isnan(values).all(axis=0)).tolist():
-        has = ~np.isnan(values[:, column])
-        found[has, column] = np.searchsorted(scale.edges[column], values[has, column], side="right")
+        found[:, column] = scale.edges[column].searchsorted(values[:, column], side="right")
+    found[np.isnan(values)] = -1
     return found
 
 
@@ -162,9 +161,9 @@ def sampled(scale: Scale, missions: Missions) -> Sample:
 
 
 def _totals(missions: Missions) -> Floats:
-    ends = np.searchsorted(missions.mission, np.arange(missions.count + 1)).tolist()
+    ends = np.searchsorted(missions.mission, np.arange(missions.count + 1))
     size = sum_by(missions.mission, np.abs(missions.reward), missions.count)
-    total = [total_reward(missions.reward[a:b]) for a, b in pairwise(ends)]
+    total = total_rewards(missions.reward, ends)
     return np.where((np.diff(ends) > 0) & np.isfinite(size), total, np.nan)
 
 

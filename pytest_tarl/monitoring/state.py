@@ -26,9 +26,9 @@ from pytest_tarl.errors import MonitorError
 from pytest_tarl.files import write_atomically
 from pytest_tarl.learning.archive import read_arrays
 from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.monitoring.mission import Progress
 from pytest_tarl.monitoring.moments import Moments
 from pytest_tarl.monitoring.monitor import Counts, Monitor, begun
-from pytest_tarl.monitoring.reading import Progress
 from pytest_tarl.monitoring.restarts import Processes
 
 FORMAT = 1

@@ -16,8 +16,10 @@ from pytest_tarl.errors import FixtureError
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.fixture import load as load_fixture
 from pytest_tarl.monitoring import state
+from pytest_tarl.monitoring.assembling import Expected
+from pytest_tarl.monitoring.mission import Mission, Progress, columns, latest
 from pytest_tarl.monitoring.monitor import PORTION, Monitor
-from pytest_tarl.monitoring.reading import Expected, LogReader, Mission, Progress, columns
+from pytest_tarl.monitoring.reading import LogReader
 from pytest_tarl.monitoring.scores import Missions
 from pytest_tarl.monitoring.status import Status, status
 from pytest_tarl.sensors import binning_digest
@@ -47,7 +49,7 @@ class Watch:
         saved, fresh = monotonic(), False
         while portion := [*islice(coming, PORTION)]:
             self.monitor.observe(joined(portion))
-            self.known.update({one.progress.log: one.progress for one in portion})
+            self.known.update(latest(portion))
             fresh = True
             if monotonic() - saved > SAVED:
                 self.save()
@@ -102,12 +104,11 @@ def expectation(fixture: Fixture, monitor: Monitor) -> Expected:
 
 def joined(missions: Sequence[Mission]) -> Missions:
     """Return missions as columns."""
-    cell, reward = columns(missions)
-    steps = [sum(len(one.reward) for one in mission.steps) // reward.itemsize for mission in missions]
+    mission, cell, reward = columns(missions)
     return Missions(
         passed=np.array([one.passed for one in missions]),
         time=np.array([one.time for one in missions]),
-        mission=np.repeat(np.arange(len(missions)), steps),
+        mission=mission,
         cell=cell,
         reward=reward,
         new=tuple(cell for one in missions for cell in one.new),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,9 +13,9 @@ from pytest_tarl.errors import AnalysisError, LogError
 from pytest_tarl.instrumentation.importhook import NodeImports
 from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.learning.fixture import Fixture, load
-from pytest_tarl.observing.frames import LogFile
 from pytest_tarl.observing.observer import Observer
 from pytest_tarl.observing.watching import Topics, watched
+from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.realros.choice import libraries
 from pytest_tarl.ros.argv import command_line
 from pytest_tarl.sensors import binning_digest
@@ -35,6 +36,8 @@ class Order:
     mission: str = ""
     idle: float | None = None
     step: float | None = None
+    log_size: int = 0  # bytes at which the log is set aside; 0 for never
+    log_keep: int = 0  # how many that were set aside stay; 0 for all
 
 
 def observe(order: Order) -> str:
@@ -56,8 +59,9 @@ def observe(order: Order) -> str:
     _warn_of_mute_sensors(fixture)
     observer = Observer(
         fixture.sensors,
-        LogFile(order.log),
+        order.log,
         about,
+        rotation=Rotation(order.log_size, order.log_keep),
         idle=order.idle,
         signals=[signal for signal in fixture.signals if signal.topic is not None],
         following=fixture.sample.judgements is not None,
@@ -79,7 +83,7 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
     imports = NodeImports(Path.cwd(), positions, stream.hook, publishes=sites.publishes, bind=stream.bind)
     if not order.mission and order.idle is None:
         observer.begin()
-    with imports, command_line([str(order.node), *order.argv]):
+    with imports, _collected_before(), command_line([str(order.node), *order.argv]):
         try:
             imports.run(order.node.resolve(), order.entry)
         except SystemExit as ended:
@@ -93,15 +97,28 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
         observer.end(passed=True)
 
 
+@contextmanager
+def _collected_before() -> Iterator[None]:
+    """Keep what was imported and analysed so far out of the garbage collections that the node pays for."""
+    gc.collect()
+    gc.freeze()
+    try:
+        yield
+    finally:
+        gc.unfreeze()
+
+
 def _check(order: Order) -> None:
     if not order.node.is_file():
-        raise LogError(f"There is no file {order.node}: name the node's script.")
+        raise LogError(f"{order.node}: no such file. Give the path of the node's script.")
     if order.mission and order.idle is not None:
-        raise LogError("--mission-topic and --idle are two ways to tell missions apart: give one of them.")
+        raise LogError(
+            "--mission-topic and --idle cannot be used together: both define when a mission begins and ends."
+        )
     if bool(order.reward) == (order.step is not None):
         raise LogError(
-            "Give --reward-topic where the monitor publishes its reward, or --step SECONDS where the marker's `judge` "
-            "is to say it when the log is read; one of them."
+            "Give either --reward-topic, on which the monitor publishes its reward, or --step SECONDS, if the marker's "
+            "`judge` computes the reward when the log is read."
         )
 
 
@@ -118,8 +135,8 @@ def _fixture_of(node: Path) -> Path:
     if len(found) != 1:
         listed = ", ".join(str(path.relative_to(Path.cwd())) for path in found) or "none"
         raise LogError(
-            f"The sensors come from the test's utility fixture; of those below {Path.cwd()} that name {node.name} "
-            f"there is {listed}: choose one with --fixture."
+            f"The sensors are read from the test's recording. Recordings below {Path.cwd()} that name {node.name}: "
+            f"{listed}. Choose one with --fixture."
         )
     return found[0]
 
@@ -142,7 +159,7 @@ def _warn_of_mute_sensors(fixture: Fixture) -> None:
     mute = [sensor.name for sensor in fixture.sensors if sensor.topic is None]
     if mute:
         raise LogError(
-            f"Sensor {mute[0]!r} has no topic: the test tells it with tarl.observe, on a robot nobody does. Give it "
+            f"Sensor {mute[0]!r} has no topic. In a test, tarl.observe sets it; on a robot, nothing does. Give it "
             "a topic and a field in the marker and record again."
         )
 

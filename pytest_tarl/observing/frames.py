@@ -11,6 +11,7 @@ FORMAT history:
 from __future__ import annotations
 
 import fcntl
+import glob
 import json
 import os
 import struct
@@ -25,7 +26,8 @@ FORMAT = 1
 MAGIC = b"tarl log 1\n"
 _HEAD = struct.Struct("<II")
 HEAD = _HEAD.size  # bytes before a record's payload
-_LARGEST = 1 << 26  # bytes of a record; a longer one is a damaged length
+unpack_head = _HEAD.unpack_from  # length and checksum of the payload, from a buffer and an offset
+LARGEST = 1 << 26  # bytes of a record; a longer one is a damaged length
 
 Record = dict[str, Any]
 
@@ -35,6 +37,10 @@ class LogFile:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self._open()
+
+    def _open(self) -> None:
+        path = self.path
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._file: BinaryIO = path.open("a+b")
@@ -59,6 +65,24 @@ class LogFile:
             self._file.write(MAGIC)
             self.sync()
 
+    @property
+    def size(self) -> int:
+        """Return how many bytes the log holds."""
+        return self._file.tell()
+
+    def set_aside(self, keep: int = 0) -> None:
+        """Give the file the next free number (`missions.log.7`) and go on in a new one of the old name.
+
+        With `keep`, only so many of those that were set aside stay; the oldest goes first.
+        """
+        self.close()
+        older = set_aside(self.path)
+        last = int(older[-1].name.rpartition(".")[2]) if older else 0
+        self.path.rename(self.path.with_name(f"{self.path.name}.{last + 1}"))
+        for old in older[: len(older) + 1 - keep] if keep else ():
+            old.unlink(missing_ok=True)
+        self._open()
+
     def append(self, record: Record) -> None:
         """Append a record; `sync` makes it last."""
         self._file.write(encoded(record))
@@ -78,6 +102,12 @@ def encoded(record: Record) -> bytes:
     """Return a record as it stands in the file."""
     payload = zlib.compress(json.dumps(record, separators=(",", ":")).encode(), 1)
     return _HEAD.pack(len(payload), zlib.crc32(payload)) + payload
+
+
+def set_aside(path: Path) -> list[Path]:
+    """Return the files that a log was set aside in when it grew too long, the oldest first."""
+    found = [one for one in path.parent.glob(f"{glob.escape(path.name)}.*") if one.suffix[1:].isdecimal()]
+    return sorted(found, key=lambda one: int(one.suffix[1:]))
 
 
 def records(path: Path) -> Iterator[Record]:
@@ -119,7 +149,7 @@ def next_record(file: BinaryIO) -> bytes | None:
     if len(head) < HEAD:
         return None
     length, checksum = _HEAD.unpack(head)
-    if length > _LARGEST:
+    if length > LARGEST:
         return None
     payload = file.read(length)
     return payload if len(payload) == length and zlib.crc32(payload) == checksum else None

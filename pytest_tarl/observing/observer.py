@@ -1,50 +1,56 @@
-"""What is watched: sensors latched when their message comes, rewards, missions; a thread that writes it down."""
+"""What is watched: sensors latched when their message comes, rewards, missions; a thread that passes it on."""
 
 from __future__ import annotations
 
-import base64
 import threading
 from collections import deque
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from time import monotonic, time
 from typing import Any
 
-import numpy as np
-
 from pytest_tarl.errors import TarlError
 from pytest_tarl.formulas.signals import Signal, signal_value
-from pytest_tarl.instrumentation.trace import Floats, Ints
-from pytest_tarl.observing.frames import FORMAT, LogFile, Record
-from pytest_tarl.observing.stream import Chunk, Stream
+from pytest_tarl.observing.frames import FORMAT
+from pytest_tarl.observing.outlet import Outlet
+from pytest_tarl.observing.stream import Stream
+from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.sensors import Cell, Sensor, reading
 
-PERIOD = (
-    0.25  # seconds between two writings: what a power cut can cost at most is this and the writing itself
-)
+PERIOD = 0.02  # seconds between two cuts at least: few events each, so that a cut is short
+PATIENCE = 0.1  # seconds after which a cut is made though no step was closed
 OUTCOMES = {"succeeded": True, "failed": False}
 
 
+NEVER = Rotation()
+
+
 class Observer:
-    """One node under observation. Messages may come from any thread."""
+    """One node under observation. Messages may come from any thread.
+
+    What takes time, from columns to the disk, is done by a process of its own. Raises LogError where it cannot write.
+    """
 
     def __init__(
         self,
         sensors: Sequence[Sensor],
-        log: LogFile,
+        log: Path,
         about: Mapping[str, Any],
         *,
+        rotation: Rotation = NEVER,
         idle: float | None = None,
         signals: Sequence[Signal] = (),
         following: bool = False,
     ) -> None:
         self.stream = Stream()
         self.sensors = tuple(sensors)
+        self._names = tuple(sensor.name for sensor in self.sensors)
         self.signals = tuple(signals)  # that formulas name, and that messages hold
         self._following = following  # whether there are formulas, for which every change is written down
         self._changes: deque[list[Any]] = deque()  # [seconds, name, value]; any thread appends
         self._times: list[float] = []  # when steps were closed
         self._begun = monotonic()
-        self._log = log
+        self._outlet = Outlet(log, {"format": FORMAT, **about}, rotation)
         self._idle = idle
         self._bins: dict[str, int | None] = {}
         self._values: dict[str, Any] = {}
@@ -55,52 +61,53 @@ class Observer:
         self.running = False  # whether a mission runs
         self.problem = ""  # the first thing that went wrong in here: nothing of it may reach the node
         self._lock = threading.RLock()  # order of records
-        self._over = threading.Event()
+        self._over = False
+        self._wake = threading.Lock()  # taken while the thread sleeps; a step that is closed gives it back
+        self._wake.acquire()
+        self._cut_at = self._begun
         self._thread = threading.Thread(target=self._write, name="tarl-observer", daemon=True)
-        self._log.append({"kind": "start", "format": FORMAT, "time": time(), **about})
-        self._log.sync()
+        self._outlet.put("start", time())
         self._thread.start()
 
     def told(self, sensor: Sensor, message: Any) -> None:
         """Latch a sensor: its message is about to reach the node."""
         try:
-            self._latch(sensor, reading(message, sensor.field or ""))
+            value = reading(message, sensor.field or "")
+            self._values[sensor.name] = value
+            if self._following and not sensor.categories:
+                self._note(sensor.name, value)
+            bin_ = sensor.bin(value)
+            if self._bins.get(sensor.name, self) != bin_:
+                self._bins[sensor.name] = bin_
+                self.stream.latch(self._cell())
         except (TarlError, AttributeError, LookupError, TypeError, ValueError) as problem:
             self.problem = self.problem or f"Sensor {sensor.name!r}: {problem}"
-        self.stream.relieve()
 
     def signalled(self, signal: Signal, message: Any) -> None:
         """Note the value of a signal."""
         try:
-            self._note(signal.name, reading(message, signal.field or ""))
+            if self._following:
+                self._note(signal.name, reading(message, signal.field or ""))
         except (TarlError, AttributeError, LookupError, TypeError, ValueError) as problem:
             self.problem = self.problem or f"Signal {signal.name!r}: {problem}"
 
     def _note(self, name: str, value: Any) -> None:
-        if not self._following:
-            return
         number = signal_value(name, value)
         if self._numbers.get(name) != number:
             self._numbers[name] = number
             if self.running:
                 self._changes.append([monotonic() - self._begun, name, number])
 
-    def _latch(self, sensor: Sensor, value: Any) -> None:
-        self._values[sensor.name] = value
-        if not sensor.categories:
-            self._note(sensor.name, value)
-        bin_ = sensor.bin(value)
-        if self._bins.get(sensor.name, self) == bin_:
-            return
-        self._bins[sensor.name] = bin_
-        self.stream.latch(self._cell())
-
     def step(self, reward: float) -> None:
         """Close a step with its reward; NaN where the test's own `judge` is to say it later."""
         with self._lock:
-            self._times.append(monotonic() - self._begun)
-            self._readings.append([_plain(self._values.get(sensor.name)) for sensor in self.sensors])
+            now = monotonic()
+            self._times.append(now - self._begun)
+            self._readings.append([*map(self._values.get, self._names)])
             self.stream.reward(reward)
+            if now - self._cut_at > PERIOD and self._wake.locked():
+                self._cut_at = now
+                self._wake.release()  # now, when the cycle is over: not when the next one begins
 
     def begin(self) -> None:
         """Begin a mission; one that still runs has ended, well as far as anybody knows."""
@@ -113,7 +120,7 @@ class Observer:
             self._begun = monotonic()
             self._before, self._numbers = self._before | self._numbers, {}
             self.running = True
-            self._log.append({"kind": "mission", "time": time()})
+            self._outlet.put("mission", time())
 
     def end(self, *, passed: bool, failure: str = "") -> None:
         """End the mission, if there is one."""
@@ -121,11 +128,11 @@ class Observer:
             if not self.running:
                 return
             self._flush()
-            end = {"kind": "end", "passed": passed, "failure": failure, "time": time()}
+            end = {"passed": passed, "failure": failure, "time": time()}
             if self._following:
                 silent = [[0.0, name, one] for name, one in self._before.items() if name not in self._numbers]
                 end |= {"lasted": monotonic() - self._begun, "changes": [*self._taken(), *silent]}
-            self._log.append(end)
+            self._outlet.put("end", end)
             self.running = False
 
     def active(self) -> None:
@@ -143,11 +150,15 @@ class Observer:
 
     def close(self) -> None:
         """Write what is left."""
-        self._over.set()
+        self._over = True
+        with self._lock:
+            if self._wake.locked():
+                self._wake.release()
         self._thread.join()
         with self._lock:
             self._flush()
-            self._log.close()
+            self._outlet.close()
+            self.problem = self.problem or self._outlet.problem
 
     def _cell(self) -> Cell | None:
         bins = [self._bins.get(sensor.name) for sensor in self.sensors]
@@ -155,21 +166,28 @@ class Observer:
         return tuple(known) if len(known) == len(bins) else None
 
     def _write(self) -> None:
-        while not self._over.wait(PERIOD):
+        while not self._over:
+            self._wake.acquire(timeout=PATIENCE)
             with self._lock:
                 if self._idle is not None and self.running and monotonic() - self._active > self._idle:
                     self.end(passed=True)
-                self._flush()
-            self._log.sync()
+                if self._outlet.full:
+                    self.stream.relieve()
+                else:
+                    self._flush()
+            self._outlet.pump()
 
     def _flush(self) -> None:
-        chunk = self.stream.drain()
-        if self.running and not chunk.empty:
-            steps = chunk.reward.size
+        cut = self.stream.cut(self._outlet.full)
+        if self.running and not cut.empty:
+            steps = len(cut.rewards)
             readings, self._readings = self._readings[:steps], self._readings[steps:]
             times, self._times = self._times[:steps], self._times[steps:]
-            followed = {"times": times, "changes": self._taken()} if self._following else {}
-            self._log.append(_steps(chunk, readings, self.stream.dropped) | followed)
+            followed = (times, self._taken()) if self._following else None
+            readings = [[*map(_plain, one)] for one in readings]
+            self._outlet.put("steps", tuple(cut), readings, self.stream.dropped, followed)
+        elif cut.cells:
+            self._outlet.put("cells", cut.cells)
 
     def _taken(self) -> list[list[Any]]:
         """Return the changes of signals that are not written yet."""
@@ -179,34 +197,13 @@ class Observer:
         return taken
 
 
-def _steps(chunk: Chunk, readings: list[list[Any]], dropped: int) -> Record:
-    return {
-        "kind": "steps",
-        "cells": [list(cell) for cell in chunk.cells],
-        "site": packed(chunk.site),
-        "flow": packed(chunk.flow),
-        "cell": packed(chunk.cell),
-        "step": packed(chunk.step),
-        "thread": packed(chunk.thread),
-        "step_cell": packed(chunk.step_cell),
-        "reward": packed(chunk.reward),
-        "readings": readings,
-        "dropped": dropped,
-    }
-
-
-def packed(column: Ints | Floats) -> str:
-    """Return a column as text: base64 of its little-endian bytes."""
-    little = column.astype(column.dtype.newbyteorder("<"))
-    return base64.b64encode(little.tobytes()).decode()
-
-
-def unpacked(text: str, kind: str) -> Any:
-    """Return a column from its text; `kind` is numpy's name of its type."""
-    return np.frombuffer(base64.b64decode(text), np.dtype(kind).newbyteorder("<")).astype(kind)
-
-
 def _plain(value: Any) -> Any:
-    if value is None or isinstance(value, bool | int | str):
+    kind = type(value)
+    if value is None or kind is float or kind is int or kind is bool or kind is str:
         return value
-    return float(value)
+    if isinstance(value, str):
+        return str(value)
+    try:
+        return int(value) if isinstance(value, int) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        return None  # told already: a sensor that reads no number has no bin

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -38,51 +40,91 @@ class Chunk:
         return not self.site.size and not self.reward.size
 
 
+class Cut(NamedTuple):
+    """What was recorded since the last cut, as plain values that `marshal` writes; `chunk` makes columns of it."""
+
+    cells: list[Cell]  # those that are new
+    latched: list[int]  # at each mark, the cell that holds from there on
+    rewards: list[int]  # the marks that close a step
+    totals: list[float]
+    threads: list[tuple[list[Any], list[int]]]  # of each thread, its entries and how many it had at each mark
+
+    @property
+    def empty(self) -> bool:
+        """Tell whether there is nothing to write."""
+        return not self.rewards and not any(entries for entries, _ in self.threads)
+
+
 class Stream(Recorder):
-    """Record without end: `drain` takes what is there."""
+    """Record without end: `cut` takes what is there."""
 
     _packing = False  # from any thread, so no other may
 
     def __init__(self) -> None:
         super().__init__(threads=True)
         self.dropped = 0
+        self._told = 0  # cells that earlier cuts hold
 
-    def drain(self) -> Chunk:
-        """Return what was recorded since the last time, and forget it. From any thread."""
+    def cut(self, drop: bool = False) -> Cut:
+        """Return what was recorded since the last time, and forget it. From any thread; slices of lists, no more.
+
+        With `drop` the events are left out and counted, for lack of room: rewards and cells are kept.
+        """
+        if drop:
+            self.relieve(0)
         with self._lock:
             latched, rewards, totals = self._latched, self._rewards, self._totals
             self._latched, self._rewards, self._totals, self._parts = latched[-1:], [], [], []
-            cut = []
+            threads = []
             for buffer in self._buffers:
                 entries = _cut(buffer.entries)
-                cut.append((entries, [min(length, len(entries)) for length in buffer.lengths]))
+                threads.append((entries, [min(length, len(entries)) for length in buffer.lengths]))
                 buffer.lengths = [0] * len(self._latched)
-            cells = tuple(self._cells)
-        columns = [_columns(entries, lengths, latched, rewards) for entries, lengths in cut]
-        threads = [np.full(len(column[0]), number, np.int32) for number, column in enumerate(columns)]
-        site, flow, cell, step = (np.concatenate(part) for part in zip(*columns, strict=True))
-        thread = np.concatenate(threads)
-        order = np.lexsort((thread, step))
-        step_cell = np.array(latched, np.int32)[rewards]
-        return Chunk(
-            cells,
-            site[order],
-            flow[order],
-            cell[order],
-            step[order],
-            thread[order],
-            step_cell,
-            np.array(totals, np.float64),
-        )
+            cells = [*islice(self._cells, self._told, None)]
+            self._told += len(cells)
+        return Cut(cells, latched, rewards, totals, threads)
 
-    def relieve(self) -> None:
-        """Drop events when so many wait that memory would run out; `dropped` counts them."""
+    def relieve(self, most: int | None = None) -> None:
+        """Drop the events of a thread when more than `most` halves wait (MOST_ENTRIES); `dropped` counts them."""
+        most = MOST_ENTRIES if most is None else most
         for buffer in tuple(self._buffers):
-            if len(buffer.entries) > MOST_ENTRIES:
+            if len(buffer.entries) > most:
                 with self._lock:
                     lost = _cut(buffer.entries)
                     buffer.lengths = [0] * len(buffer.lengths)
                 self.dropped += len(lost) // 2
+
+
+def chunk(cut: Cut, known: list[Cell]) -> Chunk:
+    """Return a cut as columns; its new cells are appended to those that are known."""
+    known += map(tuple, cut.cells)
+    columns = [_columns(entries, lengths, cut.latched, cut.rewards) for entries, lengths in cut.threads]
+    threads = [np.full(len(column[0]), number, np.int32) for number, column in enumerate(columns)]
+    site, flow, cell, step = (np.concatenate(part) for part in zip(*columns, strict=True))
+    thread = np.concatenate(threads)
+    step_cell = np.array(cut.latched, np.int32)[cut.rewards]
+    rewards = np.array(cut.totals, np.float64)
+    return _in_order(Chunk(tuple(known), site, flow, cell, step, thread, step_cell, rewards))
+
+
+def joined(chunks: Sequence[Chunk]) -> Chunk:
+    """Return several chunks in a row, at least one, as one."""
+    if len(chunks) == 1:
+        return chunks[0]
+    before = np.cumsum([0, *(one.reward.size for one in chunks[:-1])])
+    steps = [one.step + first for one, first in zip(chunks, before.tolist(), strict=True)]
+    columns = {
+        name: np.concatenate([getattr(one, name) for one in chunks])
+        for name in ("site", "flow", "cell", "thread", "step_cell", "reward")
+    }
+    return _in_order(Chunk(cells=chunks[-1].cells, step=np.concatenate(steps), **columns))
+
+
+def _in_order(one: Chunk) -> Chunk:
+    """Return a chunk by steps, and within a step by threads."""
+    order = np.lexsort((one.thread, one.step))
+    events = {name: getattr(one, name)[order] for name in ("site", "flow", "cell", "step", "thread")}
+    return replace(one, **events)
 
 
 def _cut(entries: list[Any]) -> list[Any]:

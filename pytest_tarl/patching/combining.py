@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from pytest_tarl.errors import RepairError
@@ -28,6 +28,14 @@ class Conflict:
         )
 
 
+CONSTANT = "constant"  # the fact of the header that names what a repair changes, where that is defined
+
+
+def constants(patch: Patch) -> list[str]:
+    """Return the constants that a patch changes, as `file:line name`."""
+    return list(dict.fromkeys(patch.told(CONSTANT)))
+
+
 def conflicts(patches: Sequence[Patch]) -> list[Conflict]:
     """Return where patches that were made for the same text do not go together."""
     found: list[Conflict] = []
@@ -41,6 +49,8 @@ def conflicts(patches: Sequence[Patch]) -> list[Conflict]:
                 ]
                 lines = dict.fromkeys(max(mine.start, other.start) + 1 for mine, other in clashing)
                 found += [Conflict(file.name, line, first, second) for line in lines]
+            if not any({one.first, one.second} == {first, second} for one in found):
+                found += _of_one_constant(first, second)
     return found
 
 
@@ -84,6 +94,14 @@ def combined_diff(patches: Sequence[Patch], originals: Mapping[str, bytes]) -> s
 def same_change(first: Patch, second: Patch) -> bool:
     """Tell whether two patches do the same."""
     return first.files == second.files
+
+
+def _of_one_constant(first: Patch, second: Patch) -> Iterator[Conflict]:
+    """Yield the constants that both change, one at its use under a condition and one where it is defined, say."""
+    for told in constants(first):
+        file, _, line = told.partition(" ")[0].rpartition(":")
+        if told in constants(second) and line.isdecimal() and first.base == second.base:
+            yield Conflict(file, int(line), first, second)
 
 
 def _in_order(wanted: Sequence[Replacement]) -> list[Replacement]:

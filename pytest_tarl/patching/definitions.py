@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
 PARAMETER_CALLS = ("declare_parameter", "get_param", "get_parameter_or", "cached_param")
+SEVERAL = "declare_parameters"  # takes a namespace and a list of names with their defaults
 _FOREIGN = {".git", ".tarl", ".venv", "venv", "build", "install", "log", "node_modules", "__pycache__"}
 _MOST_FILES = 400  # configuration files of a package that are looked at
 _NUMBER = r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|true|false|True|False)"
@@ -57,7 +58,10 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
     source = document(span.path, analysis.sources[span.path])
     node = source.at(span)
     around = [node, *source.ancestors(node)] if node is not None else []
+    entry = next((each for each in around if isinstance(each, ast.Tuple | ast.List)), None)
     for each in around:
+        if isinstance(each, ast.Call) and ast.unparse(each.func).rpartition(".")[2] == SEVERAL:
+            return _entry_name(each, entry)
         if isinstance(each, ast.Call) and ast.unparse(each.func).rpartition(".")[2] in PARAMETER_CALLS:
             first = each.args[0] if each.args else None
             named = isinstance(first, ast.Constant) and isinstance(first.value, str)
@@ -137,13 +141,29 @@ def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
     return list(found)
 
 
+def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:
+    """Return the parameter that an entry of `declare_parameters` declares, with its namespace."""
+    elements = entry.elts if isinstance(entry, ast.Tuple | ast.List) else []
+    namespace = [*call.args[:1], *(one.value for one in call.keywords if one.arg == "namespace")]
+    texts = [
+        one.value
+        for one in (*namespace[:1], *elements[:1])
+        if isinstance(one, ast.Constant) and isinstance(one.value, str)
+    ]
+    return ".".join(text for text in texts if text) if len(texts) > 1 else ""
+
+
 def _name(source: Document, node: ast.expr) -> str:
-    """Return what a literal is called: the target of its assignment, the argument it is the default of."""
+    """Return what a literal is called: the target of its assignment, or the argument it is the default of."""
+    key, inner = "", node
     for each in source.ancestors(node):
+        if isinstance(each, ast.Dict | ast.List | ast.Tuple):
+            key, inner = _key(source, each, inner) + key, each
+            continue
         if isinstance(each, ast.Assign) and len(each.targets) == 1:
-            return source.source(each.targets[0])
+            return source.source(each.targets[0]) + key
         if isinstance(each, ast.AnnAssign):
-            return source.source(each.target)
+            return source.source(each.target) + key
         if isinstance(each, ast.arguments):
             named = [*each.posonlyargs, *each.args]
             pairs = zip(named[len(named) - len(each.defaults) :], each.defaults, strict=True)
@@ -152,6 +172,14 @@ def _name(source: Document, node: ast.expr) -> str:
         if isinstance(each, ast.stmt):
             break
     return ""
+
+
+def _key(source: Document, table: ast.Dict | ast.List | ast.Tuple, entry: ast.expr) -> str:
+    """Return how an entry of a table is asked for: `["hold"]`, `[2]`."""
+    if isinstance(table, ast.Dict):
+        keys = [key for key, value in zip(table.keys, table.values, strict=True) if value is entry and key]
+        return f"[{source.source(keys[0])}]" if keys else ""
+    return f"[{table.elts.index(entry)}]"
 
 
 def _kind(path: Path) -> str:

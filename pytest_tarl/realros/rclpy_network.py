@@ -12,6 +12,7 @@ from typing import Any
 
 from pytest_tarl.errors import RecordingError
 from pytest_tarl.realros.lockstep import PATIENCE, WireScheduler
+from pytest_tarl.realros.rclpy_arrivals import silent
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Task
 
@@ -126,11 +127,15 @@ class RclpyNetwork:
         self.wake_listening()
 
     def joined(self, subscription: Any) -> None:
-        """Note that what publishers keep for late comers is under way to a new subscription."""
+        """Note that what publishers keep for late comers is under way to a new subscription.
+
+        All of it is sent before this returns: taken one by one meanwhile, a short queue would hold older messages.
+        """
         if subscription.qos_profile.durability.name != "TRANSIENT_LOCAL":
             return
         for publisher, kept in self.kept.items():
             if subscription in self.matched(publisher):
+                publisher.wait_for_all_acked(self.rclpy.duration.Duration(seconds=PATIENCE))
                 most = capacity(subscription.qos_profile)
                 self.expected[subscription] = min(self.expected[subscription] + kept, most)
 
@@ -140,12 +145,17 @@ class RclpyNetwork:
             self.expected[subscription] -= 1
 
     def under_way(self, executor: Any) -> bool:
-        """Tell whether something was sent to a node of the executor that it could take and has not found yet."""
-        return any(
-            self.expected[subscription] > 0 and executor.can_execute(subscription)
+        """Tell whether something was sent to a node of the executor that it could take and that is not here yet.
+
+        It must not choose among what is here before: which of two topics comes first would be a matter of threads.
+        """
+        expecting = [
+            subscription
             for node in executor.get_nodes()
             for subscription in node.subscriptions
-        )
+            if self.expected[subscription] > 0 and executor.can_execute(subscription)
+        ]
+        return bool(expecting and silent(self.rclpy, executor.context, expecting))
 
     def take_for_world(self) -> tuple[str, Any] | None:
         """Return topic and message of what nodes have sent first; None when nothing is under way."""

@@ -163,12 +163,12 @@ def _patch_executors(network: RclpyNetwork) -> None:
         deadline = REAL_MONOTONIC() + PATIENCE
         while True:
             _raise_if_ended(self, task, executors)
+            if network.under_way(self) and REAL_MONOTONIC() < deadline:
+                pause()
+                continue
             try:
                 return look(self, 0, nodes, condition)
             except executors.TimeoutException:
-                if network.under_way(self) and REAL_MONOTONIC() < deadline:
-                    pause()
-                    continue
                 if until is not None and clock.time >= until:
                     raise
             network.listening.append(task)

@@ -9,7 +9,7 @@ from statistics import fmean
 from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
-from pytest_tarl.repairing.between import Between, further
+from pytest_tarl.repairing.between import WEAK, Between, further
 from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.repairing.neighbours import NOTHING_BESIDE, Beside, beside
@@ -50,6 +50,9 @@ class Examiner:
         self.waiting: list[
             Candidate
         ] = []  # they held on known seeds, and their operands have had their share
+        self._missed: list[
+            tuple[int, float]
+        ] = []  # seeds that refused candidates lost on, what is near there
         self._bisected: set[tuple[frozenset[Operand], Guard]] = set()
         self.tested = 0
         self._ran = 0  # episodes of the test that is going on
@@ -85,8 +88,8 @@ class Examiner:
                 return examined
             if self._exhausted():
                 return None
-            weak = examined.fresh and examined.reason in (*TOO_LITTLE, "worse than unrepaired")
-            if weak and guard in (candidate.guard, candidates.ALWAYS):
+            wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
+            if wide and examined.reason in (*TOO_LITTLE, *WEAK):
                 break  # where the guard is as wide as the search had it, no other one makes more of it
         for guard in dict.fromkeys((candidates.ALWAYS, candidate.guard)):
             accepted = self._milder(replace(candidate, guard=guard), trials)
@@ -101,6 +104,9 @@ class Examiner:
             return None
         self._bisected.add(place)
         between = Between(candidate, self.mutants.mutate)
+        for one in self.tried:
+            if one.candidate.guard == candidate.guard and one.reason in WEAK:
+                between.beyond(one.candidate)
         while (middle := between.middle()) is not None:
             examined = self._examined(middle, trials)
             if isinstance(examined, Accepted):
@@ -175,7 +181,27 @@ class Examiner:
         if found.accepted:
             return Accepted(candidate, self._with_old_world(found, candidate), others)
         self._refuse(Refused(candidate, reason, fmean(totals), len(totals)))
+        self._learn(found)
         return tried
+
+    def _learn(self, found: Acceptance) -> None:
+        """Remember missions that a refused candidate lost: what comes later is held against them before its test."""
+        goal = self.order.goal
+        slack = self.order.reference.mean - goal.near
+        for seed, outcome, designed in zip(found.seeds, found.drifted, found.designed, strict=False):
+            near = min(designed, self.order.reference.mean) - slack
+            if outcome.total < near or goal.lost(outcome):
+                self._missed.append((seed, near))
+
+    def _misses(self, candidate: Candidate, trials: Trials) -> bool:
+        """Tell whether a candidate loses most of the latest missions that refused ones lost."""
+        lost, asked = 0, self._missed[-QUICK:]
+        for seed, near in asked:
+            outcome = trials(candidate, seed)
+            lost += outcome.total < near or self.order.goal.lost(outcome)
+            if 2 * lost > len(asked):
+                return True
+        return False
 
     def _with_old_world(self, found: Acceptance, candidate: Candidate) -> Acceptance:
         """Add what a repair earns in the world that is gone, to be shown; it decides nothing."""
@@ -198,7 +224,13 @@ class Examiner:
         slack = self.order.reference.mean - goal.near
         trials.expect((candidate, pair.seed) for pair in goal.pairs[:QUICK])
         for pair in goal.pairs[:QUICK]:
-            if not goal.reached(trials(candidate, pair.seed)):
+            if not goal.reached(trials(candidate, pair.seed), pair.seed):
+                return "gain too small"
+        if self._misses(candidate, trials):
+            return "gain too small"
+        for pair in goal.controls:
+            outcome = trials(candidate, pair.seed)
+            if outcome.total < pair.total - slack or goal.lost(outcome):
                 return "gain too small"
         firing = self._firing(candidate)[:QUICK]
         self.mutants.foresee([(candidate, seed) for seed in firing], None)
@@ -214,10 +246,10 @@ class Examiner:
         self._ran = 0
         nominal = self._world(candidate, None) if self._firing(candidate) else None
 
-        def test(fresh: Sequence[int], designed: bool) -> Acceptance:
+        def test(fresh: Sequence[int]) -> Acceptance:
             return accept(
                 self._world(candidate, order.drift),
-                nominal if designed else None,
+                nominal,
                 self._world(ORIGINAL, None),
                 fresh,
                 order.reference,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from math import log
 
 from pytest_tarl.model import Reason
 from pytest_tarl.patching.mutate import Mutation
@@ -11,6 +12,12 @@ from pytest_tarl.searching.search import Candidate
 from tarl_lint.model import Operand
 
 STEPS = 4
+WEAK: tuple[Reason, ...] = (
+    "gain too small",
+    "fails too often",
+    "worse than unrepaired",
+    "not over the whole range",
+)
 FINEST = 1.05  # ratio of two factors between which there is nothing to find
 
 
@@ -23,6 +30,13 @@ class Between:
         self.weak, self.strong = 0.0, 1.0  # shares of the way, on a log scale
         self.steps = 0
         self._factors = [factor(mutation) for mutation in candidate.mutations]
+
+    def beyond(self, known: Candidate) -> None:
+        """Begin behind a candidate of the same operands that is known to gain too little."""
+        if len(self._factors) == 1 and further(self.candidate, known):
+            strong, weak = self._factors[0], factor(known.mutations[0])
+            if strong is not None and weak is not None:
+                self.weak = max(self.weak, log(weak) / log(strong))
 
     def middle(self) -> Candidate | None:
         """Return the candidate half-way between the weak one and the strong one; None where the search is over."""
@@ -49,7 +63,7 @@ class Between:
     def told(self, reason: Reason) -> bool:
         """Take what became of the last one; return whether it says on which side to go on."""
         share = (self.weak + self.strong) / 2
-        if reason in ("gain too small", "fails too often", "worse than unrepaired"):
+        if reason in WEAK:
             self.weak = share
         elif reason == "nominal gets worse":
             self.strong = share

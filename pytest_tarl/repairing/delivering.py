@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from math import nan
@@ -14,6 +14,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.files import write_atomically
 from pytest_tarl.model import Attempt, Comparison, Edit, Guarantee, Partial, Repair
 from pytest_tarl.patching import patch
+from pytest_tarl.patching.combining import CONSTANT
 from pytest_tarl.patching.dependencies import undeclared
 from pytest_tarl.patching.mutate import Mutation, guard_text
 from pytest_tarl.patching.reading import read
@@ -198,6 +199,7 @@ def _evidence(
         f"drifted: {words.average(totals['online'])}",
         f"drifted and repaired: {words.average(repaired)}, of seeds that nothing was chosen by",
         _designed_and_repaired(order, nominal),
+        *dict.fromkeys(f"{CONSTANT}: {told}" for told in _constants(accepted.candidate)),
         *remarks(mutants, accepted.candidate),
         *(f"other test: {words.one_line(told)}" for told in accepted.beside.held),
         *_stated(bounds),
@@ -206,6 +208,15 @@ def _evidence(
         *([f"record: {words.recording(_in_root(order))}"] if order.permanent else []),
         f"again: {_again(order)}",
     ]
+
+
+def _constants(candidate: Candidate) -> Iterator[str]:
+    """Name the constants that a candidate changes where they are defined, by which two patches of one are known."""
+    for mutation in candidate.mutations:
+        operand = mutation.operand
+        span = operand.definition or operand.span
+        if mutation.form is None:
+            yield words.one_line(f"{span.path}:{span.line} column {span.column}")
 
 
 def remarks(mutants: Mutants, candidate: Candidate) -> list[str]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pytest_tarl.errors import RepairError
-from pytest_tarl.patching.combining import combined_diff, conflicts
+from pytest_tarl.patching.combining import combined_diff, conflicts, constants
 from pytest_tarl.patching.patch import apply_command, write
 from pytest_tarl.patching.reading import Patch, read
 
@@ -81,15 +81,20 @@ def _combined(patches: Sequence[Patch]) -> Path:
 
 
 def _groups(patches: Sequence[Patch]) -> Iterator[list[Patch]]:
-    """Yield the patches that share files, directly or through others, in the order of their first ones."""
+    """Yield the patches that share files or constants, directly or through others, in the order of their first ones."""
     left = list(patches)
     while left:
         group, files = [left.pop(0)], set[tuple[str, str]]()
         grew = True
         while grew:
-            files |= {(one.base, file.name) for one in group for file in one.files}
-            more = [one for one in left if files & {(one.base, file.name) for file in one.files}]
+            files |= {place for one in group for place in _touched(one)}
+            more = [one for one in left if files & _touched(one)]
             left = [one for one in left if one not in more]
             group += more
             grew = bool(more)
         yield group
+
+
+def _touched(patch: Patch) -> set[tuple[str, str]]:
+    """Return the files and the constants that a patch changes."""
+    return {(patch.base, name) for name in (*(file.name for file in patch.files), *constants(patch))}

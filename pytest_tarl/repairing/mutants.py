@@ -36,6 +36,7 @@ class Mutants:
         """Return path → text of every file that a candidate changes. Raises RepairError when it cannot be written."""
         if candidate not in self._sources:
             order = self.order
+            self._read_places(candidate)
             texts = rewrite(
                 order.analysis, candidate.mutations, candidate.guard, order.fixture.topics, self.texts
             )
@@ -43,6 +44,12 @@ class Mutants:
                 del self._sources[next(iter(self._sources))]
             self._sources[candidate] = {order.root / path: text for path, text in texts.items()}
         return self._sources[candidate]
+
+    def _read_places(self, candidate: Candidate) -> None:
+        """Read the files, beside the analysed ones, that constants are changed in and that nobody has read yet."""
+        for place in {mutation.place for mutation in candidate.mutations if mutation.place is not None}:
+            if place.path not in self.order.analysis.sources and place.path not in self.texts:
+                self.texts[place.path] = (self.order.root / place.path).read_bytes().decode("utf-8")
 
     def foresee(self, wanted: Iterable[Wanted], drift: str | None) -> None:
         """Tell which episodes will probably be asked for next, in this order."""

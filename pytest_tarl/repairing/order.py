@@ -49,8 +49,10 @@ class Order:
     recorded: Path | None = None  # the file of the fixture
     neighbours: Callable[[], Sequence[Neighbour]] = tuple  # asked for when a candidate has held otherwise
     world: Drift | None = None  # what the drift is
-
     declared: tuple[float, float] | None = None  # the range of an episode's total
+    searched: Goal | None = (
+        None  # what the search is after, where more was looked for than the on-line run told
+    )
 
     @property
     def comparison(self) -> Comparison:
@@ -72,11 +74,15 @@ class Order:
         """Return the off-line world that repairs are held against."""
         offline, verdict = self.fixture.sample, self.comparison.verdict
         margin = verdict.tolerance or SMALL * verdict.loss
-        return Reference(offline.total.tolist(), float(offline.passed.mean()), margin, self.worst)
+        totals, passed = offline.total.tolist(), float(offline.passed.mean())
+        low, high = self.declared if self.declared is not None else (self.worst, None)
+        return Reference(totals, passed, margin, min(low, self.worst), high)
 
     @cached_property
     def goal(self) -> Goal:
         """Return what the search is after."""
+        if self.searched is not None:
+            return self.searched
         online = self.online.recorded.sample
         pairs = [Pair(seed, total) for seed, total in zip(online.seeds, online.total.tolist(), strict=True)]
         found = goal(pairs, self.reference, self.comparison.verdict.loss)
@@ -84,7 +90,7 @@ class Order:
             return found
         part = next(iter(self.comparison.sizes))
         drawn = [(sizes(self.world, self.drift, pair.seed)[part], at) for at, pair in enumerate(found.pairs)]
-        return replace(found, pairs=tuple(found.pairs[at] for at in spread(drawn)))
+        return replace(found, pairs=tuple(found.pairs[at] for at in spread(drawn)), ranged=True)
 
     @cached_property
     def worst(self) -> float:

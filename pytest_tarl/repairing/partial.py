@@ -100,7 +100,7 @@ def _promising(examiner: Examiner, watch: Watch) -> Iterator[Candidate]:
     yielded: list[Candidate] = []
     for candidate in (*furthest, *ranked):
         seen = candidate in watch.seen
-        little = seen and watch.gain(candidate) < LEAST * (goal.enough - goal.online)
+        little = seen and watch.gain(candidate) < LEAST * goal.wanted
         if candidate.changes not in harmful and not little and candidate not in yielded:
             yielded.append(candidate)
             yield candidate

@@ -65,7 +65,7 @@ class Placing:
             return None
         moved = Candidate(tuple(mutations), candidate.guard)
         pairs = self.order.goal.pairs[:LOOKED_AT]
-        if all(self.order.goal.reached(trials(moved, pair.seed)) for pair in pairs):
+        if all(self.order.goal.reached(trials(moved, pair.seed), pair.seed) for pair in pairs):
             return moved
         for mutation in mutations:
             if mutation.place is not None:
@@ -157,7 +157,7 @@ def _importers(root: Path, place: Place, analysed: set[str]) -> list[str]:
         ):
             continue
         words = set(_words(path))
-        if place.name.rpartition(".")[2] in words and module in words:
+        if place.name.partition("[")[0].rpartition(".")[2] in words and module in words:
             found.append(shown)
     return found
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, count
+from statistics import fmean
 
 from pytest_tarl import seeds
 from pytest_tarl.drifts import sizes
@@ -14,9 +15,9 @@ from pytest_tarl.searching.accept import TOO_LITTLE, Acceptance, Outcome
 
 LEAST_NEAR = 2  # episodes that a candidate holds in before it is said to fit a part of the range
 
-Test = Callable[
-    [Sequence[int], bool], Acceptance
-]  # of a candidate: on seeds, and in the designed world or not
+STRATA = 4  # parts of equal width that the seeds of a test come from in turn; looks are multiples of it
+
+Test = Callable[[Sequence[int]], Acceptance]  # of a candidate, on seeds
 
 
 @dataclass(frozen=True)
@@ -29,38 +30,59 @@ class Ranged:
 
 
 def over_the_range(order: Order, stream: str, most: int, test: Test) -> tuple[Acceptance, Ranged]:
-    """Test a candidate in each part of the range with fresh seeds of its own; at one go where the drift is a point.
+    """Test a candidate once; where the drift has a range, on seeds that are spread evenly over it.
 
-    It is accepted where all parts accept it. Each part has the whole risk: a candidate that fails in one of them
-    would have to be accepted there (intersection-union test, Berger 1982).
+    Every block of `STRATA` episodes has one from each stratum of the range, so that a test takes no more episodes than
+    that of a point. It keeps its risk: over a block, a fixed bet grows at most as it would if all episodes came from
+    the mean of the strata (geometric and arithmetic mean), and failures whose rates differ are spread less than
+    binomial ones of the mean rate, so that few of them are less likely (Hoeffding 1956). What it accepts must also lose
+    less than the margin on average in each third of the range, which can only refuse.
     """
     bands = [band for one in order.comparison.sizes.values() for band in one.bands]
     if not bands:
-        return test(seeds.episode_seeds(order.options.seed, stream, most), True), Ranged()
-    ended: list[tuple[Band, Acceptance]] = []
-    used: list[int] = []
-    for number, band in enumerate(bands):
-        fresh = seeds_in(order, band, f"{stream} {number}", most)
-        found = test(fresh, number == 0)
-        used += found.seeds
-        ended.append((band, found))
-        if found.reason == "nominal gets worse":
-            break
-    held = tuple(band for band, found in ended if found.accepted)
-    lost = tuple(band for band, found in ended if not found.accepted)
-    return _joined([found for _, found in ended]), Ranged(tuple(used), held, lost)
+        return test(seeds.episode_seeds(order.options.seed, stream, most)), Ranged()
+    found = test(spread_seeds(order, stream, most))
+    held = tuple(band for band in bands if _holds_in(order, band, found))
+    lost = tuple(band for band in bands if band not in held)
+    if lost and (found.accepted or (held and found.reason in TOO_LITTLE)):
+        found = replace(found, accepted=False, reason="not over the whole range")
+    return found, Ranged(found.seeds, held, lost)
 
 
-def seeds_in(order: Order, band: Band, stream: str, most: int) -> tuple[int, ...]:
-    """Return fresh seeds whose episodes draw a size from this part of the range."""
-    found: list[int] = []
+def spread_seeds(order: Order, stream: str, most: int) -> tuple[int, ...]:
+    """Return fresh seeds of which each block of `STRATA` draws one size from each stratum, in order."""
+    strata: list[list[int]] = [[] for _ in range(STRATA)]
+    wanted = -(-most // STRATA)
     for index in count():
         seed = seeds.episode_seed(order.options.seed, stream, index)
-        if band.low <= _drawn(order, seed)[band.part] <= band.high:
-            found.append(seed)
-        if len(found) == most:
-            return tuple(found)
-    raise AssertionError("seeds do not end")
+        stratum = strata[_stratum(order, seed)]
+        if len(stratum) < wanted:
+            stratum.append(seed)
+        if all(len(one) == wanted for one in strata):
+            break
+    return tuple(chain.from_iterable(zip(*strata, strict=True)))[:most]
+
+
+def _stratum(order: Order, seed: int) -> int:
+    """Return which part a seed draws: a quarter of the only range, or which halves of the first two."""
+    drawn = _drawn(order, seed)
+    first = list(order.comparison.sizes.items())[:2]
+    each = STRATA if len(first) == 1 else 2
+    number = 0
+    for part, one in first:
+        share = (drawn[part] - one.low) / (one.high - one.low)
+        number = number * each + min(int(share * each), each - 1)
+    return number
+
+
+def _holds_in(order: Order, band: Band, found: Acceptance) -> bool:
+    """Tell whether a candidate loses less than the margin in a part of the range, on average."""
+    lost = [
+        designed - outcome.total
+        for seed, outcome, designed in zip(found.seeds, found.drifted, found.designed, strict=True)
+        if band.low <= _drawn(order, seed)[band.part] <= band.high
+    ]
+    return bool(lost) and fmean(lost) <= order.reference.margin
 
 
 def repaired_sizes(order: Order, ranged: Ranged) -> Mapping[str, Sizes]:
@@ -75,8 +97,8 @@ def repaired_sizes(order: Order, ranged: Ranged) -> Mapping[str, Sizes]:
 def fits_a_part(order: Order, runs: Mapping[int, Outcome]) -> str:
     """Say at which sizes a candidate held, where it did so at one end of a range only; else ""."""
     for part in order.comparison.sizes:
-        near = [_drawn(order, seed)[part] for seed, run in runs.items() if order.goal.reached(run)]
-        far = [_drawn(order, seed)[part] for seed, run in runs.items() if not order.goal.reached(run)]
+        near = [_drawn(order, seed)[part] for seed, run in runs.items() if order.goal.reached(run, seed)]
+        far = [_drawn(order, seed)[part] for seed, run in runs.items() if not order.goal.reached(run, seed)]
         if len(near) >= LEAST_NEAR and far and (max(near) < min(far) or max(far) < min(near)):
             name = f" of {part}" if part else ""
             missed = f"{min(far):.3g} to {max(far):.3g}"
@@ -98,18 +120,3 @@ def _drawn(order: Order, seed: int) -> Mapping[str, float]:
     if order.world is None or order.drift is None:
         return {}
     return sizes(order.world, order.drift, seed)
-
-
-def _joined(parts: Sequence[Acceptance]) -> Acceptance:
-    """Return what the tests of all parts come to."""
-    refused = [part for part in parts if not part.accepted]
-    split = refused and len(refused) < len(parts) and refused[0].reason in TOO_LITTLE
-    return replace(
-        parts[0],
-        accepted=not refused,
-        reason="not over the whole range" if split else refused[0].reason if refused else "",
-        drifted=tuple(chain.from_iterable(part.drifted for part in parts)),
-        tested=any(part.tested for part in parts),
-        episodes=sum(part.episodes for part in parts),
-        seeds=tuple(chain.from_iterable(part.seeds for part in parts)),
-    )

@@ -48,7 +48,7 @@ def _raced(ranking: Ranking, places: Sequence[str], effects: Mapping[str, Sequen
     if found.by is None:
         return told
     low, high = found.by
-    span = f"{words.signed(low)} to {words.signed(high)} an episode, {CONFIDENCE:.0%}, {found.seeds} common seeds"
+    span = f"{words.signed(low)} to {words.signed(high)} an episode, about {CONFIDENCE:.0%}, {found.seeds} common seeds"
     if found.ahead:
         more = "one line gains" if found.ahead == 1 else f"{found.ahead} lines gain"
         return f"{told}; {more} more than it in the drifted world ({span})"

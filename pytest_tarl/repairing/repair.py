@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from time import monotonic
 
 from pytest_tarl.learning import localize
 from pytest_tarl.learning.judgements import with_worlds
@@ -13,21 +12,23 @@ from pytest_tarl.model import Comparison, FormulaRow, Guarantee, Guard, OperandE
 from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.accepting import Accepted, Examiner
 from pytest_tarl.repairing.delivering import attempts, delivered, partial, remarks, withheld
+from pytest_tarl.repairing.enriching import enriched
 from pytest_tarl.repairing.guaranteeing import guaranteed
 from pytest_tarl.repairing.ledger import Refused
 from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.partial import best
+from pytest_tarl.repairing.purse import Purse
 from pytest_tarl.repairing.ranges import Ranged, bands_in_words, fits_a_part, repaired_sizes
 from pytest_tarl.repairing.ranking_confidence import ranking_confidence
 from pytest_tarl.repairing.structural import Structures
 from pytest_tarl.repairing.unnamed import unnamed_modules
 from pytest_tarl.repairing.watching import Watch
 from pytest_tarl.searching import candidates
-from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.ranking import Ranking
-from pytest_tarl.searching.search import BudgetSpentError, Candidate, Strategy, Trials, label
+from pytest_tarl.searching.search import BudgetSpentError, Strategy, label
 
+CONSTANTS = 2 / 3  # of the budget, where changes of structure are to have the rest
 NAMED_FROM = 3  # episodes from which a candidate that fits a part of a range is named
 
 
@@ -49,70 +50,88 @@ class _Findings:
     effects: Mapping[str, Sequence[OperandEffect]] | None = None
     method: str = ""
     curves: tuple[SearchTrace, ...] = ()
-    episodes: int = 0
     interrupted: bool = False
     late: bool = False  # the time of a search was up
+    episodes: int = 0
     ranking: Ranking | None = None  # where all sites were ranked
     structure: int = 0  # episodes of the search that changes of structure took
+
+    def take(self, purse: Purse) -> None:
+        """Add what was spent of a purse."""
+        self.episodes += purse.spent
+        self.late = self.late or purse.late
 
 
 def repair(order: Order) -> Repaired:
     """Run the searches asked for; the first candidate that is accepted counts."""
-    mutants = Mutants(order)
+    mutants, found = Mutants(order), _Findings()
+    purse = Purse(order.options.budget, order.options.seconds)
+    _enrich(mutants, purse)
     hints = strategies.evidence(order)
     guards = (candidates.ALWAYS,) if order.permanent else candidates.candidate_guards(hints)
     searched = candidates.telling(guards, hints, strategies.MOST_GUARDS)
     examiner = Examiner(mutants, guards)
-    watch = Watch(order)
-    found = _Findings()
-    for method in order.options.searches:
-        trials = _trials(mutants, method, watch, found)
-        strategy = strategies.strategy(mutants, method, searched, trials)
-        try:
-            if found.accepted is None:
-                found.accepted = examiner.first(strategy.candidates(), trials)
-            else:
-                _exhibit(strategy)
-        except KeyboardInterrupt:
-            found.interrupted = True
-        if not found.effects:
-            found.effects, found.method = strategy.effects(), method
-        found.curves += (SearchTrace(method, tuple(trials.totals), tuple(trials.labels)),)
-        found.episodes += trials.spent
+    watch = Watch(mutants.order)
+    for number, method in enumerate(order.options.searches):
+        if number:
+            found.take(purse)
+            purse = Purse(order.options.budget, order.options.seconds)
+        _search(mutants, method, searched, examiner, purse, found, watch)
         if found.interrupted:
             break
-    open_end = found.accepted is None and not found.interrupted and not found.late
+    open_end = found.accepted is None and not found.interrupted
     if open_end and order.options.structure:
-        _restructure(mutants, examiner, found, watch, searched)
+        _restructure(mutants, examiner, found, watch, searched, purse)
+    found.take(purse)
     if order.options.localize == "full" and not found.interrupted:
         _rank(mutants, found, searched[0], watch)
     return _concluded(mutants, examiner, found, watch)
 
 
-def _trials(mutants: Mutants, method: str, watch: Watch, found: _Findings) -> Trials:
-    order, seconds = mutants.order, mutants.order.options.seconds
-    begun = monotonic()
+def _enrich(mutants: Mutants, purse: Purse) -> None:
+    """Look for more missions that fail, where few do."""
+    trials = purse.phase(mutants, "missions that fail", Watch(mutants.order))
+    goal = enriched(mutants, trials)
+    purse.settle(trials)
+    mutants.order = replace(mutants.order, searched=goal)
 
-    def run(candidate: Candidate, seed: int) -> Outcome:
-        passed = monotonic() - begun
-        if seconds is not None and passed > seconds:
-            found.late = True
-            raise BudgetSpentError
-        done, total = (trials.spent, trials.budget) if seconds is None else (int(passed), int(seconds))
-        order.progress(done, total, watch.progress(method))
-        outcome = mutants.run(candidate, seed, order.drift)
-        watch.saw(candidate, seed, outcome)
-        return outcome
 
-    trials = Trials(run, order.options.budget, foresee=lambda wanted: mutants.foresee(wanted, order.drift))
-    return trials
+def _search(
+    mutants: Mutants,
+    method: str,
+    searched: Sequence[Guard],
+    examiner: Examiner,
+    purse: Purse,
+    found: _Findings,
+    watch: Watch,
+) -> None:
+    """Run one search; once a repair is accepted, for its curve only."""
+    share = CONSTANTS if mutants.order.options.structure and method == "sweep" else 1.0
+    trials = purse.phase(mutants, method, watch, share)
+    strategy = strategies.strategy(mutants, method, searched, trials)
+    try:
+        if found.accepted is None:
+            found.accepted = examiner.first(strategy.candidates(), trials)
+        else:
+            _exhibit(strategy)
+    except KeyboardInterrupt:
+        found.interrupted = True
+    if not found.effects:
+        found.effects, found.method = strategy.effects(), method
+    found.curves += (SearchTrace(method, tuple(trials.totals), tuple(trials.labels)),)
+    purse.settle(trials)
 
 
 def _restructure(
-    mutants: Mutants, examiner: Examiner, found: _Findings, watch: Watch, searched: Sequence[Guard]
+    mutants: Mutants,
+    examiner: Examiner,
+    found: _Findings,
+    watch: Watch,
+    searched: Sequence[Guard],
+    purse: Purse,
 ) -> None:
-    """Try changes of structure, since no constant suffices, with as many episodes again."""
-    trials = _trials(mutants, "structure", watch, found)
+    """Try changes of structure, since no constant suffices, with the episodes that are left."""
+    trials = purse.phase(mutants, "structure", watch)
     chief = tuple(dict.fromkeys((candidates.ALWAYS, searched[0])))
     structures = Structures(mutants.order, chief, trials)
     examiner.turns += 1
@@ -123,7 +142,7 @@ def _restructure(
     if found.accepted is not None:
         found.effects, found.method = structures.effects(), "structure"
     found.curves += (SearchTrace("structure", tuple(trials.totals), tuple(trials.labels)),)
-    found.episodes += trials.spent
+    purse.settle(trials)
     found.structure = trials.spent
 
 
@@ -131,7 +150,8 @@ def _rank(mutants: Mutants, found: _Findings, guard: Guard, watch: Watch) -> Non
     """Go on until all sites are ranked, under the guard of the repair or else the one that tells most."""
     if found.accepted is not None:
         guard = found.accepted.candidate.guard
-    trials = _trials(mutants, "ranking", watch, found)
+    purse = Purse(mutants.order.options.budget, mutants.order.options.seconds)
+    trials = purse.phase(mutants, "ranking", watch)
     ranking = strategies.ranking(mutants, guard, trials)
     try:
         ranking.run()
@@ -139,7 +159,8 @@ def _rank(mutants: Mutants, found: _Findings, guard: Guard, watch: Watch) -> Non
         found.interrupted = True
     found.effects, found.method, found.ranking = ranking.effects() or found.effects, "ranking", ranking
     found.curves += (SearchTrace("ranking", tuple(trials.totals), tuple(trials.labels)),)
-    found.episodes += trials.spent
+    purse.settle(trials)
+    found.take(purse)
 
 
 def _exhibit(strategy: Strategy) -> None:

@@ -49,7 +49,7 @@ class Structures:
         groups = self._groups()
         whole = self.trials.budget
         for number, operands in enumerate(groups):
-            sweep = Sweep(operands, self.mutate, self.guards, self.trials, self.order.goal)
+            sweep = Sweep(operands, self.mutate, self.guards, self.trials, self.order.goal, proposed=True)
             self._sweeps.append(sweep)
             self.trials.budget = self.trials.spent + (whole - self.trials.spent) // (len(groups) - number)
             try:
@@ -73,6 +73,8 @@ class Structures:
         form = self._found[operand]
         if not form.parameter:
             return Mutation(operand, True, form=form)
+        if factor == 1.0 and form.parameter != form.defaults[0][0]:
+            return None  # as proposed, which is one change whatever parameter is moved afterwards
         return Mutation(operand, factor, form=form) if factor > 0 or form.template.on == "sensor" else None
 
     def _groups(self) -> list[list[Operand]]:

@@ -45,10 +45,10 @@ class Watch:
         examined = {one.candidate.changes for one in tried}
         dropped = []
         for candidate, runs in self.seen.items():
-            outcomes = list(runs.values())
-            near = self.order.goal.reached(outcomes[0]) and len(outcomes) > LEAST
+            first = next(iter(runs))
+            near = self.order.goal.reached(runs[first], first) and len(runs) > LEAST
             if near and candidate.changes not in examined:
-                totals = tuple(run.total for run in outcomes)
+                totals = tuple(run.total for run in runs.values())
                 dropped.append(Tried(candidate, "not confirmed", totals, fresh=False))
         return dropped
 
@@ -56,7 +56,7 @@ class Watch:
         """Name the search and what its best candidate gains so far."""
         if self.best is None:
             return method
-        wanted = self.order.goal.enough - self.order.goal.online
+        wanted = self.order.goal.wanted
         return f"{method} (best so far {self.gain(self.best):+.3g} of {wanted:.3g})"
 
     def _worth(self, candidate: Candidate) -> float:

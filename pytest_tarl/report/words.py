@@ -9,8 +9,19 @@ from itertools import accumulate
 from pathlib import Path
 from statistics import fmean
 
-from pytest_tarl.learning.intervals import effect_size, mean_bounds
-from pytest_tarl.model import Attempt, Comparison, Edit, OperandEffect, Partial, Reason, Repair, Slice
+from pytest_tarl.learning.bounds import mean_of
+from pytest_tarl.learning.effect_size import effect_size
+from pytest_tarl.model import (
+    Attempt,
+    Comparison,
+    Edit,
+    LossInterval,
+    OperandEffect,
+    Partial,
+    Reason,
+    Repair,
+    Slice,
+)
 from pytest_tarl.report.regions import Vocabulary
 
 SIGNIFICANT = 0.05  # p from which a loss is not spoken of
@@ -73,8 +84,8 @@ def average(totals: Sequence[float]) -> str:
     """Tell an average total reward, how surely it is known, and of how many episodes."""
     if len(totals) < 2:
         return f"{amount(fmean(totals)) if totals else 'n/a'} an episode, of {len(totals)}"
-    low, high = mean_bounds(totals, CONFIDENCE)
-    interval = f"{CONFIDENCE:.0%} confidence {amount(low)} to {amount(high)}"
+    found = mean_of(totals, (1.0 + CONFIDENCE) / 2)
+    interval = f"about {CONFIDENCE:.0%} confidence {amount(found.low)} to {amount(found.high)}"
     return f"{amount(fmean(totals))} an episode, {interval}, {len(totals)} episodes"
 
 
@@ -139,12 +150,13 @@ def loss_words(comparison: Comparison) -> str:
     size = "" if math.isnan(effect) else f"{deviations(effect)} standard deviations"
     interval = loss_interval(comparison)
     verdict = comparison.verdict
-    known = (
-        f"{100 * verdict.interval.confidence:.3g}% confidence {interval}"
-        if verdict.interval and interval
-        else ""
-    )
+    known = f"{_sure(verdict.interval)} {interval}" if verdict.interval and interval else ""
     return "; ".join(filter(None, (known, size)))
+
+
+def _sure(interval: LossInterval) -> str:
+    """Tell the confidence of an interval; without a declared range of totals it is approximate."""
+    return f"{'' if interval.exact else 'about '}{100 * interval.confidence:.3g}% confidence"
 
 
 def deviations(effect: float) -> str:
@@ -237,7 +249,7 @@ def repair_words(repair: Repair) -> str:
 
 def partial_words(partial: Partial, comparison: Comparison) -> str:
     """Say what a partial repair gains, and what it does to the designed world."""
-    sure = f"{100 * partial.confidence:.3g}% confidence"
+    sure = f"about {100 * partial.confidence:.3g}% confidence"
     gained = f"{signed(partial.gain)} an episode, at least {signed(partial.low)} ({sure})"
     return (
         f"{gained}, of the {amount(partial.lost)} that are lost; {designed_world(comparison)} "

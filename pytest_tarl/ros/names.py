@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from pytest_tarl.ros import params_files
 from pytest_tarl.ros.literals import parse_value
 
 
@@ -69,7 +70,10 @@ def parse_ros1(arguments: Iterable[str]) -> CommandLine:
 
 
 def parse_ros2(arguments: Iterable[str]) -> CommandLine:
-    """Read `--ros-args -r old:=new -p name:=value …` up to `--`; node-specific rules keep their `node:` prefix."""
+    """Read `--ros-args -r old:=new -p name:=value --params-file file …` up to `--`.
+
+    Node-specific rules keep their `node:` prefix; what a file says stays below the names of nodes.
+    """
     remappings: dict[str, str] = {}
     parameters: dict[str, Any] = {}
     special: dict[str, str] = {}
@@ -88,6 +92,8 @@ def parse_ros2(arguments: Iterable[str]) -> CommandLine:
             left, _, right = argument.partition(":=")
             if option in ("-p", "--param"):
                 parameters[left] = parse_value(right)
+            elif option == "--params-file":
+                parameters |= params_files.read(argument)
             elif option in ("-r", "--remap"):
                 (special if left.startswith("__") else remappings)[left] = right
             option = ""

@@ -15,9 +15,9 @@ from math import log
 from statistics import fmean
 
 from pytest_tarl.formulas.judging import Judged
+from pytest_tarl.learning.betting import Bet, bet
 from pytest_tarl.model import Reason
 from pytest_tarl.searching.acceptance_numbers import acceptance_numbers
-from pytest_tarl.searching.betting import Bet, bet
 
 SCREEN = 8  # episodes before the test
 EARLY = (8, 16, 32)  # episodes after which the test can end in a refusal ...
@@ -41,13 +41,14 @@ class Outcome:
 class Reference:
     """The off-line world that a repair is held against; `margin` is δ, a reward per episode.
 
-    No mission earns less than `lowest`, in either world.
+    No mission earns less than `lowest`, in either world, and none more than `highest`, where a range is declared.
     """
 
     totals: Sequence[float]
     pass_rate: float
     margin: float
     lowest: float
+    highest: float | None = None
 
     @property
     def mean(self) -> float:
@@ -63,11 +64,13 @@ class Reference:
     def least(self) -> float:
         """Return the least difference between a mission and the designed one of its seed that is counted.
 
-        There is none below that of the worst mission recorded. Where that one loses more than 20 times the margin,
-        which is all that a designed mission earns at a margin of 5 %, it counts as that much: a mission cannot do
-        more than fail, and how many fail is shown apart.
+        There is none below that of the worst mission, declared or else recorded. Where that one loses more than 20
+        times the margin, which is all that a designed mission earns at a margin of 5 %, it counts as that much: a
+        mission cannot do more than fail, and how many fail is shown apart. Without that limit the least loss that 200
+        episodes can show would grow with what a failure costs, and repairs that are right would be refused.
         """
-        return max(min(self.lowest, *self.totals) - max(self.totals), -self.margin / PASS_RATE_LOSS)
+        best = max(self.totals) if self.highest is None else self.highest
+        return max(min(self.lowest, *self.totals) - best, -self.margin / PASS_RATE_LOSS)
 
 
 def unforeseen(wanted: Sequence[object]) -> None:
@@ -103,7 +106,7 @@ class Acceptance:
 
     A candidate that its first few seeds refuse is not `tested`: it takes nothing of the risk. `episodes` counts all
     that were run, those of the program as it is included. `bets` are what was bet in the two worlds, `seeds` those of
-    the drifted episodes.
+    the drifted episodes, `designed` what the program as it is earns on them in the designed world.
     """
 
     accepted: bool
@@ -114,6 +117,7 @@ class Acceptance:
     episodes: int = 0
     bets: tuple[Bet, ...] = ()
     seeds: tuple[int, ...] = ()
+    designed: tuple[float, ...] = ()
 
 
 def risk_of(alpha: float, before: int) -> float:
@@ -154,6 +158,7 @@ def _ended(
 ) -> Acceptance:
     seen = [tuple(world.seen or world.first) for world in worlds]
     begin = SCREEN if worlds[0].seen else 0
+    used = tuple(seeds[begin : begin + len(seen[0])])
     return Acceptance(
         not reason,
         reason,
@@ -162,7 +167,8 @@ def _ended(
         tested,
         sum(len(world.seen) + len(world.first) for world in worlds) + len(designed.known),
         tuple(world.bet for world in worlds if world.bet is not None),
-        tuple(seeds[begin : begin + len(seen[0])]),
+        used,
+        tuple(designed(used)),
     )
 
 

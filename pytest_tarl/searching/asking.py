@@ -186,7 +186,7 @@ class Asking:
             outcome = self.trials(candidate, pair.seed)
         except RepairError:
             return min(one.total for one in self.goal.pairs) - pair.total, False
-        return outcome.total - pair.total, self.goal.reached(outcome)
+        return outcome.total - pair.total, self.goal.reached(outcome, pair.seed)
 
     def _least(self, candidate: Candidate, pair: Pair) -> Candidate:
         """Leave out, one after the other, what the seed does not need: an optimiser moves everything a little."""
@@ -194,7 +194,7 @@ class Asking:
             kept = tuple(one for one in candidate.mutations if one != mutation)
             fewer = Candidate(kept, candidate.guard)
             try:
-                if kept and self.goal.reached(self.trials(fewer, pair.seed)):
+                if kept and self.goal.reached(self.trials(fewer, pair.seed), pair.seed):
                     candidate = fewer
             except RepairError:
                 continue

@@ -69,8 +69,10 @@ class EpsilonGreedy:
         for candidate in [self.actions[action] for action in ranked if action not in self.refused][
             : self.CONFIRMED
         ]:
-            first = self.trials(candidate, self.goal.pairs[0].seed)
-            if self.goal.reached(first) and confirmed(candidate, self.trials, self.goal, 0):
+            seed = self.goal.pairs[0].seed
+            if self.goal.reached(self.trials(candidate, seed), seed) and confirmed(
+                candidate, self.trials, self.goal, 0
+            ):
                 yield candidate
 
     def effects(self) -> dict[str, list[OperandEffect]]:

@@ -7,7 +7,7 @@ what turns out not to be needed is dropped before the candidate is handed on.
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
@@ -43,6 +43,24 @@ class Joint:
         return Joint(tuple(part for part in self.parts if part[0] != unit), self.guard)
 
 
+@dataclass(frozen=True)
+class Settled:
+    """Candidates that were tried on further seeds, and those of them that held and were handed on."""
+
+    tried: set[Candidate] = field(default_factory=set)
+    held: set[Candidate] = field(default_factory=set)
+
+    def holds(self, candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
+        """Try a candidate on further seeds, once; False for one that was tried before."""
+        if candidate in self.tried:
+            return False
+        self.tried.add(candidate)
+        if not confirmed(candidate, trials, goal, first):
+            return False
+        self.held.add(candidate)
+        return True
+
+
 class ForwardSelection:
     """Joins units; `gains` are those of the single ones by factor, `slack` is the gain that makes a difference."""
 
@@ -54,6 +72,7 @@ class ForwardSelection:
         goal: Goal,
         gains: Mapping[Unit, Mapping[float, float]],
         slack: float,
+        settled: Settled | None = None,
     ) -> None:
         self.units = units
         self.mutate = mutate
@@ -61,11 +80,13 @@ class ForwardSelection:
         self.goal = goal
         self.gains = gains
         self.slack = slack
-        self._tried: set[Candidate] = set()
+        self.settled = settled or Settled()
 
     def candidates(self, base: Joint) -> Iterator[Candidate]:
         """Yield joint candidates that hold on every seed they were tried on."""
         gain = yield from self.gain(base)
+        if base.candidate(self.mutate) in self.settled.held:
+            return  # nothing is missing on this seed that another part could add
         while gain is not None and len(base.parts) < MOST:
             better, most = base, gain
             widened = list(self._with_another(base))
@@ -80,9 +101,12 @@ class ForwardSelection:
 
     def unions(self, parts: Sequence[tuple[Unit, float]], guard: Guard) -> Iterator[Candidate]:
         """Join the leading part with the next ones, the best two with a third, and balance what gains most."""
-        base: Joint | None = Joint(tuple(parts[:1]), guard)
+        first = Joint(tuple(parts[:1]), guard)
+        if first.candidate(self.mutate) in self.settled.held:
+            return
+        base: Joint | None = first
         best: tuple[Joint, float] | None = None
-        needed = max(self.goal.enough - self.goal.online, 0.0)
+        needed = self.goal.wanted
         while base is not None and len(base.parts) < MOST:
             joints = [base.with_part(*part) for part in parts[: LEADERS + 1] if part not in base.parts]
             base = None
@@ -105,14 +129,23 @@ class ForwardSelection:
         """Run a joint candidate once and return its gain, None where it cannot run; hand it on when it holds."""
         candidate = joint.candidate(self.mutate)
         try:
-            near = self.goal.reached(self.trials(candidate, self.goal.pairs[0].seed))
+            near = self._reached(candidate)
         except RepairError:
             return None
-        if near and candidate not in self._tried:
-            self._tried.add(candidate)
-            if confirmed(candidate, self.trials, self.goal, 0):
-                yield self._least(joint).candidate(self.mutate)
+        if near and candidate not in self.settled.tried:
+            yield from self._settling(joint, candidate)
         return self.trials.gain(candidate, self.goal.pairs)
+
+    def _settling(self, joint: Joint, candidate: Candidate) -> Iterator[Candidate]:
+        """Hand on what holds, without the parts that it does not need; nothing where the rest was handed on before."""
+        fewer = self._least(joint).candidate(self.mutate)
+        if fewer in self.settled.held:
+            self.settled.tried.add(candidate)
+            return
+        for one in dict.fromkeys((fewer, candidate)):
+            if self.settled.holds(one, self.trials, self.goal, 0):
+                yield one
+                return
 
     def _with_another(self, base: Joint) -> Iterator[Joint]:
         """Yield joints with one part more, first as each was best alone, then the other way."""
@@ -139,8 +172,10 @@ class ForwardSelection:
         """Leave out what is not needed on the first seed."""
         for unit, _ in joint.parts:
             fewer = joint.without(unit)
-            if fewer.parts and self.goal.reached(
-                self.trials(fewer.candidate(self.mutate), self.goal.pairs[0].seed)
-            ):
+            if fewer.parts and self._reached(fewer.candidate(self.mutate)):
                 joint = fewer
         return joint
+
+    def _reached(self, candidate: Candidate) -> bool:
+        seed = self.goal.pairs[0].seed
+        return self.goal.reached(self.trials(candidate, seed), seed)

@@ -35,7 +35,7 @@ class Halving:
         self.units = units(operands)
         self.guards = guards
         self.goal = goal
-        self.slack = SLACK * max(goal.enough - goal.online, 0.0)
+        self.slack = SLACK * goal.wanted
         self.race = Race(mutate, trials, goal.pairs)
         self._confirmed: set[Candidate] = set()
 
@@ -61,7 +61,7 @@ class Halving:
             if candidate is None or candidate in self._confirmed:
                 continue
             run = [pair for pair in self.goal.pairs if pair.seed in race.gains[arm]]
-            if all(self.goal.reached(race.trials(candidate, pair.seed)) for pair in run):
+            if all(self.goal.reached(race.trials(candidate, pair.seed), pair.seed) for pair in run):
                 self._confirmed.add(candidate)
                 if confirmed(candidate, race.trials, self.goal, 0):
                     yield candidate

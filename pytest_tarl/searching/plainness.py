@@ -29,12 +29,13 @@ def plainer(
 ) -> list[Unit]:
     """Return the units that read plainer than what was found, the most gaining first.
 
-    Those that gain a good share are worth refining. In place of an offset those that were not tried yet are, too.
+    Those that gain a good share are worth refining. In place of an offset those that were not tried yet are worth a
+    look, too, named constants first.
     """
     read = [unit for unit in units if _kind(unit) < odd]
     gaining = [unit for unit in read if max(gains.get(unit, {}).values(), default=0.0) >= promising]
-    untried = [unit for unit in read if unit not in gains] if odd is Oddness.OFFSET else []
-    return [*sorted(gaining, key=lambda unit: -max(gains[unit].values())), *untried]
+    others = [unit for unit in read if unit not in gains] if odd is Oddness.OFFSET else []
+    return [*sorted(gaining, key=lambda unit: -max(gains[unit].values())), *sorted(others, key=_kind)]
 
 
 def edges(guard: Guard) -> tuple[str, ...]:

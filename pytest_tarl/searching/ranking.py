@@ -9,10 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
-from pytest_tarl.learning.intervals import mean_bounds
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.searching.halving import SLACK, arm_effects
-from pytest_tarl.searching.race import CONFIDENCE, LEAST, Arm, Race, behind, paired
+from pytest_tarl.searching.race import LEAST, Arm, Race, ahead_by, behind, paired
 from pytest_tarl.searching.search import FACTORS, BudgetSpentError, Goal, Mutate, Trials
 from pytest_tarl.searching.units import NEAR, units
 from tarl_lint.model import Operand, SiteId
@@ -26,8 +25,8 @@ SEEDS = 8  # that they race on
 class Certainty:
     """How surely the first site is ahead of all others.
 
-    `by` is the interval, at `CONFIDENCE`, of what it gains more than the next one, on `seeds` common seeds; None where
-    these are too few. `level` other sites cannot be told from it, `ahead` gain surely more; `gaining` gain at all.
+    `by` is the approximate interval of what it gains more than the next one, on `seeds` common seeds; None where these
+    are too few. `level` other sites cannot be told from it, `ahead` gain surely more; `gaining` gain at all.
     """
 
     gaining: int
@@ -46,7 +45,7 @@ class Ranking:
         self.units = units(operands)
         self.guard = guard
         self.goal = goal
-        self.slack = SLACK * max(goal.enough - goal.online, 0.0)
+        self.slack = SLACK * goal.wanted
         self.race = Race(mutate, trials, goal.pairs)
         self.whole = False
 
@@ -84,7 +83,7 @@ class Ranking:
             sum(self.race.gain(arm) > self.slack for arm in arms.values()),
             len(level),
             len(ahead),
-            mean_bounds(differences, CONFIDENCE) if len(differences) >= LEAST else None,
+            ahead_by(differences) if len(differences) >= LEAST else None,
             len(differences),
         )
 

@@ -5,7 +5,7 @@ A search yields confirmed candidates, best first; whether one is accepted is dec
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import fmean
 from typing import Protocol
@@ -49,7 +49,8 @@ class Goal:
     """What the search is after. `near`: a total worth confirming; `enough`: a mean that confirms.
 
     `online` is the mean reward of all on-line episodes, those that did not lose included. With `passing` a failed
-    mission is never near: ending early can earn more than carrying on.
+    mission is never near: ending early can earn more than carrying on. `harder` says, per seed, how much less than
+    the mean its mission earns as designed, where that is known. `controls` are on-line episodes that did not lose.
     """
 
     pairs: tuple[Pair, ...]
@@ -57,10 +58,26 @@ class Goal:
     enough: float
     online: float
     passing: bool = False
+    harder: Mapping[int, float] = field(default_factory=dict)
+    controls: tuple[Pair, ...] = ()
+    ranged: bool = False  # whether missions differ in size, so that one that fails may fail for its size
 
-    def reached(self, outcome: Outcome) -> bool:
-        """Tell whether an episode is as good as one off-line."""
-        return outcome.total >= self.near and (outcome.passed or not self.passing)
+    @property
+    def wanted(self) -> float:
+        """Return the gain per episode that a repair has to bring."""
+        return max(self.enough - self.online, 0.0)
+
+    def reached(self, outcome: Outcome, seed: int) -> bool:
+        """Tell whether an episode is as good as the one of its seed off-line."""
+        return outcome.total >= self.near - self.harder.get(seed, 0.0) and not self.lost(outcome)
+
+    def lost(self, outcome: Outcome) -> bool:
+        """Tell whether an episode is a clear failure: its mission failed, and designed ones succeed."""
+        return self.passing and not outcome.passed
+
+    def enough_on(self, seeds: Sequence[int]) -> float:
+        """Return the mean that confirms on these seeds."""
+        return self.enough - fmean(self.harder.get(seed, 0.0) for seed in seeds)
 
 
 class BudgetSpentError(Exception):
@@ -154,19 +171,23 @@ def label(candidate: Candidate) -> str:
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
     """Try further seeds, beginning after the pair `first`.
 
-    A candidate is dropped at its second miss, and as soon as it does no better than one that earned too little.
+    A candidate is dropped at its first failed mission where designed ones succeed, else at its second miss, and as soon
+    as it does no better than one that earned too little.
     """
     others = [goal.pairs[(first + i) % len(goal.pairs)] for i in range(1, len(goal.pairs))][:CONFIRMATIONS]
+    seeds = [pair.seed for pair in others]
     outcomes: list[Outcome] = []
-    trials.expect((candidate, pair.seed) for pair in others)
-    for pair in others:
-        outcomes.append(trials(candidate, pair.seed))
-        if sum(not goal.reached(outcome) for outcome in outcomes) > 1:
+    trials.expect((candidate, seed) for seed in seeds)
+    missed = 0
+    for seed in seeds:
+        outcomes.append(trials(candidate, seed))
+        missed += not goal.reached(outcomes[-1], seed)
+        if missed > 1 or (goal.lost(outcomes[-1]) and not goal.ranged):
             return False
         if trials.falls_short(candidate, goal.pairs, goal.enough):
             return False
-    holds = not outcomes or fmean(outcome.total for outcome in outcomes) >= goal.enough
-    if not holds and all(goal.reached(outcome) for outcome in outcomes):
+    holds = not outcomes or fmean(outcome.total for outcome in outcomes) >= goal.enough_on(seeds)
+    if not holds and not missed:
         trials.fell_short(candidate, goal.pairs)
     return holds
 

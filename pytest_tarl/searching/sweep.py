@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
-from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
-from pytest_tarl.searching.plainness import oddness, plainer
+from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
+from pytest_tarl.searching.plainness import Oddness, oddness, plainer
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
-from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confirmed
+from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import NEAR, Unit, best_effects, units
 from tarl_lint.model import Operand, SiteId
 
@@ -28,6 +28,7 @@ FURTHER = ((5.0, 2.2), (0.15, 0.4))  # ... and those beyond, each behind the one
 OUTWARD = 2.3  # by how much the outermost factor is exceeded where it is the best
 FLIP = -1.0
 BETWEEN = (1.5, 0.65)
+FINE = (1.22, 0.82, 1.1, 0.91)  # tried for what moves the reward, where larger steps found nothing
 LAST = (10.0, 0.05)
 FLIPPED = 3  # units that gained when made smaller, and so may have the wrong sign
 REFINEMENTS = 3  # of one operand in a row ...
@@ -42,7 +43,8 @@ SLACK = 0.1  # share of the loss that may be lost on the way further out
 class Sweep:
     """Sweep and confirm, operands in the given order, each mutated at its use under one of the guards.
 
-    The first guard is the one that tells most, the second is the second opinion; others are left for the end.
+    The first guard is the one that tells most, the second is the second opinion; others are left for the end. With
+    `proposed` the operands' values are proposals that the program does not hold yet, and are tried as they are first.
     """
 
     def __init__(
@@ -53,6 +55,7 @@ class Sweep:
         trials: Trials,
         goal: Goal,
         generator: np.random.Generator | None = None,
+        proposed: bool = False,
     ) -> None:
         self.units = units(operands)
         self.mutate = mutate
@@ -60,10 +63,11 @@ class Sweep:
         self.trials = trials
         self.goal = goal
         self.generator = generator
-        self.goal_gain = max(goal.enough - goal.online, 0.0)
-        self.slack = SLACK * self.goal_gain
+        self.slack = SLACK * goal.wanted
+        self.proposed = proposed
         self._gains: dict[tuple[Unit, Guard], dict[float, float]] = {}  # factor → gain in reward
         self._tried: set[Candidate] = set()
+        self._settled = Settled()
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
         self._refused: set[tuple[Unit, Guard]] = set()  # held in the search, and was refused afterwards
         self._turn = 0
@@ -75,11 +79,7 @@ class Sweep:
             self.units = yield from screened(self._joining({}), self.guards[0], self.generator)
         for block in blocks(self.units):
             for guard in chief:
-                moving = self._moving(block)
-                for factor in NEAR:
-                    yield from self._all(factor, guard, moving)
-                yield from self._narrow(guard, moving)
-                yield from self._leaders_together(guard)
+                yield from self._near_ones(block, guard)
         for factor, before in FURTHER:
             for guard in chief:
                 yield from self._all(factor, guard, self._leading(before, guard))
@@ -87,7 +87,12 @@ class Sweep:
         for factor in (*BETWEEN, FLIP):
             for guard in chief:
                 yield from self._all(factor, guard, self._moving(self.units))
-        yield from self._together()
+        gained = self._gained()
+        if gained:
+            yield from self._together()
+        yield from self._finely(chief)
+        if not gained:
+            yield from self._together()
         for factor in (*BETWEEN, *LAST, *NEAR, *(factor for factor, _ in FURTHER), FLIP):
             for guard in self.guards:
                 yield from self._all(factor, guard, self.units)
@@ -95,6 +100,14 @@ class Sweep:
     def effects(self) -> dict[str, list[OperandEffect]]:
         """Return, per site, what each operand's best value gained over the unmutated runs of the same seeds."""
         return best_effects([(unit, gains) for (unit, _), gains in self._gains.items()], self.mutate)
+
+    def _near_ones(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
+        """Move every unit both ways, then those closer that lose both ways, and join what gains most."""
+        moving = self._moving(block)
+        for factor in (1.0, *NEAR) if self.proposed else NEAR:
+            yield from self._all(factor, guard, moving)
+        yield from self._narrow(guard, moving)
+        yield from self._leaders_together(guard)
 
     def _all(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try one factor on several operands, then refine what gains most."""
@@ -117,6 +130,22 @@ class Sweep:
         for factor in BETWEEN:
             if lost:
                 yield from self._all(factor, guard, lost)
+
+    def _gained(self) -> bool:
+        """Tell whether anything gained enough to be built upon."""
+        return any(max(gains.values()) > self.slack for gains in self._gains.values())
+
+    def _finely(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
+        """Try small steps of what moves the reward and was not refined: its window may be narrow."""
+        for factor in FINE:
+            for guard in guards:
+                moved = [unit for unit in self._moving(self.units) if self._moves(unit)]
+                yield from self._all(
+                    factor, guard, [unit for unit in moved if not self._refined[unit, guard]]
+                )
+
+    def _moves(self, unit: Unit) -> bool:
+        return any(any(gains.values()) for (tried, _), gains in self._gains.items() if tried == unit)
 
     def _moving(self, among: Sequence[Unit]) -> list[Unit]:
         """Leave out what was moved both ways, under one guard or another, and never changed a reward."""
@@ -141,10 +170,10 @@ class Sweep:
         near = self._near(candidate, pair)
         if near is None:
             return
-        gains = self._gains.setdefault((unit, guard), {1.0: 0.0})
+        gains = self._gains.setdefault((unit, guard), {} if self.proposed else {1.0: 0.0})
         gains[factor] = self.trials.gain(candidate, self.goal.pairs)
         if near:
-            holds = confirmed(candidate, self.trials, self.goal, pair)
+            holds = self._settled.holds(candidate, self.trials, self.goal, pair)
             gains[factor] = self.trials.gain(candidate, self.goal.pairs)
             if holds:
                 yield from self._plainer(candidate, unit, pair)
@@ -154,14 +183,18 @@ class Sweep:
     def _plainer(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
         """Spend a few episodes on what a maintainer would rather write than what was found."""
         odd, guard, begun = oddness(found.mutations), found.guard, self.trials.spent
+        before = (
+            set(self._refused) if odd is Oddness.OFFSET else set()
+        )  # refined once more in place of an offset
         gains = {one: gains for (one, held), gains in self._gains.items() if held == guard and one != unit}
         others = [one for one in self.units if one != unit]
-        for other in plainer(odd, gains, others, PROMISING * self.goal_gain):
+        for other in plainer(odd, gains, others, PROMISING * self.goal.wanted):
             for factor in NEAR if other not in gains else ():
                 yield from self._try(other, guard, factor, pair)
             for _ in range(PLAINER_ROUNDS):
                 reached = max(self._gains.get((other, guard), {1.0: 0.0}).values())
-                if reached >= PROMISING * self.goal_gain and (other, guard) not in self._refused:
+                closed = (other, guard) in self._refused - before
+                if reached >= PROMISING * self.goal.wanted and not closed:
                     yield from self._between((other, guard), pair)
             if self.trials.spent - begun >= PLAINER:
                 return
@@ -175,12 +208,16 @@ class Sweep:
     def _near(self, candidate: Candidate, pair: int) -> bool | None:
         """Run a candidate once; None where it cannot be written into the source."""
         try:
-            return self.goal.reached(self.trials(candidate, self.goal.pairs[pair].seed))
+            seed = self.goal.pairs[pair].seed
+            return self.goal.reached(self.trials(candidate, seed), seed)
         except RepairError:
             return None
 
     def _refine(self, pair: int) -> Iterator[Candidate]:
-        """Refine the most improving operand, and go on as long as it comes closer to what is needed."""
+        """Refine the most improving operand, and go on as long as it comes closer to what is needed.
+
+        What gains hardly anything is not refined: a mission that fails a little later says nothing of the right value.
+        """
         for _ in range(REFINEMENTS):
             open_to = [
                 tried
@@ -188,18 +225,18 @@ class Sweep:
                 if self._refined[tried] < REFINED and tried not in self._refused
             ]
             best = max(open_to, key=lambda tried: max(self._gains[tried].values()), default=None)
-            if best is None:
+            before = max(self._gains[best].values()) if best is not None else 0.0
+            if best is None or before <= self.slack:
                 return
-            before = max(self._gains[best].values())
             yield from self._between(best, pair)
-            if max(self._gains[best].values()) <= max(before, PROMISING * self.goal_gain):
+            if max(self._gains[best].values()) <= max(before, PROMISING * self.goal.wanted):
                 return
 
     def _between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
         """Try an operand between its best factor and that factor's neighbours, on a log scale."""
         gains = {factor: gain for factor, gain in self._gains[best].items() if factor > 0}
         factor = max(gains, key=gains.__getitem__)
-        if factor == 1.0 or gains[factor] <= 0:
+        if gains[factor] <= 0:
             return
         ordered = [min(gains) / OUTWARD**2, *sorted(gains), max(gains) * OUTWARD**2]
         place = ordered.index(factor)
@@ -216,7 +253,12 @@ class Sweep:
 
     def _together(self) -> Iterator[Candidate]:
         """Add others to what gains most."""
-        every = [(gain, *key, factor) for key, gains in self._gains.items() for factor, gain in gains.items()]
+        every = [
+            (gain, *key, factor)
+            for key, gains in self._gains.items()
+            if key not in self._refused
+            for factor, gain in gains.items()
+        ]
         gain, unit, guard, factor = max(every, key=lambda one: one[0], default=(0.0, None, None, 1.0))
         if unit is None or guard is None or gain <= self.slack:
             return
@@ -240,4 +282,6 @@ class Sweep:
             yield from self._joining({}).unions([(unit, factor) for _, unit, factor in ranked], guard)
 
     def _joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> ForwardSelection:
-        return ForwardSelection(self.units, self.mutate, self.trials, self.goal, gains, self.slack)
+        return ForwardSelection(
+            self.units, self.mutate, self.trials, self.goal, gains, self.slack, self._settled
+        )

@@ -43,7 +43,8 @@ def best_effects(
     """Return, per site id, what each operand gained at its best factor; of equals the one that was tried first."""
     best: dict[Operand, OperandEffect] = {}
     for unit, gains in gained:
-        factor = max(gains.keys() - {1.0}, key=lambda one: (gains[one], -one))
+        tried = [factor for factor in gains if unit.mutations(mutate, factor)]
+        factor = max(tried, key=lambda one: (gains[one], -one), default=1.0)
         for mutation in unit.mutations(mutate, factor):
             if mutation.operand not in best or gains[factor] > best[mutation.operand].effect:
                 best[mutation.operand] = operand_effect(mutation, gains[factor])

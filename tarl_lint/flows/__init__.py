@@ -1,1 +1,1 @@
-"""From the value-flow graph to flows as people see them."""
+"""Flows and their steps, computed from the value-flow graph."""

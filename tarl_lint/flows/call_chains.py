@@ -1,4 +1,4 @@
-"""Calls that a decision leads to: the statements between a condition and what a called function stores."""
+"""Calls between a condition and the values that a called function stores under it."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from tarl_lint.memory.values import Branches
 
 Entrance = tuple[
     int, list[Place], int
-]  # a decision, the calls that it leads to from outside in, what they made
+]  # a condition, the calls under it (outermost first), the values made there
 
 
 def entrances(graph: Graph, nodes: set[int]) -> Iterator[Entrance]:
-    """Yield the calls by which decisions among the nodes choose values that are made in other functions."""
+    """Yield the calls through which conditions among the nodes choose values made in other functions."""
     for node in sorted(nodes):
         if node in graph.gates:
             made, choice = graph.gates[node]
@@ -34,7 +34,7 @@ def _between(graph: Graph, choice: Branches, nodes: set[int], made: int, shown: 
 
 
 def _calls(frame: Frame, outer: Frame) -> list[Place]:
-    """Return the calls that lead from one activation to another, outermost first; none where they do not."""
+    """Return the calls that lead from one frame to another, outermost first; empty if none do."""
     found: list[Place] = []
     current: Frame | None = frame
     while current is not None and current is not outer:

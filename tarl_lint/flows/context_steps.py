@@ -1,4 +1,4 @@
-"""What is around the steps of a flow: the registration, the `__main__` guard, loops around steps and calls."""
+"""Context steps of a flow: the registration, the `__main__` guard, loops around steps and calls."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Surroundings:
 
     def __init__(self, texts: Texts) -> None:
         self.texts = texts
-        self._above: dict[int, Written | None] = {}  # a statement → the nearest loop or guard around it
+        self._above: dict[int, Written | None] = {}  # statement → nearest enclosing loop or guard
 
     def registration(self, origin: SourceRecord) -> Written | None:
         """Return the statement that subscribes."""
@@ -23,7 +23,7 @@ class Surroundings:
     def context(
         self, origin: SourceRecord, steps: Sequence[tuple[Frame, Written]]
     ) -> tuple[list[Written], list[tuple[int, int]]]:
-        """Return the statements around the steps and the registration, and which step each comes before."""
+        """Return the statements that enclose the steps and the registration, and the step that each precedes."""
         found: dict[int, Written] = {}
         edges: dict[tuple[int, int], None] = {}
         registration = self.registration(origin)
@@ -39,7 +39,7 @@ class Surroundings:
     def _callers(
         self, frame: Frame, step: Written, found: dict[int, Written], edges: dict[tuple[int, int], None]
     ) -> None:
-        """Add what is around the calls that lead to a frame, from the inside out."""
+        """Add the statements that enclose the calls leading to a frame, innermost first."""
         current: Frame | None = frame
         inner = step
         while current is not None and current.caller is not None and current.call is not None:
@@ -56,7 +56,7 @@ class Surroundings:
         found: dict[int, Written],
         edges: dict[tuple[int, int], None],
     ) -> Written:
-        """Add the loops and guards around a statement; return the outermost."""
+        """Add the loops and guards that enclose a statement; return the outermost."""
         around = self._shown(written)
         while around is not None:
             found[id(around)] = around
@@ -68,7 +68,7 @@ class Surroundings:
         return inner
 
     def _shown(self, written: Written) -> Written | None:
-        """Return the nearest loop or guard around a statement in its function."""
+        """Return the nearest loop or guard that encloses a statement in its function."""
         passed = [written]
         while id(passed[-1]) not in self._above:
             around = passed[-1].around

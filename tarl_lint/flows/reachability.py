@@ -1,4 +1,4 @@
-"""From sources to sinks: which pairs are flows, and through which statements."""
+"""Reachability from sources to sinks: which pairs are flows, and through which statements."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ ROLES: Mapping[str, Role] = {
 
 @dataclass(slots=True)
 class Reach:
-    """What a source reaches: by data alone, and in any way."""
+    """Nodes that a source reaches: by data edges alone, and by any edge."""
 
     data: set[int]
     any: set[int]
-    counted: Mapping[int, set[int]]  # counts of elements → what of its data it decided to put there
+    counted: Mapping[int, set[int]]  # element counts → the source's data that it put there under a condition
 
 
 class Tracer:
@@ -64,7 +64,7 @@ class Tracer:
         return tuple(sorted(found, key=lambda f: (f.sink.span, f.source.span)))
 
     def reach(self, record: SourceRecord) -> Reach:
-        """Return what the messages of a source reach."""
+        """Return the nodes that messages of a source reach."""
         data = closure(record.nodes, [self.forward_data])
         counted: dict[int, set[int]] = {}
         while more := self.counts(data):
@@ -73,7 +73,7 @@ class Tracer:
         return Reach(data, closure(record.nodes, [self.forward_data, self.forward_control]), counted)
 
     def counts(self, data: set[int]) -> dict[int, set[int]]:
-        """Return the counts, not in `data` yet, of elements that are made from it and that it puts there."""
+        """Return the element counts, not yet in `data`, of containers whose elements come from `data`."""
         graph = self.graph
         found: dict[int, set[int]] = {}
         for node, elements in graph.counts.items():
@@ -86,7 +86,7 @@ class Tracer:
     def flow(
         self, source: Source, origin: SourceRecord, reach: Reach, sink: Sink, record: SinkRecord
     ) -> Flow | None:
-        """Return the flow of a pair, None when nothing of the source reaches the sink."""
+        """Return the flow of a pair, None if the source does not reach the sink."""
         ends = record.nodes & reach.any
         if not ends:
             return None
@@ -108,18 +108,18 @@ class Tracer:
         return Flow("explicit" if explicit else "implicit", source, sink, steps, chain)
 
     def data_formers(self, reach: Reach) -> Callable[[int], list[int]]:
-        """Return what tells the data that a node is made from, the elements that a count is made from included."""
+        """Return a function from a node to the data it is made from, including the elements behind a count."""
         return lambda node: sorted(self.graph.data[node] | reach.counted.get(node, set()))
 
     def made_from(self, ends: set[int], reach: Reach) -> set[int]:
-        """Return the data of a source that its ends are made from."""
+        """Return the nodes of a source's data from which the ends are computed."""
         found = closure(ends, [self.graph.data], reach.data)
         while more := set().union(*(reach.counted[n] for n in found & reach.counted.keys())) - found:
             found |= closure(more, [self.graph.data], reach.data)
         return found
 
     def made_there(self, nodes: set[int]) -> set[int]:
-        """Return the constants that conditions among the nodes choose, with the statements that make them."""
+        """Return the constants that conditions among the nodes choose, with the nodes that produce them."""
         graph = self.graph
         found: set[int] = set()
         for node in nodes:
@@ -135,7 +135,7 @@ class Tracer:
         return found
 
     def _makers(self, dep: int, ways: Branches, found: set[int]) -> None:
-        """Add what a value is made from, as far as it stands under the conditions that choose it."""
+        """Add the nodes from which a value is made, as far as they are under the conditions that choose it."""
         pending = [dep] if ways else []
         while pending:
             for near in self.graph.data[pending.pop()]:
@@ -149,9 +149,9 @@ class Tracer:
     def steps(
         self, origin: SourceRecord, on_data: set[int], on_any: set[int], record: SinkRecord
     ) -> tuple[tuple[Step, ...], dict[int, int], dict[int, int]]:
-        """Return the taint list: data and control steps of the nodes, and what is around them.
+        """Return the taint list: data and control steps of the nodes, and the context steps.
 
-        With it come node → statement, and statement → place in the list.
+        Also return node → statement, and statement → index in the list.
         """
         dependence: dict[int, Dependence] = {}
         written: dict[int, Written] = {}
@@ -195,7 +195,7 @@ class Tracer:
         written: dict[int, Written],
         dependence: dict[int, Dependence],
     ) -> list[tuple[int, int]]:
-        """Add the calls by which decisions lead to what functions store; return what comes before what."""
+        """Add the calls between conditions and the values stored under them; return the order constraints."""
         edges: dict[tuple[int, int], None] = {}
         for decision, calls, made in entrances(self.graph, nodes):
             chain = [statement_of.get(decision)]
@@ -211,7 +211,7 @@ class Tracer:
         return list(edges)
 
     def statement(self, node: int) -> Written | None:
-        """Return the statement that a node belongs to; of a message arriving, the callback's header."""
+        """Return the statement of a node; for an arriving message, the header of the callback."""
         if node not in self._statements:
             self._statements[node] = self._statement(self.graph.places[node])
         return self._statements[node]
@@ -230,7 +230,7 @@ class Tracer:
     def edges(
         self, nodes: Iterable[int], statement_of: Mapping[int, int], written: Mapping[int, Written]
     ) -> list[tuple[int, int]]:
-        """Return which statement comes before which; what a loop carries to its next turn says nothing."""
+        """Return the order constraints between statements, without those carried by a loop to its next iteration."""
         found: dict[tuple[int, int], None] = {}
         turns: list[tuple[int, int]] = []
         function: dict[int, object] = {}
@@ -263,14 +263,14 @@ class Tracer:
                 yield former
 
     def formers(self, node: int) -> list[int]:
-        """Return what a node is made from or depends on, in order."""
+        """Return the nodes that a node is made from or depends on, in order."""
         known = self._formers.get(node)
         if known is None:
             known = self._formers[node] = sorted(self.graph.data[node] | self.graph.control[node])
         return known
 
     def step(self, written: Written, span: Span, dependence: Dependence, known: Role | None) -> Step:
-        """Return a statement as a step; what is not known of its role its syntax tells."""
+        """Return a statement as a step; an unknown role is derived from the syntax."""
         text = written.text
         role = ROLES.get(type(written.node).__name__, "assign")
         if known is not None:
@@ -284,7 +284,7 @@ class Tracer:
     # --- ends ---------------------------------------------------------------------------------------------
 
     def source(self, record: SourceRecord) -> Source:
-        """Return a source as others see it."""
+        """Return a source in the form of the public model."""
         topics = tuple(sorted(record.topics))
         callback = ", ".join(sorted(record.callbacks))
         name = ", ".join(topics) or f"line {record.pos[0]}"
@@ -302,7 +302,7 @@ class Tracer:
         )
 
     def sink(self, record: SinkRecord) -> Sink:
-        """Return a sink as others see it."""
+        """Return a sink in the form of the public model."""
         topics = tuple(sorted(record.topics))
         name = ", ".join(topics) or f"line {record.pos[0]}"
         same = sorted(
@@ -327,7 +327,7 @@ class Tracer:
 
 
 def ending_in_publish_call(path: Sequence[int], steps: Sequence[Step]) -> tuple[int, ...]:
-    """Return a path with its publish call last: the call is on the way before what its arguments call."""
+    """Return a path with its publish call last; functions called in its arguments otherwise come after it."""
     calls = [place for place in path if steps[place].role == "publish"]
     return (*(place for place in path if place not in calls), *calls[-1:])
 

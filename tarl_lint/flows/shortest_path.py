@@ -1,4 +1,4 @@
-"""The shortest way from a subscription to a publish call, counted in statements."""
+"""Shortest path from a subscription to a publish call, counted in statements."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ def shortest_path(
     formers: Callable[[int], Iterable[int]],
     statement_of: Mapping[int, int],
 ) -> tuple[int, ...]:
-    """Return the statements on a path of fewest statements from one of `starts` to one of `ends`, in that order.
+    """Return the statements on a path with the fewest statements from one of `starts` to one of `ends`, in that order.
 
-    Nodes of one statement, and nodes without one, cost nothing (0-1 breadth-first search from the ends). Equal lengths
-    are decided by the order of `ends` and `formers`, which have to be ordered. Empty where there is no path.
+    Nodes of the same statement, and nodes without one, cost nothing (0-1 breadth-first search from the ends). Ties
+    are broken by the order of `ends` and `formers`, which must be ordered. Empty if there is no path.
     """
     following: dict[int, int] = {}
     cost: dict[int, int] = {}
@@ -43,7 +43,7 @@ def shortest_path(
 
 
 def _statements(node: int, following: Mapping[int, int], statement_of: Mapping[int, int]) -> tuple[int, ...]:
-    """Return the statements of the nodes from one on, each once."""
+    """Return the statements along the path from a node, without repetition."""
     found: dict[int, None] = {}
     while True:
         if (statement := statement_of.get(node)) is not None:

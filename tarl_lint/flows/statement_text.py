@@ -1,4 +1,4 @@
-"""Statements as people see them: where they stand, their text, and an identity that survives moved lines."""
+"""Statements for display: position, text, and an identity that survives moved lines."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 @dataclass(slots=True, eq=False)
 class Written:
-    """A statement (or the body of a lambda, or an arm of `match`) and the statements around it."""
+    """A statement (or the body of a lambda, or an arm of `match`) and the statements that enclose it."""
 
     node: ast.AST
     qualname: str
@@ -30,12 +30,12 @@ class Written:
 
     @property
     def defines(self) -> bool:
-        """Tell whether it is a function or class: what is around it is not around its calls."""
+        """Return whether it is a function or class: statements that enclose it do not enclose its calls."""
         return isinstance(self.node, (*FUNCTIONS, ast.ClassDef))
 
     @property
     def shown(self) -> bool:
-        """Tell whether it is shown around steps inside it: a loop, or the `__main__` guard."""
+        """Return whether it is shown as context of steps inside it: a loop, or the `__main__` guard."""
         return isinstance(self.node, LOOPS) or (
             isinstance(self.node, ast.If) and _guards_main(self.node.test)
         )
@@ -107,7 +107,7 @@ class Text:
         return self.by_start.get((pos[0], pos[1]))
 
     def function(self, pos: Pos) -> Written | None:
-        """Return the function whose header starts here, as the place where a message arrives."""
+        """Return the function whose header starts here, where a message arrives."""
         return self.functions.get((pos[0], pos[1]))
 
     def site(self, written: Written) -> SiteId:
@@ -119,7 +119,7 @@ class Text:
         )
 
     def _count(self, qualname: str) -> None:
-        """Number the statements of a function that read the same, once for all of them."""
+        """Number the statements of a function that have equal texts."""
         seen: Counter[str] = Counter()
         for written in self.by_name.get(qualname, ()):
             text = self.text(written)
@@ -127,14 +127,14 @@ class Text:
             seen[text] += 1
 
     def text(self, written: Written) -> str:
-        """Return a statement as `ast.unparse` writes it, of a compound one the header."""
+        """Return a statement as `ast.unparse` formats it; for a compound statement, its header."""
         known = self.texts.get(id(written))
         if known is None:
             known = self.texts[id(written)] = ast.unparse(_header(written.node)).strip()
         return known
 
     def span(self, written: Written) -> Span:
-        """Return where a statement (its header) stands."""
+        """Return the span of a statement (of its header, if compound)."""
         known = self.spans.get(id(written))
         if known is None:
             known = self.spans[id(written)] = self.stretch((*written.start, *self._end(written.node)))
@@ -156,12 +156,12 @@ class Text:
         return "\n".join([first, *self.lines[span.line : span.end_line - 1], last])
 
     def _column(self, line: int, offset: int) -> int:
-        """Turn an offset in UTF-8 bytes into a column that counts characters from 1."""
+        """Convert an offset in UTF-8 bytes to a column in characters, counted from 1."""
         text = self.lines[line - 1] if 0 < line <= len(self.lines) else ""
         return offset + 1 if text.isascii() else len(text.encode()[:offset].decode(errors="replace")) + 1
 
     def _end(self, node: ast.AST) -> tuple[int, int]:
-        """Return the end of a statement; of a compound one, its header's colon included."""
+        """Return the end of a statement; for a compound statement, the end of its header including the colon."""
         last = _last_of_header(node)
         if last is None:
             return getattr(node, "end_lineno", 1) or 1, getattr(node, "end_col_offset", 0) or 0
@@ -178,14 +178,14 @@ class Text:
 
 
 class Texts:
-    """The texts of all modules, each taken apart when it is first needed."""
+    """The texts of all modules, each parsed on first use."""
 
     def __init__(self, modules: Mapping[str, Module]) -> None:
         self.modules = modules
         self.known: dict[str, Text] = {}
 
     def release(self) -> None:
-        """Let go of the statements, each of which knows its text."""
+        """Drop the statements and their references to the texts."""
         for text in self.known.values():
             for table in (text.by_start, text.functions, text.by_name):
                 table.clear()
@@ -198,7 +198,7 @@ class Texts:
 
 
 def _guards_main(test: ast.expr) -> bool:
-    """Tell whether a test is `__name__ == "__main__"`."""
+    """Return whether a test is `__name__ == "__main__"`."""
     return isinstance(test, ast.Compare) and isinstance(test.left, ast.Name) and test.left.id == "__name__"
 
 
@@ -209,7 +209,7 @@ def _start(node: ast.AST) -> tuple[int, int]:
 
 
 def _header(node: ast.AST) -> ast.AST:
-    """Return a copy of a compound statement without what is below its header."""
+    """Return a copy of a compound statement without its body."""
     if isinstance(node, ast.match_case):
         return ast.match_case(pattern=node.pattern, guard=node.guard, body=[])
     if not isinstance(node, (*COMPOUND, *FUNCTIONS)):
@@ -222,7 +222,7 @@ def _header(node: ast.AST) -> ast.AST:
 
 
 def _last_of_header(node: ast.AST) -> tuple[int, int] | None:
-    """Return where the last expression of a header ends, None for simple statements."""
+    """Return the end of the last expression of a header, None for simple statements."""
     if isinstance(node, FUNCTIONS):
         parts: list[ast.AST] = [*ast.walk(node.args)]
         parts += [node.returns] if node.returns is not None else []
@@ -247,7 +247,7 @@ def _ends(node: ast.AST) -> tuple[int, int]:
 
 
 def _outer_lambdas(node: ast.expr) -> Iterator[ast.Lambda]:
-    """Yield the lambdas in an expression which are not inside another one."""
+    """Yield the lambdas in an expression that are not inside another lambda."""
     pending: list[ast.AST] = [node]
     while pending:
         current = pending.pop(0)

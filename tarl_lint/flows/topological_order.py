@@ -1,4 +1,4 @@
-"""Topological order of statements, ties and cycles by position."""
+"""Topological order of statements; ties and cycles are broken by position."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ T = TypeVar("T", bound=int)
 def in_order(
     spans: Mapping[T, Span], edges: Iterable[tuple[T, T]], first: Collection[T] | None = None
 ) -> list[T]:
-    """Return the keys so that `before` stands before `after` for each edge, where cycles allow it.
+    """Return the keys in an order in which `before` precedes `after` for each edge, as far as cycles allow.
 
-    What nothing stands before waits until it is needed, unless it is of the `first`; all are when those are not told.
+    A key without predecessors is placed as late as possible, unless it is in `first`; the default is all of them.
     """
     after: dict[T, set[T]] = {key: set() for key in spans}
     waiting = dict.fromkeys(spans, 0)
@@ -48,7 +48,7 @@ def in_order(
 def before_loops(
     edges: Iterable[tuple[int, int]], turns: Iterable[tuple[int, int]], function: Mapping[int, object]
 ) -> list[tuple[int, int]]:
-    """What a loop carries to its head was fed from outside the function before: that comes before the head."""
+    """Return edges that place statements of other functions before the head of a loop that their values enter."""
     formers: dict[int, list[int]] = {}
     for before, after in edges:
         formers.setdefault(after, []).append(before)

@@ -1,1 +1,1 @@
-"""A compact form of the code that is read, and what its control flow says."""
+"""A compact form of the analysed code, and its control dependence."""

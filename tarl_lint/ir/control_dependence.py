@@ -1,6 +1,6 @@
 """Control dependence inside one function, after Ferrante, Ottenstein and Warren (TOPLAS 1987).
 
-Termination-insensitive: what follows a loop does not depend on the loop's condition. Exceptions come only
+Termination-insensitive: a statement after a loop does not depend on the loop's condition. Exceptions come only
 from `raise`.
 """
 
@@ -14,20 +14,20 @@ from typing import Final
 from tarl_lint.ir import nodes as ir
 from tarl_lint.ir.postdominance import EXIT, passed, postdominators
 
-Branch = tuple[int, str]  # number of the deciding statement, the way it went
+Branch = tuple[int, str]  # number of the condition's statement, outcome
 
 Raising = Mapping[int, Iterable[str]]
 
-NEAR: Final = 100  # branches that a statement is told of; those tell of the ones before them
+NEAR: Final = 100  # branches stored per statement; the others are found through these
 NOTHING_RAISES: Raising = {}
 ALL: Final = frozenset(["Exception", "BaseException"])
 
 
 @dataclass(slots=True)
 class Control:
-    """For each statement: the branches it directly depends on, and all that those depend on in turn.
+    """For each statement: the branches on which it depends directly, and those on which it depends in any way.
 
-    Of very many branches only the nearest are there; `far` are the statements of which that is so.
+    Of very many branches only the nearest are stored; `far` are the statements for which this is so.
     """
 
     direct: Mapping[int, frozenset[Branch]]
@@ -38,7 +38,7 @@ class Control:
 
 @dataclass(slots=True)
 class _Graph:
-    """Control-flow edges: statement → its successors by the way that leads there."""
+    """Control-flow edges: statement → successors by outcome."""
 
     edges: dict[int, dict[str, int]] = field(default_factory=dict)
     raising: Raising = field(default_factory=dict)
@@ -52,15 +52,15 @@ class _Graph:
 
 @dataclass(frozen=True, slots=True)
 class _Exits:
-    """Where jumps lead from here."""
+    """Targets of jumps at a statement."""
 
     on_break: int = EXIT
     on_continue: int = EXIT
-    on_raise: int = EXIT  # where no handler is
-    handlers: tuple[tuple[frozenset[str], int], ...] = ()  # names of what each takes, none for all
+    on_raise: int = EXIT  # without a handler
+    handlers: tuple[tuple[frozenset[str], int], ...] = ()  # exception names of each handler, none for all
 
     def of(self, name: str) -> int:
-        """Return where an exception leads: the handler that names it, else one for all, else the first."""
+        """Return the target of an exception: the handler that names it, else one for all, else the first."""
         if not self.handlers:
             return self.on_raise
         named = [entry for names, entry in self.handlers if name and name in names]
@@ -69,7 +69,7 @@ class _Exits:
 
 
 def control_dependence(body: Sequence[ir.Stmt], raising: Raising = NOTHING_RAISES) -> Control:
-    """Return the control dependence of a function's statements. `raising` names what calls in a statement raise."""
+    """Return the control dependence of a function's statements. `raising` maps statements to exceptions of calls."""
     graph = _Graph(raising=raising)
     entry = _block(graph, body, EXIT, _Exits())
     order = _reachable(graph, [entry, *(begin for _, begin in graph.finals)])
@@ -87,7 +87,7 @@ def control_dependence(body: Sequence[ir.Stmt], raising: Raising = NOTHING_RAISE
 
 
 def _block(graph: _Graph, body: Sequence[ir.Stmt], follow: int, exits: _Exits) -> int:
-    """Enter statements, last first; return the number of the first."""
+    """Add statements to the graph, last first; return the number of the first."""
     for statement in reversed(body):
         follow = _statement(graph, statement, follow, exits)
     return follow
@@ -122,21 +122,21 @@ def _statement(graph: _Graph, s: ir.Stmt, follow: int, exits: _Exits) -> int:
 
 
 def raised(expr: ir.Expr | None) -> str:
-    """Return the name of the class that is raised, "" when nothing tells."""
+    """Return the name of the raised class, "" if unknown."""
     if isinstance(expr, ir.Call):
         expr = expr.function
     return expr.name if isinstance(expr, (ir.Name, ir.Attribute)) else ""
 
 
 def taken(types: ir.Expr | None) -> frozenset[str]:
-    """Return the names of the classes that a handler takes, none for all."""
+    """Return the names of the classes that a handler catches, none for all."""
     parts = types.items if isinstance(types, ir.SequenceDisplay) else [types]
     names = frozenset(raised(part) for part in parts)
     return frozenset() if names & (ALL | {""}) else names
 
 
 def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
-    """The statement itself chooses a handler: which one, nothing tells."""
+    """Add a `try`, whose own statement represents the unknown choice of a handler; return its number."""
     after = _block(graph, s.final, follow, exits)
     handlers = [_block(graph, body, after, exits) for _, _, body in s.handlers]
     takes = tuple((taken(types), entry) for (types, _, _), entry in zip(s.handlers, handlers, strict=True))
@@ -151,7 +151,7 @@ def _try(graph: _Graph, s: ir.Try, follow: int, exits: _Exits) -> int:
 
 
 def _run_anyway(attempt: ir.Try, direct: dict[int, frozenset[Branch]]) -> None:
-    """Let no branch inside a `try` decide on its `finally`, which runs however the rest is left."""
+    """Remove the dependence of a `finally` on branches inside its `try`: it always runs."""
     blocks = [attempt.body, attempt.orelse, *(body for _, _, body in attempt.handlers)]
     inside = {s.id for block in blocks for s in _all(block)}
     inside.add(attempt.id)
@@ -171,7 +171,7 @@ def _all(body: Sequence[ir.Stmt]) -> Iterator[ir.Stmt]:
 
 
 def _breaks(body: Sequence[ir.Stmt]) -> bool:
-    """Tell whether a loop's body can leave the loop."""
+    """Return whether a loop's body can leave the loop."""
     for s in body:
         if isinstance(s, (ir.Return, ir.Raise)) or (isinstance(s, ir.Jump) and s.kind == "break"):
             return True
@@ -206,7 +206,7 @@ def _bodies(s: ir.Stmt) -> tuple[Sequence[ir.Stmt], ...]:
 
 
 def _reachable(graph: _Graph, entries: Sequence[int]) -> list[int]:
-    """Return the statements in depth-first order from where ways begin, the last one first."""
+    """Return the statements reachable from the entries in reverse depth-first order."""
     seen: dict[int, None] = {}
     pending = [*reversed(entries)]
     while pending:
@@ -218,7 +218,7 @@ def _reachable(graph: _Graph, entries: Sequence[int]) -> list[int]:
 
 
 def _direct(graph: _Graph, order: Sequence[int], nearest: Mapping[int, int]) -> dict[int, frozenset[Branch]]:
-    """Statement n depends on branch (a, b) when n follows every way from b but not every way from a."""
+    """Return the direct control dependence: n depends on branch (a, b) if n is on every path from b, not from a."""
     found: dict[int, set[Branch]] = {n: set() for n in order}
     for node in order:
         ways = graph.edges[node]
@@ -231,7 +231,7 @@ def _direct(graph: _Graph, order: Sequence[int], nearest: Mapping[int, int]) -> 
 
 
 def _closure(direct: Mapping[int, frozenset[Branch]]) -> dict[int, frozenset[Branch]]:
-    """Return for each statement the branches that it depends on in any way, the nearest of very many."""
+    """Return for each statement the branches on which it depends in any way; of very many, the nearest."""
     closed: dict[int, frozenset[Branch]] = {}
     for node, branches in direct.items():
         found = dict.fromkeys(sorted(branches))

@@ -1,4 +1,4 @@
-"""Statements that only tell people something, and change nothing: prints and log messages."""
+"""Statements that only print or log and have no other effect."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ PURE: Final = frozenset(
         "sum",
         "sorted",
     ]
-)  # functions that change nothing, whatever they are given
+)  # functions without side effects
 FORMATTING: Final = frozenset(["format", "join", "get_time", "to_sec", "time", "now", "get_name", "tolist"])
 ACTING: Final = (ast.Await, ast.Yield, ast.YieldFrom, ast.NamedExpr)
 
 
 def only_tells(expr: ast.expr, prints: bool) -> bool:
-    """Tell whether an expression for its effect writes a message for people, made without any other effect.
+    """Return whether an expression statement only prints or logs, without any other effect.
 
-    `prints` tells whether `print` is Python's own.
+    `prints`: `print` is Python's built-in function.
     """
     if not isinstance(expr, ast.Call) or not _tells(expr.func, prints):
         return False

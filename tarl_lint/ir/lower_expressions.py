@@ -1,4 +1,4 @@
-"""Expressions of `ast` become expressions of the compact form."""
+"""Lowering of expressions from `ast` to the compact form."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ OPERATORS: dict[type[ast.AST], str] = {
     ast.Or: "or",
 }
 
-AS_TEXT = (-1, ord("s"))  # conversions of a formatted value that `str` makes too
+AS_TEXT = (-1, ord("s"))  # conversions of a formatted value that equal `str`
 
 
 def position(node: ast.expr | ast.stmt | ast.excepthandler) -> ir.Pos:
-    """Return where a node stands."""
+    """Return the position of a node."""
     return (
         node.lineno,
         node.col_offset,
@@ -60,7 +60,7 @@ class Expressions:
         self.module = module
 
     def expr(self, node: ast.expr, scope: Scope) -> ir.Expr:
-        """Lower one expression; what has no form of its own becomes an operation on its parts."""
+        """Lower one expression; one without its own form becomes an operation on its parts."""
         method = LOWER.get(type(node))
         if method is not None:
             return method(self, node, scope)
@@ -140,7 +140,7 @@ class Expressions:
     def _comprehension(
         self, node: ast.ListComp | ast.SetComp | ast.GeneratorExp | ast.DictComp, scope: Scope
     ) -> ir.Expr:
-        """Lower in place: its targets become locals of the function under names of their own."""
+        """Lower in place: its targets become locals of the function, under unique names."""
         before, slot = dict(scope.renamed), scope.next()
         loops: list[tuple[ir.Expr, ir.Expr, Sequence[ir.Expr]]] = []
         for generator in node.generators:
@@ -173,7 +173,7 @@ class Expressions:
         return ir.Lambda(self.function(node, scope), position(node), scope.next())
 
     def function(self, node: ir.FunctionNode, scope: Scope) -> ir.Function:
-        """Describe a function; its body waits for the first call."""
+        """Lower a function's header; its body is lowered at the first call."""
         name = node.name if not isinstance(node, ast.Lambda) else "<lambda>"
         inner = Scope("function", scope.child(name), scope, around=dict(scope.renamed), plain=scope.plain)
         inner.bound.update(p.arg for p in _arguments(node.args))

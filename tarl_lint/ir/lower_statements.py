@@ -1,4 +1,4 @@
-"""Statements of `ast` become the compact form: one pass per function, when it is first needed."""
+"""Lowering of statements from `ast` to the compact form: one pass per function, on first use."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from tarl_lint.ir.match_patterns import captures, conditions
 from tarl_lint.ir.scopes import Scope, collect, plain
 from tarl_lint.source import Module
 
-MADE = (ir.Call, ir.SequenceDisplay, ir.Walrus, ir.Yield)  # subjects of `match` that are made once
-NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations of what is no field of a dataclass
+MADE = (ir.Call, ir.SequenceDisplay, ir.Walrus, ir.Yield)  # subjects of `match` that are evaluated once
+NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # no fields of a dataclass
 
 
 def lower_module(module: Module) -> ir.Program:
@@ -29,7 +29,7 @@ def lower_module(module: Module) -> ir.Program:
 
 
 def lower_body(function: ir.Function, package: str) -> Sequence[ir.Stmt]:
-    """Return a function's body, lowered at the first time."""
+    """Return a function's body, lowered on first use."""
     if function.body is None:
         scope = function.scope
         assert isinstance(scope, Scope)  # noqa: S101 - what lower_expr puts there
@@ -185,7 +185,7 @@ class Lowering(Expressions):
         return [ir.Delete(scope.next(), position(node), self.all(node.targets, scope))]
 
     def match(self, node: ast.Match, scope: Scope) -> list[ir.Stmt]:
-        """Lower to a chain of conditions; captured names take the subject's parts."""
+        """Lower to a chain of conditions; captured names are assigned the subject's parts."""
         subject = self.expr(node.subject, scope)
         orelse: list[ir.Stmt] = []
         once: list[ir.Stmt] = []

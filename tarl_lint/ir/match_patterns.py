@@ -1,4 +1,4 @@
-"""Patterns of `match`: which part of the subject each captured name takes."""
+"""Patterns of `match`: the part of the subject that each name captures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Lower = Callable[[ast.expr], ir.Expr]
 def captures(
     pattern: ast.pattern, subject: ir.Expr, where: ir.Pos, lower: Lower
 ) -> Iterator[tuple[str, ir.Expr]]:
-    """Yield each captured name with the expression of its part, from the outside in."""
+    """Yield each captured name with the expression of its part, outermost first."""
     if isinstance(pattern, ast.MatchAs):
         if pattern.name:
             yield pattern.name, subject
@@ -33,7 +33,7 @@ def captures(
 
 
 def conditions(pattern: ast.pattern, subject: ir.Expr, where: ir.Pos, lower: Lower) -> Iterator[ir.Expr]:
-    """Yield what must hold for a pattern to match; nothing for one that always does."""
+    """Yield the conditions under which a pattern matches; none if it always does."""
     if isinstance(pattern, ast.MatchValue):
         yield ir.Operation("==", [subject, lower(pattern.value)], where)
     elif isinstance(pattern, ast.MatchSingleton):
@@ -54,7 +54,7 @@ def conditions(pattern: ast.pattern, subject: ir.Expr, where: ir.Pos, lower: Low
 def _parts(
     pattern: ast.pattern, subject: ir.Expr, where: ir.Pos, lower: Lower
 ) -> Iterator[tuple[ast.pattern, ir.Expr]]:
-    """Yield the patterns inside a pattern with what they are matched against."""
+    """Yield the subpatterns of a pattern with the expressions that they match."""
     if isinstance(pattern, ast.MatchSequence):
         yield from _elements(pattern, subject, where)
     elif isinstance(pattern, ast.MatchMapping):

@@ -1,4 +1,4 @@
-"""The compact form that functions are lowered to: few kinds of statements and expressions, names resolved."""
+"""The compact form of functions: few kinds of statements and expressions, with resolved names."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 
 @dataclass(slots=True, eq=False)
 class Const:
-    """A literal, also a signed one; `known` is what it evaluates to, once somebody asked."""
+    """A literal, possibly signed; `known` caches its value."""
 
     value: object
     pos: Pos
@@ -23,7 +23,7 @@ class Const:
 
 @dataclass(slots=True, eq=False)
 class Name:
-    """A variable; `level` counts the enclosing functions to walk up when it is free."""
+    """A variable; for a free variable, `level` counts the enclosing functions up to its owner."""
 
     name: str
     scope: Scope
@@ -52,7 +52,7 @@ class Item:
 
 @dataclass(slots=True, eq=False)
 class Slice:
-    """`lower:upper:step`, and what else selects several elements."""
+    """`lower:upper:step`, or another index that selects several elements."""
 
     parts: Sequence[Expr]
     pos: Pos
@@ -71,7 +71,7 @@ class Call:
 
 @dataclass(slots=True, eq=False)
 class Operation:
-    """Any operator: the result holds data of all parts. `operator` names those that are folded."""
+    """Any operator: the result contains the data of all parts. `operator` names those that are folded."""
 
     operator: str
     parts: Sequence[Expr]
@@ -147,7 +147,7 @@ class Yield:
 
 @dataclass(slots=True, eq=False)
 class Parameter:
-    """One parameter; `default` is lowered in the scope around the function."""
+    """One parameter; `default` is lowered in the enclosing scope."""
 
     name: str
     kind: Literal["plain", "star", "keyword", "mapping"]
@@ -168,15 +168,15 @@ class Function:
     pos: Pos
     body: Sequence[Stmt] | None = None
     control: object = None
-    raising: dict[int, dict[str, None]] = field(default_factory=dict)  # statement → what its calls raise
-    generator: bool = False  # known when the body is lowered
-    starts: bool | None = None  # whether it registers something or starts a node, once somebody asked
-    answers: bool | None = None  # whether it returns anything but None, once somebody asked
+    raising: dict[int, dict[str, None]] = field(default_factory=dict)  # statement → exceptions of its calls
+    generator: bool = False  # set when the body is lowered
+    starts: bool | None = None  # whether it registers something or starts a node; None until computed
+    answers: bool | None = None  # whether it returns anything but None; None until computed
 
 
 @dataclass(slots=True, eq=False)
 class Lambda:
-    """A lambda where it is written."""
+    """A lambda expression."""
 
     function: Function
     pos: Pos
@@ -204,7 +204,7 @@ Expr = (
 
 @dataclass(slots=True, eq=False)
 class Stmt:
-    """What all statements have: a number within their function and the position of their header's first part."""
+    """Base of all statements: a number within the function and the position of the header's first part."""
 
     id: int
     pos: Pos
@@ -212,7 +212,7 @@ class Stmt:
 
 @dataclass(slots=True, eq=False)
 class Assign(Stmt):
-    """Assignment; `augmented` when the value already holds the target's former value."""
+    """Assignment; `augmented` if the value already contains the target's previous value."""
 
     targets: Sequence[Expr]
     value: Expr
@@ -295,7 +295,7 @@ class Define(Stmt):
 
 @dataclass(slots=True, eq=False)
 class Class(Stmt):
-    """`class`: its body runs with the class as its frame."""
+    """`class`: the body runs with the class as its frame."""
 
     target: Expr
     name: str
@@ -309,7 +309,7 @@ class Class(Stmt):
 
 @dataclass(slots=True, eq=False)
 class Import(Stmt):
-    """Bindings (target, dotted module, member or None); a member `*` binds nothing but opens the module."""
+    """Bindings (target, dotted module, member or None); a member `*` imports all names of the module."""
 
     bindings: Sequence[tuple[Expr | None, str, str | None]]
 
@@ -330,5 +330,5 @@ class Program:
     body: Sequence[Stmt]
     function: Function
     package: str = ""
-    takes_part: bool = True  # something in it subscribes or publishes, as far as words tell
+    takes_part: bool = True  # its words suggest that it subscribes or publishes
     stars: list[str] = field(default_factory=list)

@@ -1,6 +1,6 @@
-"""What every way from a statement to the end of its function passes.
+"""Postdominators: the statements on every path from a statement to the end of its function.
 
-After Cooper, Harvey and Kennedy (A Simple, Fast Dominance Algorithm, 2001), on the edges turned round.
+After Cooper, Harvey and Kennedy (A Simple, Fast Dominance Algorithm, 2001), on reversed edges.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ EXIT: Final = 0
 
 
 def postdominators(edges: Mapping[int, Mapping[str, int]], order: Sequence[int]) -> dict[int, int]:
-    """Return for each statement the nearest one that every way from it to the exit passes.
+    """Return for each statement its immediate postdominator.
 
-    `edges` leads from statements to those that may be next, `order` names the statements.
+    `edges` maps statements to their successors, `order` lists the statements.
     """
     before: dict[int, list[int]] = {}
     for node in order:
@@ -41,7 +41,7 @@ def postdominators(edges: Mapping[int, Mapping[str, int]], order: Sequence[int])
 
 
 def _meet(one: int, other: int, nearest: Mapping[int, int], rank: Mapping[int, int]) -> int:
-    """Return the nearest statement that the ways from both pass."""
+    """Return the nearest common postdominator of two statements."""
     while one != other:
         while rank[one] < rank[other]:
             one = nearest[one]
@@ -51,7 +51,7 @@ def _meet(one: int, other: int, nearest: Mapping[int, int], rank: Mapping[int, i
 
 
 def _endless(before: Mapping[int, Sequence[int]], order: Sequence[int]) -> set[int]:
-    """Return statements to be taken for the last ones, so that every other one leads to the exit."""
+    """Return statements to treat as final, so that every statement reaches the exit."""
     seen: set[int] = set()
     found: set[int] = set()
     pending = [EXIT]
@@ -68,7 +68,7 @@ def _endless(before: Mapping[int, Sequence[int]], order: Sequence[int]) -> set[i
 
 
 def _finished(before: Mapping[int, Sequence[int]]) -> list[int]:
-    """Return the statements as a depth-first walk from the exit, edges turned round, leaves them."""
+    """Return the statements in postorder of a depth-first walk from the exit along reversed edges."""
     finished: list[int] = []
     seen = {EXIT}
     path = [(EXIT, iter(before[EXIT]))]
@@ -85,7 +85,7 @@ def _finished(before: Mapping[int, Sequence[int]]) -> list[int]:
 
 
 def passed(start: int, end: int, nearest: Mapping[int, int]) -> Iterator[int]:
-    """Yield what every way from one statement to the exit passes, up to another one."""
+    """Yield the postdominators of one statement, up to another one."""
     while start not in (end, EXIT):
         yield start
         start = nearest[start]

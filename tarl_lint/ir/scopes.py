@@ -1,4 +1,4 @@
-"""Who owns a name: locals of a function, names of an enclosing function, globals."""
+"""Scopes: resolve names to locals, names of an enclosing function, or globals."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 @dataclass(slots=True, eq=False)
 class Scope:
-    """The names that a module, class or function binds; `parent` is where it is written."""
+    """The names that a module, class or function binds; `parent` is the enclosing scope."""
 
     kind: str
     qualname: str
@@ -25,13 +25,13 @@ class Scope:
     globals: set[str] = field(default_factory=set)
     nonlocals: set[str] = field(default_factory=set)
     counter: int = 0  # slots and statement numbers handed out
-    renamed: dict[str, str] = field(default_factory=dict)  # targets of comprehensions being lowered
-    around: dict[str, str] = field(default_factory=dict)  # the same of the parent, where this one is written
-    plain: bool = False  # nothing in the file binds a name, or yields, inside an expression
-    prints: bool = False  # of a module: `print` is Python's own
+    renamed: dict[str, str] = field(default_factory=dict)  # comprehension targets, while lowered
+    around: dict[str, str] = field(default_factory=dict)  # the same of the parent at this definition
+    plain: bool = False  # no expression in the file binds a name or yields
+    prints: bool = False  # for a module: `print` is Python's built-in function
 
     def resolve(self, name: str) -> tuple[str, ScopeKind, int]:
-        """Return the name as stored, its kind, and how many functions up it lives."""
+        """Return the stored name, its kind, and the number of enclosing functions up to its owner."""
         name = self.renamed.get(name, name)
         if name in self.globals or self.kind == "module":
             return name, "global", 0
@@ -52,17 +52,17 @@ class Scope:
         return self if self.parent is None else self.parent.module()
 
     def child(self, name: str) -> str:
-        """Return the qualified name of what is defined here, without `<locals>`."""
+        """Return the qualified name of a definition in this scope, without `<locals>`."""
         return f"{self.qualname}.{name}" if self.qualname else name
 
     def next(self) -> int:
-        """Hand out a number that is unique in this function."""
+        """Return a number that is unique in this function."""
         self.counter += 1
         return self.counter
 
 
 def collect(scope: Scope, body: Iterable[ast.AST]) -> bool:
-    """Enter into `scope` the names that statements bind. Tell whether one of them yields."""
+    """Add the names that statements bind to `scope`. Return whether one of them yields."""
     yields = False
     for node in _own_statements(body) if scope.plain else _own_nodes(body):
         if isinstance(node, ast.Name):
@@ -86,7 +86,7 @@ def collect(scope: Scope, body: Iterable[ast.AST]) -> bool:
 
 
 def _own_nodes(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
-    """Yield the nodes below, without those of nested functions, classes and comprehension targets."""
+    """Yield the descendants, without those of nested functions, classes and comprehension targets."""
     pending = list(body)
     while pending:
         node = pending.pop()
@@ -100,12 +100,12 @@ def _own_nodes(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
 
 
 def plain(text: str) -> bool:
-    """Tell from a file's text that its expressions bind no names and do not yield, so need not be searched."""
+    """Return whether a file's text shows that no expression binds a name or yields."""
     return ":=" not in text and "yield" not in text
 
 
 def _own_statements(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
-    """Yield the same nodes without those inside expressions, except for targets."""
+    """Yield the same nodes, without those inside expressions except targets."""
     pending = list(body)
     while pending:
         node = pending.pop()

@@ -1,1 +1,1 @@
-"""What cannot matter, told before anything is interpreted."""
+"""Exclude modules that cannot influence a result, before anything is interpreted."""

@@ -1,4 +1,4 @@
-"""Which modules can matter, told by their text alone, and which of them may share a flow."""
+"""Select modules by the words in their text, and group those that may share a flow."""
 
 from __future__ import annotations
 
@@ -32,20 +32,20 @@ DOTTED: Final = re.compile(r"(?:^|,)[\s\\(]*([.\w]+)")
 
 
 def concerned(modules: Sequence[Named], config: Config) -> bool:
-    """Tell whether any module subscribes or publishes, as far as words tell: if none does, nothing is found."""
+    """Return whether a word in any module suggests that it subscribes or publishes; otherwise nothing can be found."""
     return any(True for _ in mentioning(modules, config))
 
 
 def relevant(modules: Sequence[M], config: Config) -> list[M]:
-    """Return the modules that a flow may pass through, or a subscription or publisher that leads nowhere."""
+    """Return the modules that may take part in a flow, or have an unused subscription or publisher."""
     return [m for group in groups(modules, config) for m in group]
 
 
 def groups(modules: Sequence[M], config: Config) -> list[tuple[M, ...]]:
-    """Return the modules that can matter, apart as far as none of one group imports one of another.
+    """Return the relevant modules in groups; no module of one group imports a module of another.
 
-    Those that subscribe or publish matter, those that import them, and what all of these import. In a group, what a
-    module imports comes before it, where circles allow that.
+    Relevant modules are those that subscribe or publish, those that import them, and everything that these import.
+    Within a group, a module comes after its imports, as far as import cycles allow.
     """
     start = list(mentioning(modules, config))
     if not start:
@@ -63,7 +63,7 @@ def groups(modules: Sequence[M], config: Config) -> list[tuple[M, ...]]:
 
 
 def reached(start: Iterable[M], others: Sequence[M]) -> list[M]:
-    """Return those of `others` that modules import, directly or by each other."""
+    """Return those of `others` that the modules import, directly or indirectly."""
     first = list(start)
     index = Index([*first, *others])
     wanted = {m.path for m in others}
@@ -78,23 +78,23 @@ def reached(start: Iterable[M], others: Sequence[M]) -> list[M]:
 
 
 def mentioning(modules: Iterable[M], config: Config) -> Iterator[M]:
-    """Yield the modules with a word without which a module neither subscribes nor publishes."""
+    """Yield the modules that contain a word that every subscribing or publishing module contains."""
     named = (*(w.name for w in config.wrappers), *config.sources, *config.sinks)
     words = {*catalog.SOURCE_WORDS, *catalog.SINK_WORDS, *(name.rpartition(".")[2] for name in named)}
     words |= set(catalog.LOOKUPS) if config.tf2 else set()
     search = re.compile("|".join(whole(word) for word in sorted(words))).search
-    first = [word.rstrip("(") for word in words]  # found faster, mostly not
+    first = [word.rstrip("(") for word in words]  # a substring search is faster, and rarely succeeds
     return (m for m in modules if any(w in m.text for w in first) and search(m.text) and search(code(m.text)))
 
 
 @lru_cache(maxsize=512)
 def code(text: str) -> str:
-    """Return a file's text without comments and texts over several lines, which are prose mostly."""
+    """Return a file's text without comments and multi-line strings, which are mostly prose."""
     return PROSE.sub(lambda found: found["kept"] or "", text)
 
 
 def whole(word: str) -> str:
-    """Return a pattern for a word that is no part of a longer name (`publish` of `robot_state_publisher`)."""
+    """Return a pattern for a whole word (not the `publish` in `robot_state_publisher`)."""
     return rf"\b{re.escape(word)}" + (r"\b" if word[-1].isalnum() else "")
 
 
@@ -120,7 +120,7 @@ def _connected(modules: Mapping[str, M], edges: Mapping[str, Sequence[M]]) -> It
 
 
 def _in_turn(modules: Iterable[str], imports: Mapping[str, Sequence[Named]]) -> list[str]:
-    """Return paths so that what a module imports comes before it."""
+    """Return paths in an order in which a module comes after its imports."""
     done: dict[str, None] = {}
     entered: set[str] = set()
     pending = [(path, False) for path in sorted(modules, reverse=True)]
@@ -146,7 +146,7 @@ def _imports(module: M, index: Index[M]) -> Iterator[M]:
 
 
 def _names(module: Named) -> Iterator[str]:
-    """Yield the dotted names in import statements, and what looks like one in a text."""
+    """Yield the dotted names in import statements and in strings."""
     for statement in IMPORT.finditer(module.text):
         base, inside, members, modules = statement.groups()
         if base is None:
@@ -159,7 +159,7 @@ def _names(module: Named) -> Iterator[str]:
 
 
 def _absolute(base: str, module: Named) -> str:
-    """Return the module that `from base import` means."""
+    """Return the absolute name of the module in `from base import`."""
     name = base.lstrip(".")
     level = len(base) - len(name)
     if not level:

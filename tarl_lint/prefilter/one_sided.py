@@ -1,7 +1,7 @@
-"""Groups of modules that only hear or only say something, told by words and syntax: most need not be run.
+"""Groups of modules that only subscribe or only publish, by words and syntax: most need not be run.
 
-A flow needs both. Each rule about hazards says itself when one side alone holds nothing for it (`ruled_out`); a group
-that a wanted rule does not rule out is run like any other.
+A flow needs both sides. Each hazard rule decides whether it can find nothing in such a group (`ruled_out`); a group
+that an enabled rule does not rule out is run like any other.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from tarl_lint.prefilter.by_words import code, whole
 from tarl_lint.source import Module
 
 HEARS: Final = re.compile("|".join(whole(w) for w in (*catalog.SOURCE_WORDS, *sorted(catalog.LOOKUPS))))
-ANSWERS: Final = re.compile(r"Service\(|create_service|ActionServer")  # sources that are sinks, too
+ANSWERS: Final = re.compile(r"Service\(|create_service|ActionServer")  # sources that are sinks too
 SAYS: Final = re.compile("|".join(map(whole, catalog.SINK_WORDS)))
 
 
 @dataclass(frozen=True)
 class Side:
-    """Modules that belong together and hold no flow: they only hear or only say something, or neither.
+    """A group of modules without a flow: they only subscribe (`hears`), only publish (`says`), or neither.
 
-    `texts` are those of the modules without comments.
+    `texts` are the modules' texts without comments.
     """
 
     modules: Sequence[Module]
@@ -39,7 +39,7 @@ class Side:
 
 
 class Rule(Protocol):
-    """A file about one hazard."""
+    """The module of a hazard rule."""
 
     CODE: str
     SUMMARY: str
@@ -48,15 +48,15 @@ class Rule(Protocol):
 
     @staticmethod
     def findings(evidence: Evidence) -> Iterator[Finding]:
-        """Yield the hazards in modules that were run."""
+        """Yield the hazards in analysed modules."""
 
     @staticmethod
     def ruled_out(side: Side) -> bool:
-        """Tell whether words and syntax rule out that there is anything to find, so that nothing need be run."""
+        """Return whether words and syntax exclude any finding, so that the group need not be run."""
 
 
 def one_sided(modules: Sequence[Module], config: Config, rules: Sequence[Rule]) -> bool:
-    """Tell whether nothing can be found in modules that belong together: no flow, and no hazard of the wanted rules."""
+    """Return whether a group of modules can contain neither a flow nor a hazard of an enabled rule."""
     if config.named:
         return False
     texts = [code(m.text) for m in modules]
@@ -66,13 +66,13 @@ def one_sided(modules: Sequence[Module], config: Config, rules: Sequence[Rule]) 
     if hears and any(
         _inherits_from_elsewhere(m.tree, {m.name.partition(".")[0] for m in modules}) for m in modules
     ):
-        return False  # what is heard may go into a base class that is not here, which a note names
+        return False  # messages may go into a base class outside the files, which a note names
     side = Side(modules, texts, hears, says)
     return all(_ruled_out(rule, side) for rule in rules if config.enabled(rule.CODE))
 
 
 def _inherits_from_elsewhere(tree: ast.Module, ours: Set[str]) -> bool:
-    """Tell whether a class inherits from one of a package that is neither here, nor Python's or ROS's own."""
+    """Return whether a class inherits from a package outside the files that is not Python's or ROS's own."""
     known = KNOWN | ours
     names: set[str] = set()
     for node in tree.body:
@@ -93,5 +93,5 @@ def _root(expr: ast.expr) -> str:
 
 
 def _ruled_out(rule: Rule, side: Side) -> bool:
-    """Ask a rule; one that does not say is asked about every group."""
+    """Return whether a rule excludes the group; a rule without `ruled_out` never does."""
     return hasattr(rule, "ruled_out") and rule.ruled_out(side)

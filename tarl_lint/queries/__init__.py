@@ -1,1 +1,1 @@
-"""Questions of the plugin about constants at a site."""
+"""Constant propagation queries of the plugin at single sites."""

@@ -1,4 +1,4 @@
-"""What variables hold: constants and where they were written, fields of messages kept unchanged."""
+"""Contents of variables: constants with their origins, and unchanged fields of messages."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MAX_VARIABLES = 400
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """A constant where it is written; value None for what only the run time tells (a parameter)."""
+    """A constant and its place in the source; the value is None if only known at run time (a parameter)."""
 
     value: bool | int | float | None
     path: str
@@ -24,7 +24,7 @@ class Origin:
 
 
 class Origins:
-    """Follows values back to the constants they are."""
+    """Traces values back to the constants from which they come."""
 
     def __init__(self, machine: Linker) -> None:
         self.machine = machine
@@ -35,7 +35,7 @@ class Origins:
                 self.topics[message] = frozenset(t.lstrip("/") for t in record.topics)
 
     def of(self, expr: ir.Expr, value: Value | None) -> frozenset[Origin]:
-        """Return where the constants that an expression may be were written; none when it may be more."""
+        """Return the origins of an expression's possible constants; empty if it may be anything else."""
         if isinstance(expr, ir.Const):
             if isinstance(expr.value, (bool, int, float)):
                 return frozenset([Origin(expr.value, "", expr.pos)])
@@ -46,7 +46,7 @@ class Origins:
         return frozenset(found) if found is not None else frozenset()
 
     def entries(self, value: Value | None, index: Value | None) -> frozenset[Origin]:
-        """Return where the numbers of a table were written from which a computed index takes one; else none."""
+        """Return the origins of a table's numbers if a computed index selects one of them, else nothing."""
         if value is None or index is None or value.pts:
             return frozenset()
         found = self._trace(value.deps - self.machine.use(index), set())
@@ -54,7 +54,7 @@ class Origins:
         return frozenset(found) if found and numbers else frozenset()
 
     def _trace(self, deps: Iterable[int], seen: set[int]) -> set[Origin] | None:
-        """Return the constants behind nodes, None when something else is behind one."""
+        """Return the constants from which nodes come, None if one comes from anything else."""
         found: set[Origin] = set()
         for node in sorted(deps):
             if node in seen:
@@ -70,12 +70,12 @@ class Origins:
                 if inner is None:
                     return None
                 found |= inner
-            elif node not in self.graph.held:  # who only passes an object on says nothing about what is in it
+            elif node not in self.graph.held:  # a node that only passes an object on has no constant
                 return None
         return found
 
     def unchanged(self, value: Value, topic: str, path: str) -> bool:
-        """Tell whether a value is a field of a topic's messages, or a constant from before the first."""
+        """Return whether a value is a field of a topic's messages, or a constant set before the first message."""
         fields = 0
         for obj in value.pts:
             root = obj.whole
@@ -99,23 +99,23 @@ class Origins:
         return True
 
     def constant(self, value: Value) -> bool:
-        """Tell whether a value is nothing but constants (or nothing yet)."""
+        """Return whether a value comes from constants alone, or is unset."""
         return value is BOTTOM or (not value.pts and all(not self.graph.data[d] for d in value.deps))
 
 
 @dataclass(slots=True)
 class Holding:
-    """What the variables at one statement may hold, over all visits."""
+    """Possible contents of the variables at one statement, over all visits."""
 
     values: dict[str, Value] = field(default_factory=dict)
-    fields: dict[tuple[str, str], Value] = field(default_factory=dict)  # variable and field read from it
+    fields: dict[tuple[str, str], Value] = field(default_factory=dict)  # (variable, field) → value
 
-    fresh: dict[str, bool] = field(default_factory=dict)  # variables written in the run that is looked at
+    fresh: dict[str, bool] = field(default_factory=dict)  # variable → whether the observed run wrote it
 
     delivered: set[Obj] = field(default_factory=set)  # messages that have just arrived
 
     def look(self, machine: Linker, frame: Frame) -> None:
-        """Add what the variables hold now."""
+        """Add the current contents of the variables."""
         self.delivered |= machine.delivered
         for name, value, written in _variables(machine, frame):
             self.fresh[name] = written and self.fresh.get(name, True)
@@ -125,7 +125,7 @@ class Holding:
                 self._fields(machine, name, value)
 
     def _fields(self, machine: Linker, name: str, value: Value) -> None:
-        """Read the fields of a message kept whole which were written here: they may no more be the topic's."""
+        """Read the fields written into a stored message: they may no longer be the topic's values."""
         pending: list[tuple[str, Value]] = [("", value)]
         while pending:
             path, current = pending.pop()
@@ -139,7 +139,7 @@ class Holding:
                     pending.append((longer, stored))
 
     def expressions(self, topic: str, path: str, origins: Origins) -> tuple[str, ...]:
-        """Return the expressions that hold a topic's field, shortest first."""
+        """Return the expressions that contain a topic's field, shortest first."""
         found: list[tuple[str, bool]] = []
         for name, value in self.values.items():
             for obj in value.pts:
@@ -154,12 +154,12 @@ class Holding:
         arrived = any(topic in origins.topics.get(m, ()) for m in self.delivered)
         new = (
             [text for text, fresh in found if fresh] if arrived else []
-        )  # an earlier message's values are stale
+        )  # values of an earlier message are stale
         texts = new or [text for text, _ in found]
         return tuple(sorted(texts, key=lambda text: (text.count("."), len(text), text)))
 
     def _intact(self, name: str, rest: str, obj: Obj, origins: Origins, topic: str) -> bool:
-        """Tell whether no field on the way was written."""
+        """Return whether no field on the access path was written."""
         parts = rest.split(".") if rest else []
         outer = _dotted(obj)
         for count in range(1, len(parts) + 1):
@@ -172,7 +172,7 @@ class Holding:
 
 
 def _variables(machine: Linker, frame: Frame) -> Iterator[tuple[str, Value, bool]]:
-    """Yield what can be named at a statement: locals, names of enclosing functions, globals, their attributes."""
+    """Yield the names in scope at a statement: locals, enclosing functions, globals, and their attributes."""
     seen: set[str] = set()
     count = 0
     around: Frame | None = frame
@@ -206,7 +206,7 @@ def _attributes(machine: Linker, owner: str, value: Value) -> Iterator[tuple[str
 
 
 def _dotted(obj: Obj) -> str:
-    """Return the field of a message that an object is, elements by number: `ranges.0`."""
+    """Return the access path of an object within its message, elements by number: `ranges.0`."""
     return obj.path().replace("[", "").replace("]", "")
 
 
@@ -215,7 +215,7 @@ def _bracketed(path: str) -> str:
 
 
 def _rest(have: str, want: str) -> str | None:
-    """Return what is left to read, None when it is another field."""
+    """Return the rest of the path `want` after `have`, None if `have` is not a prefix."""
     if have == want:
         return ""
     if not have:
@@ -224,6 +224,6 @@ def _rest(have: str, want: str) -> str | None:
 
 
 def _spelled(rest: str) -> str:
-    """Write a dotted field as Python does."""
+    """Return a dotted field in Python syntax."""
     parts = rest.split(".") if rest else []
     return "".join(f"[{p}]" if p.lstrip("-").isdigit() else f".{p}" for p in parts)

@@ -1,4 +1,4 @@
-"""Which expressions of a statement a repair may replace: uses of numbers, not indices, sizes or rates."""
+"""Operands: the expressions that a repair may replace. Uses of numbers, but not indices, sizes or rates."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ LOGGING: Final = frozenset(
 
 
 class Constants(Protocol):
-    """Tells whether an expression is a constant."""
+    """Decides whether an expression is a constant."""
 
     def of(self, expr: ir.Expr, value: Value | None) -> object:
-        """Return where the constants were written, nothing when it is not one."""
+        """Return the origins of the constants, a false value if it is not a constant."""
         ...
 
     def entries(self, value: Value | None, index: Value | None) -> object:
-        """Return where the entries of a table of constants were written, nothing when it is none."""
+        """Return the origins of the entries of a table of constants, a false value if it is not one."""
         ...
 
 
@@ -53,7 +53,7 @@ def uses(statement: ir.Stmt, values: Mapping[ir.Pos, Value], constants: Constant
 
 
 def _expressions(statement: ir.Stmt) -> Sequence[ir.Expr]:
-    """Return what a statement (its header) evaluates, without the targets of assignments."""
+    """Return the expressions that a statement's header evaluates, without assignment targets."""
     if isinstance(statement, ir.Assign):
         if statement.augmented and isinstance(statement.value, ir.Operation):
             return statement.value.parts[1:]
@@ -87,7 +87,7 @@ def _inside(expr: ir.Expr, values: Mapping[ir.Pos, Value], constants: Constants)
 
 
 def _entry(expr: ir.Attribute | ir.Item, values: Mapping[ir.Pos, Value], constants: Constants) -> bool:
-    """Tell whether an expression looks a number up in a table by an index that is computed."""
+    """Return whether an expression selects a number from a table by a computed index."""
     if not isinstance(expr, ir.Item):
         return False
     return bool(constants.entries(values.get(expr.pos), values.get(expr.index.pos)))
@@ -111,7 +111,7 @@ def _call(expr: ir.Call, values: Mapping[ir.Pos, Value], constants: Constants) -
 
 
 def _parts(expr: ir.Expr) -> Sequence[ir.Expr]:
-    """Return the parts of an expression that take part in its value as numbers."""
+    """Return the subexpressions that contribute to the value as numbers."""
     if isinstance(expr, ir.Operation):
         return () if expr.operator == "text" else expr.parts
     if isinstance(expr, ir.Choice):

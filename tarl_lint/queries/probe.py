@@ -1,4 +1,4 @@
-"""Questions about single statements, answered by running the analysis once more and looking on."""
+"""Queries about single statements, answered by a further run of the analysis with observers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tarl_lint.queries.operands import uses
 
 @dataclass(slots=True)
 class Seen:
-    """What was seen at one statement: what its expressions were, and what its variables hold before it runs."""
+    """Observations at one statement: values of its expressions, and its variables before it runs."""
 
     statement: ir.Stmt
     path: str
@@ -27,7 +27,7 @@ class Seen:
 
 
 class Prober:
-    """Looks at every site of the flows in one more run."""
+    """Observes every site of the flows in one further run."""
 
     def __init__(self, machine: Linker, flows: Sequence[Flow]) -> None:
         self.machine = machine
@@ -43,7 +43,7 @@ class Prober:
         machine.probe = machine.watch = None
 
     def operands(self, site: SiteId) -> tuple[Operand, ...]:
-        """Return the constants that a site uses, in the order of the text."""
+        """Return the constants that a site uses, in source order."""
         seen = self.seen.get(site)
         if seen is None:
             return ()
@@ -70,7 +70,7 @@ class Prober:
         return found
 
     def holders(self, topic: str, field: str, site: SiteId) -> tuple[str, ...]:
-        """Return expressions that hold a topic's field unchanged at a site, shortest first."""
+        """Return the expressions that contain a topic's unchanged field at a site, shortest first."""
         seen = self.seen.get(site)
         return seen.holding.expressions(topic.lstrip("/"), field, self.origins) if seen is not None else ()
 
@@ -82,7 +82,7 @@ class Prober:
         return self._columns[key]
 
     def _arrive(self, frame: Frame, statement: ir.Stmt) -> None:
-        """Look at the variables before a statement runs."""
+        """Record the variables before a statement runs."""
         site = self._site(frame, statement)
         if site is None:
             return
@@ -92,7 +92,7 @@ class Prober:
         seen.holding.look(self.machine, frame)
 
     def _look(self, ctx: Interpreter, frame: Frame, statement: ir.Stmt, expr: ir.Expr, value: Value) -> None:  # noqa: ARG002
-        """Look at what an expression is."""
+        """Record the value of an expression."""
         site = self._site(frame, statement)
         if site is None:
             return

@@ -1,4 +1,4 @@
-"""What a run found, for people and for programs. A format is one file with `report(result, view)`."""
+"""Output formats. A format is one file with a function `report(result, view)`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FORMATS: Final[Mapping[str, str]] = {
     "mermaid": "tarl_lint.report.mermaid:report",
 }
 FOR_PEOPLE: Final = frozenset({"text", "concise", "github"})
-LINE_BY_LINE: Final = FOR_PEOPLE | {"dot", "mermaid"}  # a line means something there, whatever a topic holds
+LINE_BY_LINE: Final = FOR_PEOPLE | {"dot", "mermaid"}  # line feeds in topics must not break lines there
 
 
 def render(name: str, result: Result, view: View) -> Iterator[Line]:

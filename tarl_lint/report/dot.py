@@ -1,4 +1,4 @@
-"""A picture for Graphviz: `tarl-lint --format dot | dot -Tsvg -o flows.svg`."""
+"""Diagram for Graphviz: `tarl-lint --format dot | dot -Tsvg -o flows.svg`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _HEAD: Final = (
     "digraph flows {",
     " rankdir=LR; ranksep=0.9; nodesep=0.15; concentrate=false;",
     ' fontname="Helvetica"; fontsize=11; labeljust=l;',
-    ' label="Solid: data of the topic is published. Dashed: it only decides. Each way through a box is a flow.";',
+    ' label="Solid: data is published. Dashed: used only in conditions. Each path through a box is a flow.";',
     ' node [fontname="Helvetica", fontsize=11, height=0.3, margin="0.12,0.05"];',
     ' edge [color="#555555", arrowsize=0.6];',
 )

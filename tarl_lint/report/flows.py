@@ -1,4 +1,4 @@
-"""Flows for people: one code frame for each publish call, its sources below it, and their taint lists."""
+"""Flows in the text report: a code frame for each publish call, its sources, and their taint lists."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from tarl_lint.model import Dependence, Finding, Flow, Sink, Step
 from tarl_lint.report.frame import frame
 from tarl_lint.report.line import Glyphs, Line, Style, View, columns, crop, location, one_line, tabs
 
-_LONG: Final = 12  # steps; a shorter list is shown whole
-_WIDE: Final = 140  # columns of a statement where no terminal sets a limit
+_LONG: Final = 12  # steps; a list of at most this length is shown in full
+_WIDE: Final = 140  # columns of a statement without a terminal
 _STYLES: Final[Mapping[Dependence, Style]] = {"data": "data", "control": "control", "context": "quiet"}
 
 
@@ -42,7 +42,7 @@ def publish_call(
 
 
 def describe(topics: Sequence[str], message: str) -> str:
-    """Name what is subscribed or published: `odom (Odometry)`."""
+    """Return topics with their message type: `odom (Odometry)`."""
     topic = " or ".join(topics) or "unknown topic"
     return f"{topic} ({message})" if message else topic
 
@@ -69,7 +69,7 @@ def _flow(finding: Finding, flow: Flow, name: str) -> Line:
 
 
 def subscription(flow: Flow) -> str:
-    """Say where a message comes in, as seen from the publish call: `line 36, on_odom`."""
+    """Return the place of the subscription relative to the publish call: `line 36, on_odom`."""
     source, sink = flow.source, flow.sink
     place = f"line {source.span.line}"
     if source.span.path != sink.span.path:
@@ -80,9 +80,9 @@ def subscription(flow: Flow) -> str:
 
 
 def taint_list(flow: Flow, view: View) -> Iterator[Line]:
-    """Yield the steps of a flow: where, what the step does, how it depends on the source, code.
+    """Yield the steps of a flow: line, role, dependence on the source, code.
 
-    Of a long list only the shortest chain is shown, unless all steps are wanted.
+    A long list is reduced to its shortest chain unless all steps are requested.
     """
     steps = shown_steps(flow, view)
     beside = flow.sink.span.path
@@ -97,7 +97,7 @@ def taint_list(flow: Flow, view: View) -> Iterator[Line]:
         code = crop(_one_line(step.code), room, view.glyphs.dots)
         yield ((start, "quiet"), (_mark(step.dependence, view.glyphs), style), (" ", ""), (code, text))
     if left := len(flow.steps) - len(steps):
-        words = f"{view.glyphs.dots} the shortest way; {left} more statements take part (--all-steps)"
+        words = f"{view.glyphs.dots} shortest path; {left} more statements (--all-steps)"
         yield ((f"      {words}", "quiet"),)
 
 
@@ -114,7 +114,7 @@ def _where(step: Step, beside: str) -> str:
 
 
 def _one_line(code: str) -> str:
-    """Join the lines of a statement, with brackets closed up where a line ended or began at one."""
+    """Join the lines of a statement, without spaces next to brackets at line ends."""
     joined = ""
     for line in (line.strip() for line in tabs(code).splitlines()):
         tight = joined.endswith(("(", "[", "{")) or line.startswith((")", "]", "}"))
@@ -132,8 +132,8 @@ def legend(view: View) -> Line:
     return (
         ("      ", ""),
         (glyphs.data, "data"),
-        (" carries the value   ", "quiet"),
+        (" passes on the value   ", "quiet"),
         (glyphs.control, "control"),
-        (" decides   ", "quiet"),
-        (f"{glyphs.context} surroundings", "quiet"),
+        (" condition   ", "quiet"),
+        (f"{glyphs.context} context", "quiet"),
     )

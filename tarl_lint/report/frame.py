@@ -8,11 +8,11 @@ from tarl_lint.model import Span
 from tarl_lint.report.line import Line, Style, View, columns, crop, tabs
 
 BEFORE = 2  # lines of context
-TALL = 6  # a span with more lines is shown by its first ones and its last
+TALL = 6  # lines; a longer span is shown by its first lines and its last
 
 
 def frame(source: Sequence[str], span: Span, style: Style, view: View) -> Iterator[Line]:
-    """Yield the lines of a code frame. `source` are the lines of the file, without line ends."""
+    """Yield the lines of a code frame. `source` is the lines of the file, without line ends."""
     if not 1 <= span.line <= len(source):
         return
     shown = _numbers(source, span)
@@ -26,12 +26,12 @@ def frame(source: Sequence[str], span: Span, style: Style, view: View) -> Iterat
 
 
 def lines_of(text: str) -> list[str]:
-    """Split a file as Python counts lines: form feeds and the like do not end one."""
+    """Split a text into lines as Python counts them: a form feed does not end a line."""
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 def _numbers(source: Sequence[str], span: Span) -> list[int]:
-    """Choose the lines to show: some before, without blank ones at the top, and not all of a tall span."""
+    """Return the line numbers to show: some context before, no leading blank lines, part of a tall span."""
     before = list(range(max(1, span.line - BEFORE), span.line))
     while before and not source[before[0] - 1].strip():
         before.pop(0)
@@ -56,7 +56,7 @@ def _numbered(text: str, number: int, span: Span, margin: int, style: Style, vie
 
 
 def _underline(text: str, number: int, span: Span) -> tuple[int, int]:
-    """Return where the carets of a line begin and how many they are, in columns of the terminal."""
+    """Return the column and the number of the carets below a line, in terminal columns."""
     indent = len(text) - len(text.lstrip())
     first = span.column - 1 if number == span.line else indent
     last = span.end_column - 1 if number == span.end_line else len(text.rstrip())

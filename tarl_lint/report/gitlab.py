@@ -1,4 +1,4 @@
-"""GitLab code quality: new findings, which GitLab compares with those of the target branch."""
+"""GitLab code quality: new findings; GitLab compares them with those of the target branch."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def report(result: Result, _view: View) -> Iterator[Line]:
 
 
 def document(result: Result) -> list[dict[str, Any]]:
-    """Return unreadable files, new findings and programs that were cut short; each fingerprint is used once."""
+    """Return unreadable files, new findings and incomplete programs; each fingerprint occurs once."""
     errors = [
         _entry(UNREADABLE, e.message, of_error(e), Span(e.path, e.line, 1, e.line, 1), "warning")
         for e in result.errors

@@ -1,4 +1,4 @@
-"""How grave findings are and how they are told apart, for formats that ask for it."""
+"""Severity and identity of findings, for formats that need them."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ Level = Literal["note", "warning", "error"]
 
 
 def own_level(code: str) -> Level:
-    """Grade a rule by itself: that a flow exists is a note, hazards and unreadable files are warnings."""
+    """Return the level of a rule: note for flows, warning for hazards and unreadable files."""
     return "note" if code.startswith("TARL1") else "warning"
 
 
 def level(code: str, result: Result) -> Level:
-    """Grade a new finding in a run: what makes the run fail is an error."""
+    """Return the level of a new finding: error if it fails the run."""
     return "error" if code in result.failing else own_level(code)
 
 
 def told_apart(findings: Sequence[Finding]) -> Iterator[tuple[Finding, str]]:
-    """Yield findings with an identity of their own: the fingerprint, numbered where several share it."""
+    """Yield findings with unique identities: the fingerprint, numbered if several findings share it."""
     seen: Counter[str] = Counter()
     for finding in findings:
         base = finding.fingerprint or digest((finding.code, finding.span.path, finding.message))
@@ -34,5 +34,5 @@ def told_apart(findings: Sequence[Finding]) -> Iterator[tuple[Finding, str]]:
 
 
 def of_error(error: SourceError) -> str:
-    """Return the identity of a file that cannot be read."""
+    """Return the identity of an unreadable file."""
     return digest(("TARL001", error.path))

@@ -1,4 +1,4 @@
-"""The report for programs: one document, frozen in `findings.schema.json`."""
+"""JSON report: one document, frozen in `findings.schema.json`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ OfStep = Callable[[Step], object]
 
 
 def report(result: Result, _view: View) -> Iterator[Line]:
-    """Yield the document, indented, in ASCII, so that no terminal or pipe can spoil it."""
+    """Yield the document, indented and in ASCII, so that no terminal or pipe can alter it."""
     known: dict[Step, Written] = {}  # flows share most of their steps
 
     def written(step: Step) -> Written:
@@ -31,7 +31,7 @@ def report(result: Result, _view: View) -> Iterator[Line]:
 
 
 def document(result: Result) -> dict[str, Any]:
-    """Return everything that was found, accepted flows included, in the frozen order of keys."""
+    """Return all findings, including accepted flows, in the frozen order of keys."""
     return _document(result, _step)
 
 
@@ -47,7 +47,7 @@ def _document(result: Result, of_step: OfStep) -> dict[str, Any]:
 
 
 def incomplete(result: Result) -> dict[str, Any]:
-    """Return the programs that were not followed in every detail; no key where there is none."""
+    """Return the key `incomplete` with the programs that exhausted their budget; nothing if there are none."""
     cut = result.statistics.cut
     each = [{"path": c.path, "node": c.node, "message": c.message} for c in cut]
     return {"incomplete": each} if each else {}

@@ -1,4 +1,4 @@
-"""The report for programs that read large trees: each statement stands once, and flows refer to it by number."""
+"""JSON report for large trees: each statement occurs once, and flows refer to it by number."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Table = dict[T, int]
 
 
 def report(result: Result, _view: View) -> Iterator[Line]:
-    """Yield the document in ASCII, with one statement, end or diagnostic a line."""
+    """Yield the document in ASCII, with one statement, source, sink or diagnostic per line."""
     yield (("{", ""),)
     parts = document(result)
     last = list(parts)[-1]
@@ -37,7 +37,7 @@ def report(result: Result, _view: View) -> Iterator[Line]:
 
 
 def document(result: Result) -> dict[str, Any]:
-    """Return everything that was found, accepted flows included, in the order of `findings2.schema.json`."""
+    """Return all findings, including accepted flows, in the order of `findings2.schema.json`."""
     steps: Table[Step] = {}
     sources: Table[Source] = {}
     sinks: Table[Sink] = {}
@@ -79,7 +79,7 @@ def _diagnostic(
 
 
 def _flow(flow: Flow, steps: Table[Step], sources: Table[Source], sinks: Table[Sink]) -> dict[str, Any]:
-    """Return a flow by numbers; `chain` holds places in `steps` of this flow."""
+    """Return a flow by numbers; `chain` contains indices into the flow's `steps`."""
     return {
         "kind": flow.kind,
         "source": _number(sources, flow.source),
@@ -125,5 +125,5 @@ def _step(step: Step) -> dict[str, Any]:
 
 
 def _extent(span: Span) -> dict[str, Any]:
-    """Return a place: `at` is line, column, end line, end column."""
+    """Return a span: `at` is line, column, end line, end column."""
     return {"path": span.path, "at": [span.line, span.column, span.end_line, span.end_column]}

@@ -36,7 +36,7 @@ class _Case(NamedTuple):
 
 
 def report(result: Result, _view: View) -> Iterator[Line]:
-    """Yield the document. What makes the run fail has failed, what is accepted or unreadable was skipped."""
+    """Yield the document. Findings that fail the run are failures; accepted and unreadable ones are skipped."""
     found = (_case(finding, result) for finding in result.findings)
     cases = _numbered([*_errors(result), *_incomplete(result), *found])
     cases = cases or [_Case("tarl-lint", "no findings", "passed", "", "")]
@@ -54,7 +54,7 @@ def _errors(result: Result) -> Iterator[_Case]:
 
 def _incomplete(result: Result) -> Iterator[_Case]:
     for cut in result.statistics.cut:
-        yield _Case(cut.path, "followed in every detail", "skipped", cut.message, "")
+        yield _Case(cut.path, "analysed completely", "skipped", cut.message, "")
 
 
 def _case(finding: Finding, result: Result) -> _Case:
@@ -69,7 +69,7 @@ def _case(finding: Finding, result: Result) -> _Case:
 
 
 def _numbered(cases: list[_Case]) -> list[_Case]:
-    """Tell cases of one name apart without lines, which would make them other cases after every edit."""
+    """Number cases of equal name; line numbers would rename them after every edit."""
     seen: Counter[tuple[str, str]] = Counter()
     made = []
     for case in cases:

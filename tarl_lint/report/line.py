@@ -1,4 +1,4 @@
-"""Lines of a report before anyone decides whether they are coloured: pieces of text with what they mean."""
+"""Lines of a report before colouring: pieces of text with their styles."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _TAB: Final = 4
 
 @dataclass(frozen=True)
 class Glyphs:
-    """Signs that not every terminal can show."""
+    """Signs that some terminals cannot show, with replacements."""
 
     bar: str = "│"
     data: str = "●"
@@ -30,10 +30,10 @@ ASCII: Final = Glyphs(bar="|", data="*", control="?", context=".", arrow="->", d
 
 @dataclass(frozen=True)
 class View:
-    """How a report is shown. `width` is in columns; 0 means that long lines stay whole.
+    """Display settings of a report. `width` is in columns; 0 leaves long lines whole.
 
-    With `show_paths` each flow has its shortest chain of statements, with `all_steps` all of them. At most `most_flows`
-    flows are shown one by one; 0 means all.
+    `show_paths` shows the shortest chain of statements of each flow, `all_steps` all statements. At most `most_flows`
+    flows are shown individually; 0 means all.
     """
 
     show_paths: bool = False
@@ -45,29 +45,29 @@ class View:
 
 
 def plain(line: Line) -> str:
-    """Return a line without its meaning."""
+    """Return the text of a line without its styles."""
     return "".join(text for text, _ in line)
 
 
 def unbroken(line: Line) -> Line:
-    """Return a line in which what would end it is written as an escape."""
+    """Return a line with line-ending characters escaped."""
     if not any("\n" in text or "\r" in text for text, _ in line):
         return line
     return tuple((text.replace("\n", "\\n").replace("\r", "\\r"), style) for text, style in line)
 
 
 def location(span: Span) -> str:
-    """Write where a span begins, so that terminals and editors can go there."""
+    """Return the start of a span in the form that terminals and editors link."""
     return f"{one_line(span.path)}:{span.line}:{span.column}"
 
 
 def one_line(path: str) -> str:
-    """Write a path without line feeds, which file names may have."""
+    """Return a path with line feeds escaped, which file names may contain."""
     return path.replace("\n", "\\n")
 
 
 def columns(text: str) -> int:
-    """Return how many columns of a terminal a text takes."""
+    """Return the width of a text in terminal columns."""
     if text.isascii():
         return len(text)
     return sum(_columns(character) for character in text)
@@ -82,12 +82,12 @@ def _columns(character: str) -> int:
 
 
 def tabs(text: str) -> str:
-    """Replace tabs, so that what stands below a character stays below it."""
+    """Replace tabs by spaces, so that carets stay below their characters."""
     return text.expandtabs(_TAB)
 
 
 def crop(text: str, width: int, dots: str) -> str:
-    """Shorten a text to a width in columns; a width of 0 or less leaves it whole."""
+    """Return a text shortened to a width in columns; a width of 0 or less leaves it whole."""
     if width <= 0 or columns(text) <= width:
         return text
     while text and columns(text) > width - len(dots):

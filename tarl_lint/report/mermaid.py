@@ -1,4 +1,4 @@
-"""A picture for Mermaid, which GitHub and GitLab draw in comments, summaries and Markdown files."""
+"""Diagram for Mermaid, which GitHub and GitLab render in comments, summaries and Markdown files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def report(result: Result, _view: View) -> Iterator[Line]:
 
 def _graph(drawn: Picture) -> Iterator[str]:
     yield "flowchart LR"
-    yield "  %% solid: data of the topic is published; dotted: it only decides; each way through a box is a flow"
+    yield "  %% solid: data is published; dotted: used only in conditions; each path through a box is a flow"
     numbers = drawn.numbers()
     for topic in drawn.topics:
         yield f"  {numbers[topic.key]}([{_quoted(topic.label)}]):::topic"
@@ -47,6 +47,6 @@ def _edges(part: Part, name: str, numbers: dict[str, str]) -> Iterator[str]:
 
 
 def _quoted(text: str) -> str:
-    """Write a text so that nothing in it is taken for syntax or markup."""
+    """Return a text quoted, so that nothing in it is read as syntax or markup."""
     escaped = text.replace("#", "#35;").replace('"', "#quot;").replace("<", "#lt;").replace(">", "#gt;")
     return '"' + escaped.replace("`", "#96;").replace("\n", "<br/>") + '"'

@@ -1,4 +1,4 @@
-"""What reaches what, in a line or two for each published topic: what a long report comes down to."""
+"""Map at the top of a long report: for each published topic, the topics that reach it."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from tarl_lint.fingerprints import topic_text
 from tarl_lint.model import Flow
 from tarl_lint.report.line import Line, Style, View, columns
 
-MANY: Final = 6  # publish calls; fewer are on the screen at once anyway
-_WIDE: Final = 110  # columns where no terminal sets a limit
+MANY: Final = 6  # publish calls; with fewer, the report fits on a screen
+_WIDE: Final = 110  # columns without a terminal
 _WIDEST_NAME: Final = 30
-_ALTERNATIVES: Final = 4  # topics of one call that are all named
+_ALTERNATIVES: Final = 4  # topics of one call; more are abbreviated
 
 
 def overview(flows: Sequence[Flow], view: View) -> Iterator[Line]:
-    """Yield published topics with the topics whose data they carry, and those that only decide."""
+    """Yield published topics with the topics whose data they carry and those used only in conditions."""
     if len({flow.sink.span for flow in flows}) < MANY:
         return
-    yield (("Published, and what reaches it:", "strong"),)
+    yield (("Published topics, and the topics that reach them:", "strong"),)
     by_name: dict[str, list[Flow]] = {}
     for flow in flows:
         by_name.setdefault(_few(flow.sink.topics), []).append(flow)
@@ -33,7 +33,7 @@ def _topic(name: str, flows: Sequence[Flow], margin: int, view: View) -> Iterato
     carried = {_few(flow.source.topics) for flow in flows if flow.kind == "explicit"}
     deciding = {_few(flow.source.topics) for flow in flows} - carried
     head = name + " " * (margin - columns(name))
-    if columns(name) > margin:  # a line of its own, or all the others would begin far to the right
+    if columns(name) > margin:  # a long name gets its own line, so that the others stay aligned
         yield (("  ", ""), (name, "strong"))
         head = " " * margin
     parts: list[tuple[str, Style, set[str]]] = [
@@ -47,14 +47,14 @@ def _topic(name: str, flows: Sequence[Flow], margin: int, view: View) -> Iterato
 
 
 def _few(topics: Sequence[str]) -> str:
-    """Write the topics that one call may have, some of them where a table gives it many."""
+    """Return the possible topics of one call, abbreviated if there are many."""
     if len(topics) <= _ALTERNATIVES:
         return topic_text(topics)
     return f"{topic_text(topics[: _ALTERNATIVES - 1])} or {len(topics) - _ALTERNATIVES + 1} others"
 
 
 def _wrapped(names: Iterable[str], room: int) -> Iterator[str]:
-    """Join names with commas, on as many lines as they need."""
+    """Yield lines of names joined with commas."""
     line = ""
     for name in names:
         if line and columns(f"{line}, {name}") >= room:

@@ -1,4 +1,4 @@
-"""Findings by package: code that runs on the robot first, tests and examples in a group of their own."""
+"""Findings by package: code that runs on the robot first, tests and examples in a separate group."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ _ASIDE: Final = re.compile(
 
 @dataclass(frozen=True)
 class Group:
-    """Findings that are shown together, in the order of the report."""
+    """Findings that are shown together, in report order."""
 
     name: str
     findings: tuple[Finding, ...]
 
     @property
     def counted(self) -> str:
-        """Return how much is in it: `12 flows, 1 hazard`."""
+        """Return the counts of a group: `12 flows, 1 hazard`."""
         flows = sum(f.flow is not None for f in self.findings)
         counts = ((flows, "flow"), (len(self.findings) - flows, "hazard"))
         return ", ".join(summary.many(count, noun) for count, noun in counts if count)
 
 
 def grouped(findings: Sequence[Finding]) -> tuple[Group, ...]:
-    """Return the findings by package, packages by name; what is not run on the robot comes last."""
+    """Return the findings by package, sorted by name; code that is not run on the robot comes last."""
     aside = tuple(f for f in findings if _ASIDE.search(f.span.path))
     if len(aside) == len(findings):
-        aside = ()  # whoever lints nothing but examples wants to see their packages
+        aside = ()  # if there are only examples, show their packages
     by_package: dict[str, list[Finding]] = {}
     for finding in findings:
         if finding not in aside:

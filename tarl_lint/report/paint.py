@@ -1,4 +1,4 @@
-"""Writing lines where they go: plain, or in colours on a terminal. Only then is rich imported."""
+"""Write lines to a stream: plain, or coloured on a terminal. rich is imported only for colours."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ _COLOURS: Final[Mapping[Style, str]] = {
     "control": "yellow",
     "quiet": "bright_black",
 }
-# What is linted must not steer the terminal: names of files, topics and code may hold anything.
+# Text from linted files must not control the terminal: names of files, topics and code may contain anything.
 _STEERING: Final = (0x061C, *range(0x200E, 0x2010), *range(0x2028, 0x202F), *range(0x2066, 0x206A), 0xFEFF)
 _CONTROLS: Final = {
     **{n: f"\\x{n:02x}" for n in (*range(32), *range(127, 160)) if chr(n) not in "\n\t"},
-    **{n: f"\\u{n:04x}" for n in _STEERING},  # the order of letters, ends of lines
+    **{n: f"\\u{n:04x}" for n in _STEERING},  # direction marks and line separators
 }
 
 
 def wants_colour(stream: TextIO, environment: Mapping[str, str] = os.environ) -> bool:
-    """Tell whether to colour: on a terminal that can, unless NO_COLOR (https://no-color.org) is set."""
+    """Return whether to use colours: on a capable terminal, unless NO_COLOR (https://no-color.org) is set."""
     if environment.get("NO_COLOR") or environment.get("TERM") == "dumb":
         return False
     return bool(environment.get("FORCE_COLOR")) or stream.isatty()
 
 
 def glyphs_for(stream: TextIO) -> Glyphs:
-    """Return the signs that the encoding of a stream can write."""
+    """Return the signs that the encoding of a stream supports."""
     glyphs = Glyphs()
     try:
         "".join((glyphs.bar, glyphs.data, glyphs.control, glyphs.context, glyphs.arrow, glyphs.dots)).encode(
@@ -48,7 +48,7 @@ def glyphs_for(stream: TextIO) -> Glyphs:
 
 
 def width_of(stream: TextIO) -> int:
-    """Return the columns of the terminal behind a stream, 0 where there is none."""
+    """Return the width of the terminal behind a stream, 0 if there is none."""
     if not stream.isatty():
         return 0
     import shutil
@@ -57,7 +57,7 @@ def width_of(stream: TextIO) -> int:
 
 
 def write(lines: Iterable[Line], stream: TextIO, *, colour: bool) -> None:
-    """Write lines as they come; characters that the stream cannot encode are escaped."""
+    """Write lines as they are yielded; escape characters that the stream cannot encode."""
     if colour and _write_coloured(lines, stream):
         return
     encoding = stream.encoding or "utf-8"
@@ -67,7 +67,7 @@ def write(lines: Iterable[Line], stream: TextIO, *, colour: bool) -> None:
 
 
 def _write_coloured(lines: Iterable[Line], stream: TextIO) -> bool:
-    """Write with rich; return False, with nothing written, where it is not installed."""
+    """Write with rich; return False, without output, if it is not installed."""
     try:
         from rich.console import Console
         from rich.text import Text

@@ -28,7 +28,7 @@ _IMPORTANCE: Final[Mapping[Dependence, str]] = {
 
 
 def report(result: Result, _view: View) -> Iterator[Line]:
-    """Yield the document in one line of ASCII, as large as servers take it."""
+    """Yield the document in one line of ASCII, within the size that servers accept."""
     text = ""
     for cut in cuts(len(result.errors) + len(result.findings) + len(result.silenced)):
         text = json.dumps(document(result, cut), separators=(",", ":"))
@@ -55,7 +55,7 @@ def document(result: Result, cut: Cut = EVERYTHING) -> dict[str, Any]:
     run = {
         "tool": {"driver": driver},
         "columnKind": "unicodeCodePoints",
-        "originalUriBaseIds": {ROOT: {"description": {"text": "The directory that tarl-lint ran in."}}},
+        "originalUriBaseIds": {ROOT: {"description": {"text": "The working directory of tarl-lint."}}},
         "invocations": [{"executionSuccessful": True, "toolExecutionNotifications": notes}],
         "results": errors[: cut.results] + found,
     }
@@ -63,7 +63,7 @@ def document(result: Result, cut: Cut = EVERYTHING) -> dict[str, Any]:
 
 
 def _gravity(finding: Finding, result: Result, silenced: Set[Finding]) -> tuple[bool, int]:
-    """Sort what is new before what is known, and grave findings before light ones."""
+    """Return a sort key: new findings before known ones, severe before minor."""
     known = finding.status == "accepted" or finding in silenced
     return known, ("error", "warning", "note").index(level(finding.code, result))
 
@@ -73,7 +73,7 @@ def _left_out(count: int) -> list[dict[str, Any]]:
         return []
     return [
         _notification(
-            "left-out", f"{summary.many(count, 'finding')} left out: servers limit the size of a report."
+            "left-out", f"{summary.many(count, 'finding')} omitted: servers limit the size of a report."
         )
     ]
 
@@ -83,7 +83,7 @@ def _shortened(findings: Sequence[Finding], most: int) -> list[dict[str, Any]]:
     if not count:
         return []
     shown = summary.many(count, "flow")
-    text = f"{shown} shown by the shortest chain of statements: servers limit the size of a report."
+    text = f"{shown} reduced to the shortest chain of statements: servers limit the size of a report."
     return [_notification("shortened", text)]
 
 
@@ -171,7 +171,7 @@ def _result(
 
 
 def _fingerprints(finding: Finding, identity: str) -> dict[str, str]:
-    """Return how a result is known again. GitHub looks at the first, which must differ within a file."""
+    """Return the fingerprints of a result. GitHub uses the first, which must be unique within a file."""
     name = "tarlFlow/v1" if finding.flow else "tarlHazard/v1"
     own = {name: finding.fingerprint} if finding.fingerprint else {}
     return {"primaryLocationLineHash": identity, **own}
@@ -225,12 +225,12 @@ def _location(span: Span, end: Source | Sink | None = None) -> dict[str, Any]:
 
 
 def _artifact(path: str) -> dict[str, str]:
-    """Name a file: relative to the root of the sources, or absolute where it lies elsewhere."""
+    """Return the location of a file: relative to the source root, or absolute if it is elsewhere."""
     if Path(path).is_absolute():
         return {"uri": Path(path).as_uri()}
     return {"uri": quote(path.encode("utf-8", "surrogateescape")), "uriBaseId": ROOT}
 
 
 def _escaped(text: str) -> str:
-    """Keep brackets from being read as links."""
+    """Escape brackets, which would be read as links."""
     return text.replace("\\", "\\\\").replace("[", "\\[").replace("]", "\\]")

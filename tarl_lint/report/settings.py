@@ -1,4 +1,4 @@
-"""The settings in use, as they would stand in a settings file, and where each comes from."""
+"""The settings in use, in the format of a settings file, with the origin of each."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tarl_lint.report.line import Line
 
 
 def settings(config: Config) -> Iterator[Line]:
-    """Yield the file, then one setting a line."""
+    """Yield the settings file, then one setting per line."""
     origins = dict(config.origins)
     yield ((f"# settings file: {shown(config.file) if config.file else 'none'}", "quiet"),)
     yield ((f"# relative to:   {(config.root or Path.cwd()).as_posix()}", "quiet"),)
@@ -55,4 +55,4 @@ def _wrapper(wrapper: Wrapper) -> str | Mapping[str, int | str]:
 def _toml(value: Any) -> str:
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{json.dumps(key)} = {_toml(item)}" for key, item in value.items()) + "}"
-    return json.dumps(value, ensure_ascii=False)  # strings, numbers and lists of them are written alike
+    return json.dumps(value, ensure_ascii=False)  # the same in TOML and JSON

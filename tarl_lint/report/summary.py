@@ -1,4 +1,4 @@
-"""The end of a report, in words: how much was found, what is no longer there, what was not analysed."""
+"""Closing lines of a report: counts, findings that are gone, and code that was not analysed."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tarl_lint.report.line import Line, View, one_line
 from tarl_lint.runner import UNREADABLE, Result
 from tarl_lint.suppress import Suppression
 
-_CLASSES: Final = 5  # classes that are not here, named one by one
-_SHOWN: Final = 20  # vanished flows listed by name
+_CLASSES: Final = 5  # classes outside the files that are named individually
+_SHOWN: Final = 20  # findings that are gone and named individually
 
 
 def closing(result: Result) -> Iterator[Line]:
-    """Yield what was found, then what was not analysed."""
+    """Yield the counts of findings, then what was not analysed."""
     counts = (_count_flows(result), _count_hazards(result), _count_files(result))
     for text in filter(None, counts):
         yield ((text, "strong"),)
@@ -29,31 +29,31 @@ def closing(result: Result) -> Iterator[Line]:
 
 
 def hints(result: Result, view: View) -> Iterator[Line]:
-    """Yield what to do next, where something was found that nobody has accepted yet."""
+    """Yield the next command, if there are new findings."""
     if not result.new or result.baseline:
         return
     flows = [f.flow for f in result.new if f.flow]
     if len(flows) > 1 and not view.show_paths:
-        yield (("--show-paths lists the statements on the way of each flow.", "quiet"),)
+        yield (("--show-paths shows the statements of each flow.", "quiet"),)
     if 0 < view.most_flows < len(flows):
-        yield ((f"--max-paths 0 shows all {len(flows)} flows one by one.", "quiet"),)
-    yield (("--write-baseline accepts all this: from then on only what is new is reported.", "quiet"),)
+        yield ((f"--max-paths 0 shows all {len(flows)} flows.", "quiet"),)
+    yield (("--write-baseline accepts these findings: later runs report only new ones.", "quiet"),)
 
 
 def is_single(result: Result) -> bool:
-    """Tell whether there is one new flow only, which has room for its statements."""
+    """Return whether there is a single new flow; the report then shows its statements."""
     return sum(f.flow is not None for f in result.new) == 1
 
 
 def not_analysed(result: Result) -> Iterator[Line]:
-    """Yield one line that says what the analysis did not see, none when it saw everything."""
+    """Yield one line about code that was not analysed, none if everything was."""
     missed = list(_missed(result))
     if missed:
         yield ((f"Not analysed: {', '.join(missed)}.", "quiet"),)
 
 
 def _beyond(result: Result) -> Iterator[Line]:
-    """Yield which installed packages were followed, and at which classes that are not here flows ended."""
+    """Yield the installed packages that were followed, and the classes outside the files at which flows ended."""
     if result.followed:
         yield ((f"Followed into installed packages: {', '.join(result.followed)}.", "quiet"),)
     if result.ended:
@@ -61,11 +61,16 @@ def _beyond(result: Result) -> Iterator[Line]:
         setting = "follow-installed = [" + ", ".join(f'"{name}"' for name in packages) + "]"
         named = ", ".join(result.ended[:_CLASSES])
         more = f" and {len(result.ended) - _CLASSES} more" if len(result.ended) > _CLASSES else ""
-        yield ((f"Not followed: what goes into {named}{more}, which are not here ({setting}).", "quiet"),)
+        yield (
+            (
+                f"Not followed: data passed to classes outside the files: {named}{more} ({setting}).",
+                "quiet",
+            ),
+        )
 
 
 def _silenced(result: Result) -> Iterator[Line]:
-    """Yield one line that says what is not shown since somebody asked for that."""
+    """Yield one line about findings that are silenced on request."""
     counts = ((len(result.silenced), "comments"), (result.left_out, "per-file-ignores"))
     parts = [f"{count} by {what}" for count, what in counts if count]
     if parts:
@@ -76,10 +81,10 @@ def _silenced(result: Result) -> Iterator[Line]:
 
 
 def _count_files(result: Result) -> str:
-    """Say what was done where neither flows nor hazards were asked for."""
+    """Return the summary of a run with neither flow nor hazard rules enabled."""
     if result.kinds or result.reports_hazards:
         return ""
-    return f"{many(result.statistics.files, 'file')} read; no rule about flows or hazards is in use."
+    return f"{many(result.statistics.files, 'file')} read; no rule for flows or hazards is enabled."
 
 
 def _count_flows(result: Result) -> str:
@@ -114,7 +119,7 @@ def _accepted(result: Result, known: int) -> str:
 
 
 def _share(flows: list[Finding], files: int) -> str:
-    """Say in how many of the files flows end: `1 file`, `2 of 12 files`."""
+    """Return the number of files in which flows end: `1 file`, `2 of 12 files`."""
     hit = len({f.span.path for f in flows})
     return many(files, "file") if hit == files else f"{hit} of {many(files, 'file')}"
 
@@ -124,14 +129,14 @@ def _listed(counts: Counter[Any]) -> str:
 
 
 def numbers(accepted: Baseline) -> str:
-    """Count what a baseline holds: `14 flows`, `14 flows and 1 hazard`."""
+    """Return the counts of a baseline: `14 flows`, `14 flows and 1 hazard`."""
     flows = sum(e.count for e in accepted.entries if isinstance(e.fingerprint, OfFlow))
     hazards = sum(e.count for e in accepted.entries if isinstance(e.fingerprint, OfHazard))
     return many(flows, "flow") + (f" and {many(hazards, 'hazard')}" if hazards else "")
 
 
 def many(count: int, noun: str) -> str:
-    """Write a count with its noun: `1 flow`, `2 flows`."""
+    """Return a count with its noun: `1 flow`, `2 flows`."""
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
@@ -141,7 +146,7 @@ def _missed(result: Result) -> Iterator[str]:
         verb = "is" if len(result.errors) == 1 else "are"
         yield f"{many(len(result.errors), 'file')} that {verb} not readable as Python 3 ({UNREADABLE})"
     if cut := result.statistics.cut:
-        yield f"all details of {many(len(cut), 'large program')} ({_named(cut)})"
+        yield f"parts of {many(len(cut), 'large program')} ({_named(cut)})"
     if notes.unreadable:
         yield f"{many(len(notes.unreadable), 'unreadable place')} ({', '.join(notes.unreadable[:3])})"
     if notes.cpp_nodes:
@@ -153,46 +158,46 @@ def _missed(result: Result) -> Iterator[str]:
 
 
 def _named(cut: Sequence[Cut]) -> str:
-    """Name programs by file and node, the first ones of many."""
+    """Return the names of programs by file and node, abbreviated if there are many."""
     names = [f"{c.path} as {c.node}" if c.node else c.path for c in cut]
     more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
     return ", ".join(names[:_SHOWN]) + more
 
 
 def unknown_topics(result: Result) -> int:
-    """Count the subscriptions and publish calls in flows whose topic is not known."""
+    """Return the number of subscriptions and publish calls in flows with an unknown topic."""
     flows = [f.flow for f in result.findings if f.flow]
     ends = {e.span for flow in flows for e in (flow.source, flow.sink) if not e.topics}
     return len(ends)
 
 
 def vanished(result: Result, view: View) -> Iterator[Line]:
-    """Yield what was accepted and is no longer there."""
+    """Yield the accepted findings that are gone."""
     if not result.vanished or not result.baseline:
         return
-    yield ((f"No longer there, though accepted in {shown(result.baseline)}:", "strong"),)
+    yield ((f"Gone, but accepted in {shown(result.baseline)}:", "strong"),)
     for entry in result.vanished[:_SHOWN]:
         yield ((f"  {in_words(entry, view.glyphs.arrow)}", ""),)
     if len(result.vanished) > _SHOWN:
         yield ((f"  and {len(result.vanished) - _SHOWN} more", "quiet"),)
-    yield (("  Run --write-baseline to forget them.", "quiet"),)
+    yield (("  Run --write-baseline to remove them.", "quiet"),)
     yield ()
 
 
 def in_words(entry: Accepted, arrow: str) -> str:
-    """Describe an entry: `odom → cmd_vel, explicit, heard by callback, published in travel (shuttle)`."""
+    """Return an entry in words: `odom → cmd_vel, explicit, received by callback, published in travel (shuttle)`."""
     key = entry.fingerprint
     times = f", {entry.count} times" if entry.count > 1 else ""
     if isinstance(key, OfHazard):
         where = f" in {key.place}" if key.place else ""
         return f"{key.rule} {key.about.replace('→', arrow)}{where} ({key.package}){times}"
-    by = f", heard by {key.callback}" if key.callback else ""
+    by = f", received by {key.callback}" if key.callback else ""
     place = f", published in {key.place}" if key.place else ""
     return f"{key.source} {arrow} {key.sink}, {key.kind}{by}{place} ({key.package}){times}"
 
 
 def unmatched(result: Result) -> Iterator[Line]:
-    """Yield what is wrong with names in the settings that no file mentions."""
+    """Yield a line for each name in the settings that no file mentions."""
     for sentence in result.unmatched:
         yield ((sentence, "error"),)
 
@@ -207,15 +212,15 @@ def unused(result: Result) -> Iterator[Line]:
 
 
 def in_vain(comment: Suppression) -> str:
-    """Say why a comment silences nothing."""
+    """Return why a comment silences nothing."""
     if not comment.rules:
-        return f"there is no rule {comment.code}: correct this comment, or take it out."
+        return f"there is no rule {comment.code}: correct or remove this comment."
     what = f"no {comment.code}" if comment.code else "no finding"
-    return f"there is {what} here for this comment to silence: take it out."
+    return f"there is {what} here for this comment to silence: remove it."
 
 
 def statistics(result: Result) -> Iterator[Line]:
-    """Yield the counts of a run, one a line."""
+    """Yield the counts of a run, one per line."""
     flows = [f.flow for f in result.findings if f.flow]
     steps = Counter(step.dependence for flow in flows for step in flow.steps)
     lengths = sorted(sum(s.dependence != "context" for s in flow.steps) for flow in flows)
@@ -227,8 +232,8 @@ def statistics(result: Result) -> Iterator[Line]:
         ("accepted in the baseline", sum(f.status == "accepted" for f in result.findings)),
         ("subscriptions that reach a publish call", len({flow.source.id for flow in flows})),
         ("publish calls reached", len({flow.sink.id for flow in flows})),
-        ("steps that carry the value", steps["data"]),
-        ("steps that decide", steps["control"]),
+        ("steps that pass on the value", steps["data"]),
+        ("steps that are conditions", steps["control"]),
         ("steps of a flow, median", lengths[len(lengths) // 2] if lengths else 0),
         ("files analysed", result.statistics.files),
         ("lines analysed", result.statistics.lines),
@@ -247,7 +252,7 @@ def _counted(rows: Sequence[tuple[str, int]]) -> Iterator[Line]:
 
 
 def _reach(flows: Sequence[Flow]) -> list[tuple[str, int]]:
-    """Return topic → number of publish calls that it reaches, the farthest reaching first."""
+    """Return (topic, number of publish calls that it reaches), largest number first."""
     pairs = {(topic_text(flow.source.topics), flow.sink.id, flow.sink.span) for flow in flows}
     counts = Counter(topic for topic, *_ in pairs)
     return sorted(counts.items(), key=lambda item: (-item[1], item[0]))

@@ -1,4 +1,4 @@
-"""The report for people, in full and concise (one finding a line)."""
+"""Text reports: full, and concise (one finding per line)."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from tarl_lint.runner import UNREADABLE, Result
 
 
 def report(result: Result, view: View) -> Iterator[Line]:
-    """Yield unreadable files, what reaches what, the findings by package, and the closing words."""
+    """Yield unreadable files, the map, the findings by package, and the closing lines."""
     yield from _errors(result)
     if result.errors and result.names_errors:
         yield ()
     if flows := [f.flow for f in result.new if f.flow]:
-        from tarl_lint.report.overview import overview  # clean files need not wait for it
+        from tarl_lint.report.overview import overview  # imported only if there are findings
 
         yield from overview(flows, view)
     yield from _findings(result, view)
@@ -30,7 +30,7 @@ def report(result: Result, view: View) -> Iterator[Line]:
 
 
 def concise(result: Result, view: View) -> Iterator[Line]:
-    """Yield each finding on a line of its own, then the closing words."""
+    """Yield one line per finding, then the closing lines."""
     yield from _errors(result)
     for finding in result.new:
         yield _heading(finding)
@@ -56,7 +56,7 @@ def _errors(result: Result) -> Iterator[Line]:
 
 
 def _findings(result: Result, view: View) -> Iterator[Line]:
-    """Yield the findings of each package; of many flows only the first, and how many are left."""
+    """Yield the findings of each package; of many flows, only the first and the number of the rest."""
     if not result.new:
         return
     from tarl_lint.report.packages import grouped
@@ -90,7 +90,7 @@ def _legend(view: View) -> Iterator[Line]:
 
 
 def _flows(flows: Sequence[Finding], result: Result, view: View) -> Iterator[Line]:
-    """Yield every publish call; a flow that is the only one is shown with its chain of statements."""
+    """Yield every publish call; a single flow is shown with its chain of statements."""
     from tarl_lint.report.flows import publish_call, publish_calls
     from tarl_lint.report.frame import lines_of
 

@@ -1,4 +1,4 @@
-"""The picture of a run as a graph: topics, what lies between them, and the flows that pass through it."""
+"""The diagram of a run as a graph of topics, publishing functions and flows."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from tarl_lint.fingerprints import UNKNOWN
 from tarl_lint.model import Finding, Flow, Kind, Sink, Source
 from tarl_lint.runner import Result
 
-_NAMED: Final = 3  # functions named in one part
+_NAMED: Final = 3  # functions named in one box
 
 
 @dataclass(frozen=True, order=True)
 class Topic:
-    """A topic, known by its name without the leading slash; one of unknown name by where it is used."""
+    """A topic, identified by its name without the leading slash, or by its place of use if the name is unknown."""
 
     key: str
     label: str
@@ -25,9 +25,9 @@ class Topic:
 
 @dataclass(frozen=True)
 class Part:
-    """What publishes in one file under the same inputs: every input reaches every output, by `kind`.
+    """The publish calls of one file that the same topics reach: every input reaches every output, by `kind`.
 
-    So the picture has one box for many flows, and yet each way through a box is a flow and no other is.
+    One box thus represents many flows, and every path through a box is a flow.
     """
 
     path: str
@@ -39,24 +39,24 @@ class Part:
 
 @dataclass(frozen=True)
 class Picture:
-    """Parts by the title of their file, and all topics, both sorted."""
+    """Parts by file title, and all topics, both sorted."""
 
     files: tuple[tuple[str, tuple[Part, ...]], ...]
     topics: tuple[Topic, ...]
 
     def numbers(self) -> dict[str, str]:
-        """Return a short name for every topic, by its key."""
+        """Return topic key → short name."""
         return {topic.key: f"t{number}" for number, topic in enumerate(self.topics)}
 
     def boxes(self) -> Iterator[tuple[str, tuple[tuple[str, Part], ...]]]:
-        """Yield each file's title and its parts, each part with a short name of its own."""
+        """Yield each file's title and its parts, each part with a unique short name."""
         numbers = count()
         for title, parts in self.files:
             yield title, tuple((f"p{next(numbers)}", part) for part in parts)
 
 
 def picture(result: Result) -> Picture:
-    """Draw the flows of a run, the accepted ones too; with a baseline, new ones are marked."""
+    """Return the diagram of all flows of a run, including accepted ones; with a baseline, new ones are marked."""
     flows = [(f, f.flow) for f in result.findings if f.flow]
     marked = result.baseline is not None
     parts = sorted(_parts(flows, _names(flows), marked=marked), key=lambda p: (p.path, p.label, p.inputs))
@@ -68,7 +68,7 @@ def picture(result: Result) -> Picture:
 
 
 def _names(flows: Sequence[tuple[Finding, Flow]]) -> Mapping[str, Topic]:
-    """Return the topics by key; one that is written in several ways gets one label, with the slash if any has."""
+    """Return the topics by key; different spellings get one label, with the slash if any has it."""
     every = {topic for _, flow in flows for end in (flow.source, flow.sink) for topic in _topics(end)}
     return {topic.key: topic for topic in sorted(every, reverse=True)}
 
@@ -92,7 +92,7 @@ def _parts(
 
 
 class _Likeness(NamedTuple):
-    """What publish calls have in common that are drawn as one."""
+    """The common key of publish calls that share a box."""
 
     path: str
     owner: str
@@ -101,7 +101,7 @@ class _Likeness(NamedTuple):
 
 
 def _label(sinks: Sequence[Sink]) -> str:
-    """Name the functions that publish."""
+    """Return the names of the publishing functions."""
     names = sorted({sink.qualname or "<module>" for sink in sinks})
     more = [f"and {len(names) - _NAMED} more"] if len(names) > _NAMED else []
     return "\n".join([*names[:_NAMED], *more])
@@ -116,7 +116,7 @@ def _topics(end: Source | Sink) -> Iterator[Topic]:
 
 
 def short_names(paths: Sequence[str]) -> dict[str, str]:
-    """Return the shortest ends of paths that tell them apart."""
+    """Return path → shortest suffix that is unique among the paths."""
     names = {path: path.rpartition("/")[2] for path in paths}
     while True:
         counts = Counter(names.values())

@@ -1,7 +1,7 @@
-"""What GitHub takes of a SARIF file, and how much of a large report to leave out so that it is taken.
+"""GitHub's limits for SARIF files, and how to reduce a large report to them.
 
 Limits as documented for uploads to code scanning (read in 2026): 10 MB compressed by gzip; 25,000 results a run, of
-which the 5,000 gravest are shown; 10,000 locations of thread flows a result, of which 1,000 are shown.
+which the 5,000 most severe are shown; 10,000 locations of thread flows a result, of which 1,000 are shown.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ MOST_BYTES: Final = 10_000_000  # compressed
 
 @dataclass(frozen=True)
 class Cut:
-    """How much of a report is written: so many results, and lists of steps in full up to a length."""
+    """How much of a report is written: a number of results, and the maximum length of lists of steps shown in full."""
 
     results: int
     steps: int
@@ -28,7 +28,7 @@ EVERYTHING: Final = Cut(sys.maxsize, sys.maxsize)
 
 
 def cuts(results: int) -> Iterator[Cut]:
-    """Yield ever smaller reports: lists of steps are cut to their shortest chains, then results are left out."""
+    """Yield ever smaller reports: first reduce lists of steps to their shortest chains, then omit results."""
     count = min(results, MOST_RESULTS)
     yield Cut(count, MOST_STEPS)
     while True:
@@ -39,9 +39,9 @@ def cuts(results: int) -> Iterator[Cut]:
 
 
 def taken(text: str) -> bool:
-    """Tell whether a report of ASCII text is small enough."""
+    """Return whether GitHub accepts the size of a report in ASCII."""
     if len(text) <= MOST_BYTES:
         return True
-    import gzip  # reports as large as this are rare
+    import gzip  # imported only for large reports, which are rare
 
     return len(gzip.compress(text.encode("ascii"), 6)) <= MOST_BYTES

@@ -1,1 +1,1 @@
-"""One file per rule: its code, what it says, and VALID and INVALID snippets that are its tests and its page."""
+"""Rules, one file each: code, message, and the VALID and INVALID snippets that are its tests and documentation."""

@@ -1,8 +1,8 @@
 """TARL001: a file cannot be analysed.
 
-The file is not valid Python 3, cannot be decoded, or is nested too deeply. Python 2 files are named as such.
-The other files are analysed as if this one did not exist, so flows through it are missed: repair the file,
-port it, or exclude it.
+The file is not valid Python 3, cannot be decoded, or is nested too deeply. The message says so if it is Python 2.
+tarl-lint analyses the other files as if this one did not exist, so it misses flows through it. Fix the file, port it
+to Python 3, or exclude it.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """TARL101: data of a subscribed topic reaches a published one.
 
-A value computed from a received message is part of what the publish call sends (an *explicit* flow). That is
-what most robot programs are for; the note says which input acts on which output, and its taint list through
-which statements. Accept the flows that are meant with `--write-baseline`; from then on only new ones count.
+A value computed from a received message is part of what the publish call sends (an *explicit* flow). Most robot
+programs exist to do this. The finding shows which input affects which output, and the taint list shows the statements
+in between. Accept intended flows with `--write-baseline`; from then on only new flows are reported.
 """
 
 from __future__ import annotations

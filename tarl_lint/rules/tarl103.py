@@ -1,9 +1,9 @@
-"""TARL103: a request decides what its own service or action server answers.
+"""TARL103: a request influences the response of its own service or action server.
 
-A service exists to answer its request, and an action server to reach its goal, so a flow from a request to its own
-response says nothing new; a workspace may hold hundreds of them. This rule is off until you ask for it:
-`--extend-select TARL103`, or `extend-select = ["TARL103"]` in the settings. A request that reaches a topic, or the
-response of another service, is TARL101 or TARL102 as ever.
+A service exists to answer its request, and an action server to reach its goal. A flow from a request to its own
+response is therefore expected, and a workspace may have hundreds of them. This rule is off by default. Turn it on
+with `--extend-select TARL103`, or `extend-select = ["TARL103"]` in the settings. A flow from a request to a topic, or
+to the response of another service, is reported as TARL101 or TARL102.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from tarl_lint.model import Finding, Flow
 from tarl_lint.rules.wording import end
 
 CODE: Final = "TARL103"
-SUMMARY: Final = "a request decides what its own service or action server answers"
+SUMMARY: Final = "a request influences the response of its own service or action server"
 
 INVALID: Final = (
     """
@@ -47,11 +47,11 @@ VALID: Final = (
 
 
 def own_response(flow: Flow) -> bool:
-    """Tell whether a flow leads from a request to the response of the same service or action server."""
+    """Return whether a flow leads from a request to the response of the same service or action server."""
     source, sink = flow.source, flow.sink
     if on_topic(source.api) or not sink.api.startswith(f"{source.api}."):
         return False
-    # Two servers of one type whose names are unknown are told apart by what handles the request
+    # Two servers of one type with unknown names are distinguished by their request handlers
     handled = source.topics or source.callback.rpartition(".")[2] == sink.qualname.rpartition(".")[2]
     return bool(handled) and (source.topics, source.type) == (sink.topics, sink.type)
 

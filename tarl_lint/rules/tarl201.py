@@ -1,15 +1,21 @@
 """TARL201: state is shared between threads without the lock that guards it elsewhere.
 
-In rospy every subscriber, timer and service calls back in a thread of its own, beside the main loop. In rclpy this is
-so only with a MultiThreadedExecutor and callback groups that allow it, or with threads of one's own. An attribute or
-global that is accessed under a lock in one thread, and changed or read without it in another, may be seen half
-changed, or a change may be lost. Only what a lock is used for somewhere is reported, and only where it can go wrong: a
-container is changed while another thread reads it, something is counted or changed in place, a function looks at it
-twice and may see two different things, or reads parts that belong together. One look at a value that is only ever
-replaced is harmless: Python stores it at once. Not reported are flags that are set to constants, questions whether
-something is there yet, how long it is or whether to leave before the lock is taken, methods of objects that may guard
-themselves, and what runs before the threads start. Where a function is called with the lock in one place and without it
-in another, the call without it is named.
+In rospy every subscriber, timer and service runs its callbacks in a thread of its own, beside the main loop. In rclpy
+this happens only with a MultiThreadedExecutor and callback groups that allow it, or with threads that the node starts.
+If one thread accesses an attribute or global under a lock and another thread changes or reads it without the lock, the
+other thread may see a partial change, or a change may be lost.
+
+Only state that some code guards with a lock is reported, and only if the access can go wrong:
+
+- one thread changes a container while another reads it,
+- a value is incremented or changed in place,
+- a function reads the state twice and may see two different values,
+- a function reads several parts that belong together.
+
+A single read of a value that is only ever replaced is harmless, because Python replaces it atomically. Not reported are
+flags that are set to constants, checks before the lock is taken (whether a value exists, its length, whether to
+return), methods of objects that may do their own locking, and code that runs before the threads start. If a function
+is called with the lock in one place and without it in another, the message names the call without it.
 """
 
 from __future__ import annotations
@@ -138,12 +144,12 @@ VALID: Final = (
 
 
 def ruled_out(side: Side) -> bool:
-    """Tell whether nothing makes a lock."""
+    """Return whether the group creates no lock."""
     return not any(map(MADE.search, side.texts))
 
 
 def findings(evidence: Evidence) -> Iterator[Finding]:
-    """Yield a hazard for each function that uses shared state without its lock, beside another thread."""
+    """Yield a hazard for each function that uses shared state without its lock while another thread uses it."""
     every = Locking(evidence).uses()
     harm = Harm(every)
     for state, uses in every.items():
@@ -161,7 +167,7 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _conflict(use: Use, uses: Sequence[Use]) -> Use | None:
-    """Return an access in another thread that holds a lock, when one of the two writes."""
+    """Return an access in another thread that holds a lock, if at least one of the two writes."""
     others = (u for u in uses if u.locks and u.thread != use.thread and (u.writes or use.writes))
     return min(others, key=lambda u: (not u.writes, u.spots[0].path, u.spots[0].pos), default=None)
 

@@ -1,13 +1,16 @@
 """TARL202: a command follows a sensor without limit.
 
-A number of a received message is computed into a command for actuators (a velocity, a throttle, an angle) and nothing
-on the way bounds it: no `min`, `max`, `clip` or function of such a name, no angle or sine, no comparison that replaces
-the value when it is too large. Sensors send infinity, jumps and nonsense sometimes, and the command then follows.
-Clamp it where it is computed; that is the line that is named. Conditions that only ask whether the value is large
-enough (`while distance > tolerance`) do not bound it. What passes through code that is not here is not reported, nor
-speeds that may be measurements: a Float64 on `/speed` made from ticks, from `twist`, or from a way and a time. Sensors
-are known by their messages (`LaserScan`, `Odometry`, `Imu` …), and numbers by their topic (`/range`, `/cte`); what is
-neither may be decided by somebody, as commands, goals and parameters are, and is not reported.
+A command for actuators (a velocity, a throttle, an angle) is computed from a number in a received message, and
+nothing on the way bounds it: no `min`, `max`, `clip` or function with such a name, no angle or sine, no comparison
+that replaces a value that is too large. Sensors sometimes send infinity, jumps or invalid values, and the command
+follows them. Clamp the value at the reported line, where it is computed.
+
+A condition that only checks whether a value is large enough (`while distance > tolerance`) does not bound it.
+
+A message counts as sensor data by its type (`LaserScan`, `Odometry`, `Imu` …), a plain number by its topic (`/range`,
+`/cte`). Other messages may be decisions, such as commands, goals and parameters, and are not reported. Neither
+are values that pass through code outside the analysed files, nor speeds that may be measurements: a Float64 on `/speed`
+computed from ticks, from `twist`, or from a distance and a time.
 """
 
 from __future__ import annotations
@@ -120,7 +123,7 @@ VALID: Final = (
 )
 
 COMMAND_TYPES: Final = re.compile(r"^(Ackermann\w*|\w*(Cmd|Command|Control|Thrust)\w*)$")
-# Of these types measurements are published, too: the topic has to tell.
+# Measurements are published with these types too, so the topic must contain a word for a command.
 PLAIN_TYPES: Final = frozenset(
     ["Float32", "Float64", "Int16", "Int32", "Int64", "Twist", "TwistStamped", "Wrench", "WrenchStamped"]
 )
@@ -158,11 +161,11 @@ ASKED_FOR: Final = re.compile(
     r"cmd|command|setpoint|set_point|target|goal|desired|wish|reference|joy|teleop|key|param|request|plan|waypoint|mode"
     r"|drive|control|ctrl|throttle|steer",
     re.I,
-)  # what somebody decided
+)  # topics of decisions, not of measurements
 
 
 def ruled_out(side: Side) -> bool:  # noqa: ARG001 - one signature for all
-    """Tell that there is nothing: a command that follows a sensor is a flow."""
+    """Return True: a command that follows a sensor is a flow, and the group has none."""
     return True
 
 
@@ -205,12 +208,12 @@ def _add(
 
 
 def _hazardous(flow: Flow) -> bool:
-    """Tell whether a sensor's numbers would act on a robot here."""
+    """Return whether the flow leads from sensor data to a command for actuators."""
     return _sensor(flow.source) and _command(flow)
 
 
 def _sensor(source: Source) -> bool:
-    """Tell whether messages are measured: by their type, of mere numbers by the topic."""
+    """Return whether a source is a sensor, by its message type or, for plain numbers, by its topic."""
     if not on_topic(source.api) or not ("ubscri" in source.api or "wait_for_message" in source.api):
         return False
     types = (source.type or "").split(" | ")
@@ -223,7 +226,7 @@ def _sensor(source: Source) -> bool:
 
 
 def _command(flow: Flow) -> bool:
-    """Tell whether what is published makes actuators move."""
+    """Return whether the published message is a command for actuators."""
     sink, topic = flow.sink, ", ".join(flow.sink.topics)
     if not on_topic(sink.api) or NO_COMMAND.search(topic):
         return False
@@ -236,6 +239,6 @@ def _command(flow: Flow) -> bool:
 
 
 def _measured(flow: Flow) -> bool:
-    """Tell whether a speed may be what was measured: speeds and ticks come in, or a way is divided by a time."""
+    """Return whether a speed may be a measurement: from speeds or ticks, or a distance divided by a time."""
     code = " ".join(step.code for step in flow.steps if step.dependence == "data")
     return not PLACE_TYPES & set((flow.source.type or "").split(" | ")) or bool(SPEEDS.search(code))

@@ -1,9 +1,9 @@
-"""TARL203: what is subscribed to reaches nothing.
+"""TARL203: a subscription has no effect.
 
-The callback does nothing with its messages: it neither keeps, publishes, passes on, logs nor returns anything, or
-what it keeps is never read. The subscription costs bandwidth and time for nothing, and often a line is missing that
-somebody believes to be there. Not meant are callbacks that ignore the message but do something when it arrives, and
-those that are written to do nothing: `lambda msg: None`, or a parameter whose name starts with an underscore.
+The callback ignores its messages: it does not store, publish, pass on, log or return anything, or nothing ever reads
+what it stores. The subscription wastes bandwidth and time, and often a line is missing that its author believes to be
+there. Not reported are callbacks that ignore the message but do something when it arrives, and callbacks that
+intentionally do nothing: `lambda msg: None`, or a parameter whose name starts with an underscore.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tarl_lint.rules.wording import end
 from tarl_lint.trees import walk
 
 CODE: Final = "TARL203"
-SUMMARY: Final = "what is subscribed to reaches nothing"
+SUMMARY: Final = "a subscription has no effect"
 
 INVALID: Final = (
     """
@@ -94,7 +94,7 @@ ACTIONS: Final = (
 
 
 def ruled_out(side: Side) -> bool:
-    """Tell whether nothing is subscribed to, or every function does something that tells it from an idle callback."""
+    """Return whether the group subscribes to nothing, or no function can be an idle callback."""
     return not side.hears or all(acting(f) for m in side.modules for f in _functions(m.tree.body))
 
 
@@ -110,7 +110,7 @@ def _functions(body: Sequence[ast.stmt]) -> Iterator[ast.FunctionDef | ast.Async
 
 
 def findings(evidence: Evidence) -> Iterator[Finding]:
-    """Yield a hazard for each subscription whose callbacks do nothing that matters."""
+    """Yield a hazard for each subscription whose callbacks have no effect."""
     for record in evidence.machine.sources.values():
         functions = _callbacks(evidence, record) if record.kind == "topic" else []
         if not functions or any(_meant(f) for f, _ in functions):
@@ -120,19 +120,19 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
         if any(stores is None for stores in kept) or (names and not _unread(names, functions, evidence)):
             continue
         source = evidence.tracer.source(record)
-        reason = "does nothing with it"
+        reason = "ignores it"
         if names:
-            reason = f"keeps it in {', '.join(sorted(names))}, which nothing reads"
+            reason = f"stores it in {', '.join(sorted(names))}, which nothing reads"
         message = f"{end(source)}: {source.callback} {reason}"
         about = f"{topic_text(source.topics)}, heard by {source.callback}"
         yield evidence.finding(CODE, source.span, message, about)
 
 
 def _callbacks(evidence: Evidence, record: SourceRecord) -> list[tuple[Function, str]]:
-    """Return a subscription's callbacks with their files; none when one of them is not known."""
+    """Return a subscription's callbacks with their files; empty if one of them is unknown."""
     found: list[tuple[Function, str]] = []
     if "ubscri" not in record.api:
-        return found  # a service's request need not be looked at
+        return found  # a service may ignore its request
     for node in sorted(record.nodes):
         place = evidence.machine.graph.places[node]
         if place.statement is not None or place.frame is record.frame:
@@ -142,20 +142,20 @@ def _callbacks(evidence: Evidence, record: SourceRecord) -> list[tuple[Function,
 
 
 def _meant(function: Function) -> bool:
-    """Tell whether a function says that it ignores its messages, or that others are to take its place."""
+    """Return whether a function declares that it ignores its messages, or that subclasses override it."""
     ignored = any(p.name.startswith("_") for p in function.parameters)
     return ignored or bool(function.decorators) or isinstance(function.node, ast.Lambda)
 
 
 def acting(node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
-    """Tell whether a function is no idle callback, whatever it keeps: it says so, does or returns something."""
+    """Return whether a function is not an idle callback: it declares so, acts, or returns a value."""
     if node.decorator_list or any(a.arg.startswith("_") for a in node.args.args):
         return True
     return any(_acts(p) or _returns(p) for statement in node.body for p in walk(statement))
 
 
 def _kept(function: Function, path: str, evidence: Evidence) -> set[str] | None:
-    """Return the attributes (`self.x`) and globals that a callback stores to and nothing else; None for more."""
+    """Return the attributes (`self.x`) and globals that a callback stores to; None if it does anything else."""
     node = function.node
     if isinstance(node, ast.Lambda):
         return None
@@ -177,14 +177,14 @@ def _kept(function: Function, path: str, evidence: Evidence) -> set[str] | None:
 
 
 def _acts(node: ast.AST) -> bool:
-    """Tell whether an expression or statement may do something beyond computing a value."""
+    """Return whether an expression or statement may do something beyond computing a value."""
     if isinstance(node, ast.Call):
         return not (isinstance(node.func, ast.Name) and node.func.id in PURE)
     return isinstance(node, ACTIONS)
 
 
 def _returns(node: ast.AST) -> bool:
-    """Tell whether a statement returns something that may be more than a constant."""
+    """Return whether a statement returns something that may be more than a constant."""
     return isinstance(node, ast.Return) and not (node.value is None or isinstance(node.value, ast.Constant))
 
 
@@ -200,7 +200,7 @@ def _attribute(target: ast.expr, receiver: str) -> str | None:
 
 
 def _unread(names: set[str], functions: list[tuple[Function, str]], evidence: Evidence) -> bool:
-    """Tell whether nothing reads what is kept under the names."""
+    """Return whether nothing reads the values stored under the names."""
     own = [function.node for function, _ in functions]
     for name in names:
         plain, attribute = name.removeprefix("self."), name.startswith("self.")
@@ -213,6 +213,6 @@ def _unread(names: set[str], functions: list[tuple[Function, str]], evidence: Ev
 
 
 def _defined(name: str, evidence: Evidence) -> bool:
-    """Tell whether a function has the name: a property's setter does more than store."""
+    """Return whether a function has the name: a property's setter does more than store."""
     marker = f"def {name}("
     return any(marker in m.text for m in evidence.machine.modules.values())

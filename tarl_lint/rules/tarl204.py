@@ -1,7 +1,7 @@
 """TARL204: a publisher never publishes.
 
-The topic is advertised, so other nodes see it and may wait for it, but no publish call anywhere uses the publisher,
-and it is not handed to anyone who could. Usually a line was lost, or the publisher was left over.
+The topic is advertised, so other nodes see it and may wait for it. But no publish call uses the publisher, and it is
+not passed to code that could. Usually a line was lost, or the publisher is left over.
 """
 
 from __future__ import annotations
@@ -76,12 +76,12 @@ SCOPES: Final = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
 
 def ruled_out(side: Side) -> bool:
-    """Tell whether every publisher is used, as far as the syntax tells."""
+    """Return whether the syntax shows that every publisher is used."""
     return all(map(_all_publish, side.modules, side.texts))
 
 
 def _all_publish(module: Module, text: str) -> bool:
-    """Tell whether every publisher is kept under a name of its own, on which something is published."""
+    """Return whether every publisher is stored under a name of its own, on which something is published."""
     if not any(maker in text for maker in MAKERS):
         return True
     mentioned, names = 0, list[str]()
@@ -103,7 +103,7 @@ def _last(expr: ast.expr) -> str:
 
 
 def findings(evidence: Evidence) -> Iterator[Finding]:
-    """Yield a hazard for each call that makes a publisher which never publishes."""
+    """Yield a hazard for each call that creates a publisher that never publishes."""
     made: dict[tuple[str, Pos], list[Publisher]] = {}
     for obj in evidence.machine.objects.values():
         if isinstance(obj.info, Publisher):
@@ -120,14 +120,14 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _may_publish(path: str, pos: Pos, evidence: Evidence) -> bool:
-    """Tell whether anyone could publish with the publisher that a call makes."""
+    """Return whether any code could publish with the publisher that a call creates."""
     outline = evidence.outline(path)
     call = outline.call(pos)
     statement = outline.parents.get(call) if call is not None else None
     if call is None or statement is None:
         return True
     if any(keyword.arg == "event_callbacks" for keyword in call.keywords):
-        return True  # it is there to learn who listens
+        return True  # its purpose is to detect subscribers
     if isinstance(statement, ast.Expr):
         return False
     targets: list[ast.expr] = []
@@ -141,7 +141,7 @@ def _may_publish(path: str, pos: Pos, evidence: Evidence) -> bool:
 
 
 def _target_read(target: ast.expr, path: str, pos: Pos, evidence: Evidence) -> bool:
-    """Tell whether what a target holds is used for more than asking about it."""
+    """Return whether the publisher stored in a target is used for more than queries about it."""
     outline = evidence.outline(path)
     if isinstance(target, ast.Attribute):
         reads = evidence.reads(target.attr, attribute=True)
@@ -160,12 +160,12 @@ def _target_read(target: ast.expr, path: str, pos: Pos, evidence: Evidence) -> b
 
 
 def _declared(function: ast.AST, name: str) -> bool:
-    """Tell whether a function says that a name is not its own."""
+    """Return whether a function declares a name as global or nonlocal."""
     return any(isinstance(n, (ast.Global, ast.Nonlocal)) and name in n.names for n in walk(function))
 
 
 def _harmless(read: Read, path: str, pos: Pos, evidence: Evidence) -> bool:
-    """Tell whether a use neither publishes nor hands the publisher on."""
+    """Return whether a use neither publishes nor passes the publisher on."""
     outer = read.around[0]
     if isinstance(outer, ast.Attribute):
         called = read.around[1]
@@ -180,7 +180,7 @@ def _harmless(read: Read, path: str, pos: Pos, evidence: Evidence) -> bool:
 
 
 def _others(read: Read, call: ast.Call, path: str, pos: Pos, evidence: Evidence) -> bool:
-    """Tell whether a publish call is known to use other publishers, which only have the same name."""
+    """Return whether a publish call uses only other publishers that have the same name."""
     place = (call.lineno, call.col_offset, call.end_lineno or 0, call.end_col_offset or 0)
     record = evidence.machine.sinks.get((read.path, place))
     if record is None or (path, pos) in record.publishers or read.path != path:
@@ -193,7 +193,7 @@ def _others(read: Read, call: ast.Call, path: str, pos: Pos, evidence: Evidence)
 
 
 def _related(one: ast.AST | None, other: ast.AST | None) -> bool:
-    """Tell whether a class names another one as its base, or has bases that are not looked into."""
+    """Return whether one class may inherit from the other: directly, or through a base that is not analysed."""
     if not isinstance(one, ast.ClassDef) or not isinstance(other, ast.ClassDef):
         return False
     return any(other.name in ast.unparse(base) for base in one.bases)

@@ -1,4 +1,4 @@
-"""How rules name the ends of a flow."""
+"""Names of sources and sinks in messages of rules."""
 
 from __future__ import annotations
 

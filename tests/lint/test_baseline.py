@@ -110,8 +110,8 @@ def test_the_file_has_one_flow_a_line_in_words_and_the_same_bytes_in_any_order(e
     ("text", "complaint"),
     [
         ("{", "damaged"),
-        ("[]", "is no baseline of tarl-lint"),
-        ('{"runs": []}', "is no baseline of tarl-lint"),
+        ("[]", "is not a baseline of tarl-lint"),
+        ('{"runs": []}', "is not a baseline of tarl-lint"),
         ('{"format": 9, "tool": "tarl-lint", "flows": []}', "has format 9, this tarl-lint reads 1"),
         ('{"format": 1, "tool": "tarl-lint"}', "damaged .*it lacks 'flows'"),
         ('{"format": 1, "tool": "tarl-lint", "flows": [{}]}', "damaged .*an entry lacks 'kind'"),

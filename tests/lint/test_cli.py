@@ -72,18 +72,18 @@ def test_the_report_goes_to_a_file_when_asked(node, capsys):
 
 def test_accepted_flows_pass_until_the_baseline_is_left_out(node, capsys):
     code, out, _ = lint(capsys, "--write-baseline")
-    assert (code, out) == (0, "tarl-flows.json: 1 flow accepted (1 new, 0 forgotten).\n")
+    assert (code, out) == (0, "tarl-flows.json: 1 flow accepted (1 new, 0 removed).\n")
     code, out, _ = lint(capsys)
     assert (code, out) == (0, "No new flow in 1 file (1 accepted in tarl-flows.json).\n")
     assert lint(capsys, "--no-baseline")[0] == 1
     node.write_text("x = 1\n")
     code, out, err = lint(capsys)
     assert code == 0
-    assert "No longer there, though accepted in tarl-flows.json:\n  odom → progress, explicit" in out
+    assert "Gone, but accepted in tarl-flows.json:\n  odom → progress, explicit" in out
     code, out, err = lint(capsys, "--format", "json")
     assert json.loads(out)["diagnostics"] == []
     assert "odom → progress" in err
-    assert lint(capsys, "--write-baseline")[1] == "tarl-flows.json: 0 flows accepted (0 new, 1 forgotten).\n"
+    assert lint(capsys, "--write-baseline")[1] == "tarl-flows.json: 0 flows accepted (0 new, 1 removed).\n"
 
 
 def test_unreadable_files_are_said_when_the_baseline_is_written(node, capsys):
@@ -91,7 +91,7 @@ def test_unreadable_files_are_said_when_the_baseline_is_written(node, capsys):
     node.write_text("def f(:\n")
     out = lint(capsys, "--write-baseline")[1]
     assert out == (
-        "tarl-flows.json: 1 flow accepted (0 new, 0 forgotten, 1 kept that this run did not look at).\n"
+        "tarl-flows.json: 1 flow accepted (0 new, 0 removed, 1 kept that this run did not analyse).\n"
         "Not analysed: 1 file that is not readable as Python 3 (TARL001).\n"
     )
 
@@ -107,18 +107,18 @@ def test_unreadable_files_are_said_when_the_baseline_is_written(node, capsys):
         ),
         (["--fail-on", "all"], "--fail-on cannot be 'all'. It can be never, hazard, explicit, implicit."),
         (["--baseline"], "--baseline needs a value."),
-        (["nod.py"], "There is no nod.py: did you mean node.py?"),
+        (["nod.py"], "nod.py: no such file or directory: did you mean node.py?"),
         (["empty"], "There is no Python file to lint in empty"),
         (["--config", "none.toml"], "The settings file none.toml cannot be read: No such file or directory."),
         (["--config", "bad.toml"], "bad.toml: [tool.tarl-lint] has no key 'selcet': did you mean 'select'?"),
         (
             ["--baseline", "none.json"],
-            "The baseline none.json does not exist: write it with --write-baseline",
+            "The baseline none.json does not exist: create it with --write-baseline",
         ),
         (["--baseline", "bad.toml"], "The baseline bad.toml is damaged"),
-        (["--no-baseline", "--write-baseline"], "--no-baseline and --write-baseline contradict each other"),
-        (["--select", "TARL9"], "--select names 'TARL9', which is no rule"),
-        (["--ignore", "E501"], "--ignore names 'E501', which is no rule"),
+        (["--no-baseline", "--write-baseline"], "--no-baseline and --write-baseline cannot be used together"),
+        (["--select", "TARL9"], "--select names 'TARL9', which is not a rule"),
+        (["--ignore", "E501"], "--ignore names 'E501', which is not a rule"),
         (["--explain", "TARL10"], "TARL10 stands for TARL101, TARL102, TARL103: name one of them."),
         (["--explain", "TARL1O1"], "There is no rule 'TARL1O1': did you mean 'TARL101'?"),
         (["--jobs", "0"], "--jobs: '0' is not a number of processes: write 1 or more, or auto."),
@@ -255,9 +255,12 @@ def test_rules_can_be_ignored_in_some_files(node, capsys):
 @pytest.mark.parametrize(
     ("value", "sentence"),
     [
-        ("node.py", "--per-file-ignores: 'node.py' has no form PATTERN:CODES, such as 'tests/:TARL1'."),
+        (
+            "node.py",
+            "--per-file-ignores: 'node.py' does not have the form PATTERN:CODES, such as 'tests/:TARL1'.",
+        ),
         ("src\\node.py:TARL1", "--per-file-ignores: 'src\\\\node.py' has backslashes"),
-        ("node.py:TARL9", "--per-file-ignores names 'TARL9', which is no rule"),
+        ("node.py:TARL9", "--per-file-ignores names 'TARL9', which is not a rule"),
     ],
 )
 def test_per_file_ignores_that_cannot_be_meant_are_refused(node, capsys, value, sentence):

@@ -37,8 +37,8 @@ def said(in_directory, capsys):
         ([], ["2 flows in 1 file: 1 explicit, 1 implicit."]),
         (["--select", "TARL102"], ["1 flow in 1 file: 1 implicit."]),
         (["--select", "TARL2"], ["No hazard in 1 file."]),
-        (["--select", "TARL001"], ["1 file read; no rule about flows or hazards is in use."]),
-        (["--ignore", "TARL"], ["1 file read; no rule about flows or hazards is in use."]),
+        (["--select", "TARL001"], ["1 file read; no rule for flows or hazards is enabled."]),
+        (["--ignore", "TARL"], ["1 file read; no rule for flows or hazards is enabled."]),
         (
             ["--per-file-ignores", "node.py:TARL1"],
             [
@@ -86,10 +86,10 @@ def test_a_comment_is_only_called_useless_where_all_that_it_speaks_of_was_looked
 def test_a_comment_that_names_no_rule_is_told_apart(in_directory, capsys):
     in_directory({"node.py": dedent(BOTH).format(comment="  # tarl: ignore[TARL1O1]")})
     main(["--format", "concise"])
-    note = "node.py:8:28 note: there is no rule TARL1O1: correct this comment, or take it out.\n"
+    note = "node.py:8:28 note: there is no rule TARL1O1: correct or remove this comment.\n"
     assert note in capsys.readouterr().out
     main(["--format", "github"])
-    assert "::There is no rule TARL1O1: correct this comment" in capsys.readouterr().out
+    assert "::There is no rule TARL1O1: correct or remove this comment" in capsys.readouterr().out
 
 
 def test_concise_names_what_has_vanished(in_directory, capsys):
@@ -99,7 +99,7 @@ def test_concise_names_what_has_vanished(in_directory, capsys):
     capsys.readouterr()
     main(["--format", "concise"])
     out = capsys.readouterr().out
-    assert "  /in → /out, explicit, heard by on_value, published in on_value (node)\n" in out
+    assert "  /in → /out, explicit, received by on_value, published in on_value (node)\n" in out
     assert "\n\n" not in out
 
 

@@ -139,7 +139,9 @@ def test_a_baseline_that_is_named_must_exist_unless_it_is_being_written(in_direc
     root = in_directory({"pyproject.toml": '[tool.tarl-lint]\nbaseline = "ci/flows.json"\n'})
     for options in (Options(), Options(write_baseline=True)):
         assert resolve(options).baseline == root / "ci/flows.json"
-    with pytest.raises(BaselineError, match=r"ci/flows\.json does not exist: write it with --write-baseline"):
+    with pytest.raises(
+        BaselineError, match=r"ci/flows\.json does not exist: create it with --write-baseline"
+    ):
         load(root / "ci/flows.json")
 
 

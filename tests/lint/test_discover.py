@@ -96,9 +96,9 @@ def test_files_outside_the_working_directory_have_their_whole_path(in_directory,
 
 def test_a_path_that_does_not_exist_is_named_with_its_neighbour(in_directory):
     in_directory({"source/a.py": ""})
-    with pytest.raises(UsageError, match=r"There is no sorce: did you mean source\?"):
+    with pytest.raises(UsageError, match=r"sorce: no such file or directory: did you mean source\?"):
         find([Path("sorce")], Config())
-    with pytest.raises(UsageError, match="the directory nowhere does not exist either"):
+    with pytest.raises(UsageError, match="no such file or directory, and no directory nowhere either"):
         find([Path("nowhere/a.py")], Config())
 
 

@@ -99,9 +99,8 @@ def test_without_the_setting_the_base_is_opaque_and_named(workspace):
     (workspace / "pyproject.toml").write_text("[tool.tarl-lint]\n")
     result = linted(workspace)
     assert pairs(result) == set()
-    assert (
-        'what goes into robot_base.BaseNode, which are not here (follow-installed = ["robot_base"])'
-        in said(result)
+    assert 'classes outside the files: robot_base.BaseNode (follow-installed = ["robot_base"])' in said(
+        result
     )
 
 
@@ -130,7 +129,7 @@ def test_a_change_in_the_package_changes_what_is_cached(workspace):
     [
         (
             'python = ".vnv"',
-            r"'python' is \.vnv, which is no virtual environment: there is no pyvenv.cfg in it",
+            r"'python' is \.vnv, which is not a virtual environment: it contains no pyvenv.cfg",
         ),
         ("", r"'follow-installed' needs 'python'"),
     ],
@@ -155,7 +154,7 @@ def test_a_package_that_is_not_there_is_named_and_the_rest_goes_on(workspace):
     settings.write_text(settings.read_text().replace('["robot_base"]', '["robot_base", "gone"]'))
     result = linted(workspace)
     assert len(pairs(result)) == 2
-    assert "'follow-installed' names 'gone', of which .venv holds no Python source" in said(result)
+    assert "'follow-installed' names 'gone', but .venv contains no Python source" in said(result)
 
 
 def test_packages_of_the_system_count_only_where_the_environment_says_so(tmp_path):

@@ -24,6 +24,10 @@ NODE = """
             self.last = 0.0
             self.declare_parameter("speed", 1.25)
             self.speed = self.get_parameter("speed").get_parameter_value().double_value
+            self.declare_parameters("", [("pitch", 0.5), ("most", 4)])
+            self.pitch = self.get_parameter("pitch").value
+            one, other = self.declare_parameters(namespace="arm", parameters=[("a", 1.5), ("b", 2.5)])
+            self.b = other.value
             self.limit = rospy.get_param("~limit", 9.0)
             self.free = rospy.get_param("~free")
             self.out = self.create_publisher(F, "b", 10)
@@ -46,6 +50,8 @@ NODE = """
         ("msg.data * self.arm.reach", [("self.arm.reach", 1.5)]),
         ("msg.data * TABLE['p']", [("TABLE['p']", 0.4)]),
         ("msg.data * self.speed", [("self.speed", 1.25)]),
+        ("msg.data * self.pitch", [("self.pitch", 0.5)]),
+        ("msg.data * self.b", [("self.b", 2.5)]),
         ("min(msg.data, self.limit)", [("self.limit", 9.0)]),
         ("msg.data * self.free", [("self.free", None)]),
         ("(lambda x, g=0.125: g * x)(msg.data)", []),

@@ -46,9 +46,7 @@ def node(in_directory, capsys) -> Path:
     """A node whose flow (TARL101) and hazards (TARL202, TARL204) are accepted."""
     path = in_directory({"follower.py": NODE}) / "follower.py"
     assert main(["--write-baseline"]) == 0
-    assert capsys.readouterr().out == (
-        "tarl-flows.json: 1 flow and 2 hazards accepted (3 new, 0 forgotten).\n"
-    )
+    assert capsys.readouterr().out == ("tarl-flows.json: 1 flow and 2 hazards accepted (3 new, 0 removed).\n")
     return path
 
 
@@ -107,22 +105,20 @@ def test_what_has_vanished_is_listed_and_forgotten_when_written_again(node, caps
     node.write_text(NODE.replace("0.8 * delta", "min(0.5, 0.8 * delta)").replace("rospy.Subscriber", "print"))
     code, out = linted(capsys)
     assert code == 0
-    assert "No longer there, though accepted in tarl-flows.json:\n" in out
+    assert "Gone, but accepted in tarl-flows.json:\n" in out
     assert (
-        "  /odom → /cmd_vel, explicit, heard by Follower.on_odom, published in Follower.follow (follower)\n"
+        "  /odom → /cmd_vel, explicit, received by Follower.on_odom, published in Follower.follow (follower)\n"
         in out
     )
     assert "  TARL202 /odom → /cmd_vel in Follower.follow (follower)\n" in out
     main(["--write-baseline"])
-    assert capsys.readouterr().out == (
-        "tarl-flows.json: 0 flows and 1 hazard accepted (0 new, 2 forgotten).\n"
-    )
+    assert capsys.readouterr().out == ("tarl-flows.json: 0 flows and 1 hazard accepted (0 new, 2 removed).\n")
 
 
 def test_hazards_can_be_kept_out_of_the_baseline(node, capsys):
     Path("tarl-flows.json").unlink()
     main(["--write-baseline", "--select", "TARL1"])
-    assert capsys.readouterr().out == "tarl-flows.json: 1 flow accepted (1 new, 0 forgotten).\n"
+    assert capsys.readouterr().out == "tarl-flows.json: 1 flow accepted (1 new, 0 removed).\n"
     code, out = linted(capsys)
     assert code == 1
     assert "2 new hazards: 1 TARL202, 1 TARL204.\n" in out

@@ -24,7 +24,7 @@ def test_github_gets_one_annotation_for_each_publish_call_the_gravest_first(exam
     )
     assert old.startswith("::warning file=old.py,line=3,")
     assert unused.startswith("::notice file=node.py,line=4,")
-    assert unused.endswith("There is no TARL102 here for this comment to silence: take it out.")
+    assert unused.endswith("There is no TARL102 here for this comment to silence: remove it.")
 
 
 def test_github_annotations_escape_what_their_syntax_uses(example):

@@ -45,7 +45,7 @@ def lines(result: Result, **view: object) -> list[str]:
 def test_the_map_comes_first_then_packages_then_tests(many):
     shown = lines(many)
     wanted = [
-        "Published, and what reaches it:",
+        "Published topics, and the topics that reach them:",
         "arm: 5 flows",
         "base: 3 flows",
         "Tests and examples: 2 flows",
@@ -81,7 +81,7 @@ def test_no_more_flows_are_shown_than_wanted_and_the_rest_is_counted(many, most)
     assert sum("TARL10" in line for line in shown) == most
     left = [int(line.split()[1]) for line in shown if line.startswith("    and ")]
     assert most + sum(left) == 10
-    assert "--max-paths 0 shows all 10 flows one by one." in shown
+    assert "--max-paths 0 shows all 10 flows." in shown
     assert "10 flows in 10 files: 7 explicit, 3 implicit." in shown
 
 
@@ -91,7 +91,7 @@ def test_long_lists_are_shown_by_their_shortest_chain(example):
     long = replace(finding, flow=replace(finding.flow, steps=steps, chain=(1, 2, len(steps) - 1)))
     short = lines(Result(findings=(long,)), show_paths=True)
     assert not any("delta = goal" in line for line in short)
-    assert any(f"{len(steps) - 4} more statements take part (--all-steps)" in line for line in short)
+    assert any(f"{len(steps) - 4} more statements (--all-steps)" in line for line in short)
     full = lines(Result(findings=(long,)), show_paths=True, all_steps=True)
     assert sum("delta = goal" in line for line in full) == 11
 
@@ -133,8 +133,8 @@ def test_reports_that_servers_would_refuse_are_cut_and_say_so(example, monkeypat
         n["descriptor"]["id"]: n["message"]["text"]
         for n in run["invocations"][0]["toolExecutionNotifications"]
     }
-    assert notes["left-out"].startswith(f"{300 - len(run['results'])} findings left out")
-    assert notes["shortened"].startswith(f"{len(run['results'])} flows shown")
+    assert notes["left-out"].startswith(f"{300 - len(run['results'])} findings omitted")
+    assert notes["shortened"].startswith(f"{len(run['results'])} flows reduced")
 
 
 def test_the_gravest_findings_stay_when_some_are_left_out(example):

@@ -19,7 +19,7 @@ def test_each_published_topic_is_said_to_carry_or_to_follow(example):
     flows += [flow(example, "scan", "cmd_vel", "implicit"), flow(example, "odom", "cmd_vel", "implicit")]
     flows += [flow(example, "goal", "path"), flow(example, "estop", "led", "implicit")]
     assert shown(flows) == [
-        "Published, and what reaches it:",
+        "Published topics, and the topics that reach them:",
         "  cmd_vel  ● data of    odom",
         "           ◆ decided by scan",
         "  led      ◆ decided by estop",

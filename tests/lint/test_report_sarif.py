@@ -106,7 +106,7 @@ def test_what_a_comment_silences_is_suppressed_in_source(example, schema):
 
 def test_the_root_that_paths_start_from_is_named_without_naming_the_machine(example):
     bases = run_of(everything(example))["originalUriBaseIds"]
-    assert bases == {"%SRCROOT%": {"description": {"text": "The directory that tarl-lint ran in."}}}
+    assert bases == {"%SRCROOT%": {"description": {"text": "The working directory of tarl-lint."}}}
 
 
 def test_without_a_baseline_nothing_is_said_about_one(example):

@@ -29,10 +29,10 @@ node.py:18:9 publishes progress (Float64) in travel
       17  assign     ● vel = 5 * delta
       18  publish    ● pub.publish(vel)
 
-      ● carries the value   ◆ decides   · surroundings
+      ● passes on the value   ◆ condition   · context
 
 1 flow in 1 file: 1 explicit.
---write-baseline accepts all this: from then on only what is new is reported.
+--write-baseline accepts these findings: later runs report only new ones.
 """
 
 
@@ -59,13 +59,13 @@ def test_flows_into_one_publish_call_share_a_code_frame_and_their_names_are_alig
     assert "    TARL101 explicit from odom (Odometry)            line 22, callback\n" in text
     assert "    TARL102 implicit from a_longer_topic (Odometry)  line 22, callback\n" in text
     assert "●" not in text
-    assert "2 flows in 1 file: 1 explicit, 1 implicit.\n--show-paths lists" in text
+    assert "2 flows in 1 file: 1 explicit, 1 implicit.\n--show-paths shows" in text
 
 
 def test_show_paths_lists_the_steps_of_every_flow(example, result_of):
     text = shown(result_of(example.finding(), example.finding("implicit", "scan")), View(show_paths=True))
     assert text.count("16  assign     ● delta = goal - pos") == 2
-    assert text.count("carries the value") == 1
+    assert text.count("passes on the value") == 1
 
 
 def test_accepted_flows_are_counted_but_not_shown(example, result_of):
@@ -88,7 +88,9 @@ def test_nothing_found_is_said_in_words(result_of):
 def test_vanished_flows_are_named(example, result_of):
     gone = Accepted(fingerprint(example.flow(), "shuttle"), 2, ("node.py",))
     text = shown(result_of(vanished=(gone,), baseline=Path("tarl-flows.json")))
-    assert "  odom → progress, explicit, heard by callback, published in travel (shuttle), 2 times\n" in text
+    assert (
+        "  odom → progress, explicit, received by callback, published in travel (shuttle), 2 times\n" in text
+    )
     many = tuple(replace(gone, fingerprint=replace(gone.fingerprint, source=f"topic{i}")) for i in range(25))
     assert "  and 5 more\n" in shown(result_of(vanished=many, baseline=Path("tarl-flows.json")))
 
@@ -120,7 +122,7 @@ def test_unreadable_files_are_only_counted_when_their_rule_is_not_wanted(result_
 
 def test_a_comment_that_silences_nothing_is_noted(result_of):
     text = shown(result_of(unused=(Suppression("node.py", 4, 20, "TARL101"), Suppression("node.py", 5, 1))))
-    assert "node.py:4:20 note: there is no TARL101 here for this comment to silence: take it out.\n" in text
+    assert "node.py:4:20 note: there is no TARL101 here for this comment to silence: remove it.\n" in text
     assert "node.py:5:1 note: there is no finding here for this comment" in text
 
 
@@ -212,6 +214,6 @@ def test_concise_has_one_line_for_each_finding(example, result_of):
 def test_statistics_count_what_was_found(example, result_of):
     text = shown(result_of(example.finding(), example.finding("implicit", "scan")), View(statistics=True))
     for line in (" 1  TARL101", " 1  TARL102", " 0  TARL001", " 2  subscriptions that reach a publish call",
-                 " 1  publish calls reached", "10  steps that carry the value", " 2  steps that decide",
+                 " 1  publish calls reached", "10  steps that pass on the value", " 2  steps that are conditions",
                  " 6  steps of a flow, median", "24  lines analysed"):  # fmt: skip
         assert f"\n{line}\n" in text

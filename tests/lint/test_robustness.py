@@ -61,17 +61,17 @@ def reasons(result: Result) -> dict[str, str]:
 @pytest.mark.parametrize(
     ("data", "reason"),
     [
-        (b"# coding: klingon\nimport rospy\n", "The encoding is not known: unknown encoding: klingon."),
-        (b"# coding: rot13\nimport rospy\n", "The encoding is not known: 'rot13' is not a text encoding"),
-        (b"# coding: undefined\nimport rospy\n", "The encoding is not known: "),
+        (b"# coding: klingon\nimport rospy\n", "Unknown encoding: unknown encoding: klingon."),
+        (b"# coding: rot13\nimport rospy\n", "Unknown encoding: 'rot13' is not a text encoding"),
+        (b"# coding: undefined\nimport rospy\n", "Unknown encoding: "),
         (b"# coding: ascii\n# \xf6\nimport rospy\n", "The bytes are not valid ascii: name the encoding"),
         ("import rospy\n# ö\n".encode("latin-1"), "The bytes are not valid utf-8: name the encoding"),
-        ("import rospy\n".encode("utf-16"), "The encoding is not known: invalid or missing"),
+        ("import rospy\n".encode("utf-16"), "Unknown encoding: invalid or missing"),
         (b"# coding: utf-16\nimport rospy\n", "The file is not valid Python"),
-        (b"# coding: utf-7\nimport rospy +AAA-\n", "The file holds a null byte"),
+        (b"# coding: utf-7\nimport rospy +AAA-\n", "The file contains a null byte"),
         (b"# coding: unicode_escape\nimport rospy \\ud800\n", "The file cannot be parsed"),
-        (b"import rospy\n\0\n", "The file holds a null byte, so it is not Python source: leave it out."),
-        (b"import rospy\ndef f(:\n", "The file is not valid Python (invalid syntax): mend this line, or exclude"),
+        (b"import rospy\n\0\n", "The file contains a null byte, so it is not Python source: exclude it."),
+        (b"import rospy\ndef f(:\n", "The file is not valid Python (invalid syntax): fix this line, or exclude"),
         (b"import rospy\nprint 'x'\n", "This is Python 2, which is not analysed: port the file to Python 3."),
         (b"import rospy\nx = " + b"(" * 5_000 + b")" * 5_000, "too many nested parentheses"),
         (b"import rospy\nx = " + b"-" * 9_000 + b"1", "The code is nested too deeply to be parsed: split"),
@@ -160,11 +160,11 @@ def test_what_is_no_regular_file_is_passed_over_and_named_when_asked_for(lint, t
     assert reasons(lint({})) == {}
     for name in ("pipe.py", "device.py"):
         assert main([name, "--format", "concise"]) == 0
-        assert f"{name}:1:1 TARL001 This is no regular file: leave it out" in capsys.readouterr().out
+        assert f"{name}:1:1 TARL001 This is not a regular file: exclude it" in capsys.readouterr().out
     assert main(["dangling.py"]) == 2
-    assert "dangling.py is a link to gone.py, which leads nowhere" in capsys.readouterr().err
+    assert "dangling.py is a broken link to gone.py" in capsys.readouterr().err
     assert main(["circle"]) == 2
-    assert "circle is a link to circle, which leads nowhere" in capsys.readouterr().err
+    assert "circle is a broken link to circle" in capsys.readouterr().err
 
 
 def test_places_that_may_not_be_read_are_named(lint, monkeypatch, capsys):

@@ -74,7 +74,7 @@ def test_a_file_on_which_the_parser_crashes_is_an_error(example, in_directory, l
     result = lint()
     (message,) = (error.message for error in result.errors)
     assert message.startswith(
-        "tarl-lint failed on this file (AssertionError: boom), which is our fault. Report"
+        "tarl-lint failed on this file (AssertionError: boom), which is a bug in tarl-lint. Please report"
     )
     assert len(result.findings) == 1
 

@@ -59,7 +59,7 @@ def test_a_name_without_text_is_refused(in_directory, lint):
     code, _, err = lint("", "a.py", "--stdin-filename", "a.py")
     assert (code, err) == (
         2,
-        "tarl-lint: --stdin-filename is for text on the standard input: add - to the paths.\n",
+        "tarl-lint: --stdin-filename needs text on standard input: add - to the paths.\n",
     )
 
 

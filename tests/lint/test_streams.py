@@ -28,7 +28,7 @@ def run(directory: Path, redirections: str, *arguments: str) -> subprocess.Compl
 def test_a_full_disk_is_one_sentence(node, arguments):
     done = run(node.parent, "> /dev/full", *arguments)
     assert done.returncode == 2
-    said = "tarl-lint: The report cannot be written to the standard output: No space left on device.\n"
+    said = "tarl-lint: Cannot write the report to standard output: No space left on device.\n"
     assert done.stderr == said
 
 
@@ -41,6 +41,4 @@ def test_closed_streams_change_nothing_but_what_is_seen(node, redirections):
 def test_a_closed_standard_input_is_one_sentence(node):
     done = run(node.parent, "<&-", "-")
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == (
-        "tarl-lint: The standard input is closed: leave out -, or pipe the text of a file to it.\n"
-    )
+    assert done.stderr == ("tarl-lint: Standard input is closed: omit -, or pipe the text of a file to it.\n")

@@ -112,7 +112,7 @@ def test_the_same_flows_are_found_with_and_without_what_comes_from_no_source():
 def test_programs_that_are_not_followed_to_the_end_are_counted(in_directory, capsys):
     in_directory({"node.py": node(chain(24, 6), subscriptions=30)})
     main(["--no-cache"])
-    assert "Not analysed: all details of 1 large program (node.py as big)" in capsys.readouterr().out
+    assert "Not analysed: parts of 1 large program (node.py as big)" in capsys.readouterr().out
 
 
 TOOL = """

@@ -93,7 +93,7 @@ MISTAKES: dict[str, Any] = {
     "a message without topic": (lambda t: t.message(SimpleNamespace(data=1), None), "takes the name first"),
     "a sensor that is not declared": (
         lambda t: t.observe(y=1),
-        "no sensor and no signal is named 'y'; .* x, wet",
+        "no such sensor or signal: 'y'; .* x, wet",
     ),
     "a measurement for flags": (lambda t: t.observe(wet=0.5), "low, high and bins for a measurement"),
     "no number for a sensor": (lambda t: t.observe(x="far"), "'x' got 'far', which is no number"),

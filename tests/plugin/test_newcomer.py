@@ -103,7 +103,10 @@ def test_an_interrupt_that_the_node_catches_ends_the_run_and_leaves_the_old_fixt
     changed(tank, "keeper", "import rospy", "import signal\nimport rospy")
     ended = tank.runpytest_subprocess(*RECORD)  # in this process it would end this very run
     assert ended.ret == pytest.ExitCode.INTERRUPTED
+    ended.stdout.fnmatch_lines(["Interrupted in episode 1 of 16: .tarl/utility/*.npz is unchanged."])
     assert fixture_file(tank).read_bytes() == before
+    fixture_file(tank).unlink()
+    tank.runpytest_subprocess(*RECORD).stdout.fnmatch_lines(["Interrupted *: nothing was written."])
 
 
 def test_a_node_that_the_test_does_not_drive_is_told(tank: pytest.Pytester) -> None:

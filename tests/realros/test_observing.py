@@ -13,7 +13,7 @@ import pytest
 
 from pytest_tarl.learning.fixture import load
 from pytest_tarl.logged import missions
-from pytest_tarl.observing.observer import unpacked
+from pytest_tarl.observing.writer import unpacked
 from pytest_tarl.realros.master import Master
 from tests.plugin.tank import NODE, RECORD, TEST
 from tests.realros.probes.running import installed

@@ -11,6 +11,7 @@ from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import recency
 from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value, join, pointer
 from tarl_lint.models import containers, records, sizes
 from tarl_lint.models.ros import publications, services, subscriptions
@@ -112,17 +113,32 @@ def declare(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def declare_all(ctx: Interpreter, it: Invocation) -> Value:
-    """Remember the defaults of several declared parameters: tuples of a name and a default."""
+    """Remember the defaults of several declared parameters, tuples of a name and a default; return all of them."""
     prefix = it.argument(it.fact.topic).texts()
+    written = _written_defaults(it)
+    declared = recency.allocate(ctx, "sequence", it.frame, ("declared", it.call.slot))
     for number, entry in enumerate(sizes.unpacked(ctx, it.argument(it.fact.extra)) or ()):
         parts = sizes.unpacked(ctx, entry) or []
         names = [f"{p}.{t}" if p else t for p in prefix or ("",) for t in (parts[0].texts() if parts else ())]
+        found = _parameters(ctx, it.base, Value(consts=frozenset(names)))
+        ctx.store.put((declared, item_field(number)), found)
         if len(parts) < 2:
             continue
-        value = _default_of(ctx, parts[1], None, it.frame, ("parameter", it.call.slot, number))
-        for obj in _parameters(ctx, it.base, Value(consts=frozenset(names))).pts:
+        value = _default_of(ctx, parts[1], written.get(number), it.frame, ("parameter", it.call.slot, number))
+        for obj in found.pts:
             ctx.store.put((obj, "value"), value)
-    return UNKNOWN
+    return pointer(declared)
+
+
+def _written_defaults(it: Invocation) -> Mapping[int, ir.Expr]:
+    """Return the expressions of the defaults, by number, where the call itself holds the list."""
+    given = _default(it)
+    entries = given.items if isinstance(given, ir.SequenceDisplay) else ()
+    return {
+        number: entry.items[1]
+        for number, entry in enumerate(entries)
+        if isinstance(entry, ir.SequenceDisplay) and len(entry.items) > 1
+    }
 
 
 def parameter_or(ctx: Interpreter, it: Invocation) -> Value:

@@ -1,1 +1,1 @@
-"""What rules about magnitudes ask: range checks."""
+"""Range checks, for rules about magnitudes."""

@@ -1,4 +1,4 @@
-"""What keeps a number within limits, read off the text of a statement or condition."""
+"""Range checks, recognised by the syntax of a statement or condition."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from typing import Final, Literal
 
-# Names of functions, ours or a library's, that promise a value within limits.
+# Functions with such names, from the analysed files or a library, return a value within limits.
 LIMITING: Final = re.compile(
     r"clamp|clip|limit|saturat|constrain|bound|restrict|normali[sz]e|wrap|thresh|sigmoid|squash|(^|_)sat(_|$)",
     re.I,
@@ -20,7 +20,7 @@ BOUNDED: Final = frozenset(
         "as_euler", "fmod", "remainder", "mod", "interp", "isnan", "isinf", "isfinite",
     ]
 )  # fmt: skip
-# Functions that hand a magnitude on; whatever else is not among the files may limit it.
+# Library functions that preserve a magnitude; any other function outside the analysed files may limit it.
 PASSING: Final = frozenset(
     [
         "abs", "fabs", "absolute", "sqrt", "hypot", "pow", "exp", "log", "square", "float", "int",
@@ -34,7 +34,7 @@ PASSING: Final = frozenset(
 ARITHMETIC: Final = frozenset(
     ["sqrt", "hypot", "pow", "exp", "log", "square", "sum", "mean", "norm", "dot", "dist"]
 )
-# Fields of messages whose magnitude is limited, or means nothing.
+# Message fields whose magnitude is limited or has no meaning.
 HARMLESS_FIELDS: Final = frozenset(
     [
         "header", "stamp", "frame_id", "seq", "covariance", "orientation", "axes", "buttons", "status",
@@ -43,14 +43,14 @@ HARMLESS_FIELDS: Final = frozenset(
     ]
 )  # fmt: skip
 
-# Arrays of messages: an element of them is what was measured, whichever is chosen.
+# Arrays in messages: every element is a measurement, whatever index selects it.
 MEASURED: Final = frozenset(["ranges", "intensities", "position", "velocity", "effort", "data"])
 
 Side = Literal["above", "below", "both"]
 
 
 def limits(statement: ast.AST, ours: frozenset[str]) -> bool:
-    """Tell whether what a statement computes is limited, or may be by code that is not here."""
+    """Return whether the value that a statement computes is limited, or may be by code outside the analysed files."""
     for node in ast.walk(statement):
         if isinstance(node, ast.Call) and _limiting(node, ours):
             return True
@@ -68,7 +68,7 @@ def limits(statement: ast.AST, ours: frozenset[str]) -> bool:
 
 
 def computes(statement: ast.AST) -> bool:
-    """Tell whether a statement makes a new number rather than handing one on."""
+    """Return whether a statement computes a new number instead of passing one on."""
     return any(
         isinstance(node, (ast.BinOp, ast.AugAssign))
         or (isinstance(node, ast.Call) and call_name(node) in ARITHMETIC)
@@ -84,23 +84,23 @@ def _limiting(call: ast.Call, ours: frozenset[str]) -> bool:
 
 
 def call_name(call: ast.Call) -> str:
-    """Return the last part of the name that is called."""
+    """Return the last part of the called name."""
     if isinstance(call.func, ast.Attribute):
         return call.func.attr
     return call.func.id if isinstance(call.func, ast.Name) else ""
 
 
 def _looked_up(node: ast.Subscript) -> bool:
-    """Tell whether an element is chosen by something computed, as out of a table of speeds."""
+    """Return whether a computed index selects the element, as in a table of speeds."""
     table = node.value
     name = table.attr if isinstance(table, ast.Attribute) else getattr(table, "id", "")
     return isinstance(node.slice, (ast.Attribute, ast.Call, ast.BinOp)) and name not in MEASURED
 
 
 def side(test: ast.expr, *, holds: bool) -> Side:
-    """Tell where a value lies when a condition on it holds or not: only above something, below, or either.
+    """Return where a value lies if a condition on it holds, or does not: above something, below it, or either.
 
-    `both` also stands for conditions that cannot be told, so that nothing is claimed of them.
+    Conditions that are not understood count as `both`, so that nothing is concluded from them.
     """
     if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
         return side(test.operand, holds=not holds)
@@ -125,7 +125,7 @@ def comparisons(test: ast.AST) -> Iterator[ast.Compare]:
 
 
 def dotted(test: ast.expr) -> Iterator[str]:
-    """Yield the fields that a condition asks for, in full: `msg.pose.position.x`."""
+    """Yield the full names of the fields in a condition: `msg.pose.position.x`."""
     pending: list[ast.AST] = [test]
     while pending:
         node = pending.pop()
@@ -136,7 +136,7 @@ def dotted(test: ast.expr) -> Iterator[str]:
 
 
 def _fixed(node: ast.expr) -> bool:
-    """Tell whether an expression looks like a limit: a literal, or a name in capitals."""
+    """Return whether an expression looks like a limit: a literal, or a name in capitals."""
     if isinstance(node, ast.UnaryOp):
         return _fixed(node.operand)
     if isinstance(node, ast.Attribute):

@@ -1,4 +1,4 @@
-"""Which values that come from a subscription keep whatever magnitude the message had."""
+"""Values from a subscription whose magnitude nothing limits."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ HOLDS: Final = {"then": True, "body": True, "else": False, "done": False}
 
 
 class Magnitudes:
-    """Follows the data of one source, and stops where something limits it."""
+    """Follows the data of one source until something limits its magnitude."""
 
     def __init__(self, evidence: Evidence, origin: SourceRecord) -> None:
         self.evidence = evidence
@@ -28,7 +28,7 @@ class Magnitudes:
         self.free = self._follow()
 
     def computed(self, sink: SinkRecord) -> list[Span]:
-        """Return the statements that compute the unlimited values of a published message, the last ones."""
+        """Return the last statements that compute the unlimited values of a published message."""
         found: dict[Span, None] = {}
         seen = set(sink.nodes & self.free)
         pending = list(seen)
@@ -44,7 +44,7 @@ class Magnitudes:
         return list(found)
 
     def _follow(self) -> set[int]:
-        """Return the nodes that data of the source reaches without meeting a limit."""
+        """Return the nodes that data of the source reaches without passing a limit."""
         start = {n for n in self.origin.nodes if not self._limiting(n)}
         found = set(start)
         pending = sorted(start)
@@ -77,7 +77,7 @@ class Magnitudes:
         return written is not None and self.evidence.limited(written.node)
 
     def _holds_below(self, condition: int, way: str, node: int) -> bool:
-        """Tell whether a node is only reached when a condition keeps its value below something."""
+        """Return whether a node is only reached if a condition bounds its value from above."""
         test = self._test(condition)
         if test is None or not any(comparisons(test)) or not self._about(condition, test, node):
             return False
@@ -85,7 +85,7 @@ class Magnitudes:
         return holds is None or side(test, holds=holds) != "above"
 
     def _guarded(self, node: int, dep: int) -> bool:
-        """Tell whether another value takes the place of `dep` at `node` when a comparison on it says so."""
+        """Return whether a comparison on `dep` can replace it by another value at `node`."""
         mine = self.graph.branches[dep]
         for other in self.graph.data[node]:
             if other != dep and any(self._compares(b, dep) for b in self.graph.branches[other] - mine):
@@ -106,7 +106,7 @@ class Magnitudes:
         return node.test if isinstance(node, (ast.If, ast.While, ast.Assert)) else None
 
     def _about(self, condition: int, test: ast.expr, node: int) -> bool:
-        """Tell whether a condition looks at a value that `node` is made from, or at the same field."""
+        """Return whether a condition tests a value from which `node` is computed, or the same field."""
         asked = self._back(condition)
         made = self._back(node)
         if not asked:
@@ -120,7 +120,7 @@ class Magnitudes:
         return any(re.search(rf"\b{re.escape(name)}\b(?!\.)", text) for name in dotted(test))
 
     def _back(self, node: int) -> set[int]:
-        """Return a node and what of the source it is made from."""
+        """Return a node and the nodes of the source from which it is computed."""
         known = self._behind.get(node)
         if known is None:
             start = (self.graph.data[node] | {node}) & (self.reached | {node})

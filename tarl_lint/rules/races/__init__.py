@@ -1,1 +1,1 @@
-"""What rules about races ask: locks that are held, threads, accesses."""
+"""Held locks, threads and accesses, for rules about races."""

@@ -1,4 +1,4 @@
-"""Where a function reads and writes state that outlives it: attributes of its object, globals of its module."""
+"""Accesses of a function to state that outlives it: attributes of its object, globals of its module."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from tarl_lint.rules.races.held_locks import FUNCTIONS, in_loop, locks_around
 from tarl_lint.trees import children, walk
 
 MUTATORS: Final = catalog.MUTATORS | {"pop", "popleft", "remove", "clear", "sort", "reverse", "discard"}
-How = Literal["replaces", "adds", "inside", "reads", "length"]  # what an access does to what a name holds
+How = Literal["replaces", "adds", "inside", "reads", "length"]  # effect of an access on the value of a name
 CONTAINERS: Final = frozenset(["OrderedDict", "Counter", "ChainMap", "UserDict", "UserList"])
 
 
 @dataclass(frozen=True)
 class Access:
-    """An access as written, with the locks held around it in its function.
+    """An access in the source, with the locks held around it in its function.
 
-    `constant`: it stores one, as flags do.
+    `constant`: the access stores a constant, like a flag.
     """
 
     node: ast.Attribute | ast.Name
@@ -38,7 +38,7 @@ class Access:
 
     @property
     def is_global(self) -> bool:
-        """Tell whether it is to a global rather than to an attribute."""
+        """Return whether the access is to a global, not to an attribute."""
         return isinstance(self.node, ast.Name)
 
 
@@ -59,14 +59,14 @@ def accesses(function: ast.AST, receiver: str, outline: Outline) -> Iterator[Acc
 
 
 def _globals(outline: Outline) -> frozenset[str]:
-    """Return the names that the module's functions change and those that hold containers from the start."""
+    """Return the globals that functions of the module assign, and those initialised with containers."""
     if outline.shared is None:
         outline.shared = frozenset(outline.declared | _containers(outline))
     return outline.shared
 
 
 def _containers(outline: Outline) -> set[str]:
-    """Return the globals that hold containers from the start."""
+    """Return the globals that are initialised with containers."""
     return {
         target.id
         for node in outline.tree.body
@@ -77,7 +77,7 @@ def _containers(outline: Outline) -> set[str]:
 
 
 def _locals(function: ast.AST) -> set[str]:
-    """Return the names that are a function's own."""
+    """Return the local names of a function."""
     arguments = getattr(function, "args", None)
     names = {a.arg for a in walk(arguments) if isinstance(a, ast.arg)} if arguments is not None else set()
     shared: set[str] = set()
@@ -90,7 +90,7 @@ def _locals(function: ast.AST) -> set[str]:
 
 
 def _own(function: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes of a function, not of functions inside it."""
+    """Yield the syntax nodes of a function, without those of nested functions."""
     body = getattr(function, "body", [])
     pending: list[ast.AST] = list(body) if isinstance(body, list) else [body]
     while pending:
@@ -100,7 +100,7 @@ def _own(function: ast.AST) -> Iterator[ast.AST]:
 
 
 def _writes(node: ast.Attribute | ast.Name, outline: Outline) -> bool:
-    """Tell whether a name, or something inside what it holds, is stored to."""
+    """Return whether a name, or a part of its value, is assigned."""
     current: ast.expr = node
     for outer in outline.around(node):
         if isinstance(getattr(current, "ctx", None), (ast.Store, ast.Del)):
@@ -114,7 +114,7 @@ def _writes(node: ast.Attribute | ast.Name, outline: Outline) -> bool:
 
 
 def _changes(node: ast.Attribute | ast.Name, outline: Outline) -> How:
-    """Tell whether a name gets something new, or what it holds is changed."""
+    """Return whether an access replaces the value of a name or changes it in place."""
     if isinstance(node.ctx, ast.Load):
         return "inside"
     return "adds" if isinstance(outline.parents.get(node), ast.AugAssign) else "replaces"
@@ -127,7 +127,7 @@ def _looks(node: ast.expr, outline: Outline) -> How:
 
 
 def _mutates(method: ast.expr, node: ast.Attribute | ast.Name, outline: Outline) -> bool:
-    """Tell whether a method that is called changes a container; objects of classes guard themselves."""
+    """Return whether a method call changes a container; other objects may do their own locking."""
     if not isinstance(method, ast.Attribute) or method.attr not in MUTATORS:
         return False
     name = node.attr if isinstance(node, ast.Attribute) else node.id
@@ -135,7 +135,7 @@ def _mutates(method: ast.expr, node: ast.Attribute | ast.Name, outline: Outline)
 
 
 def _foreign(name: str, outline: Outline) -> bool:
-    """Tell whether all that is assigned to a name was handed in, or made by calling a class."""
+    """Return whether every value assigned to a name is an argument or an instance of a class."""
     values = outline.assigned.get(name, [])
     return bool(values) and all(_handed(value) for value in values)
 
@@ -149,7 +149,7 @@ def _handed(value: ast.expr) -> bool:
 
 
 def _asks_presence(node: ast.expr, outline: Outline) -> bool:
-    """Tell whether a value is only asked whether it is there: `self.x is None`, `if not self.x`."""
+    """Return whether an expression only checks that a value exists: `self.x is None`, `if not self.x`."""
     outer = outline.parents.get(node)
     if isinstance(outer, ast.Compare):
         return all(isinstance(o, (ast.Is, ast.IsNot)) for o in outer.ops)

@@ -1,4 +1,4 @@
-"""Which locks are held at a place in a function, as far as the text of that function tells."""
+"""Locks held at a place in a function, from the syntax of that function alone."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ EXITS: Final = (ast.Return, ast.Continue, ast.Break, ast.Raise)
 
 
 def locks_around(node: ast.AST, outline: Outline) -> frozenset[str]:
-    """Return the names of the locks that are held at a node."""
+    """Return the names of the locks held at a node."""
     known = outline.held.get(node)
     if known is None:
         known = outline.held[node] = _around(node, outline)
@@ -57,7 +57,7 @@ def _acquired(node: ast.AST, function: ast.AST, outline: Outline) -> set[str]:
 
 
 def _calls(function: ast.AST, outline: Outline) -> list[tuple[str, str, int]]:
-    """Return lock, method and line of the calls of methods of locks in a function."""
+    """Return (lock, method, line) of each method call on a lock in a function."""
     known = outline.lock_calls.get(function)
     if known is None:
         calls = [n for n in walk(function) if isinstance(n, ast.Call)]
@@ -68,7 +68,7 @@ def _calls(function: ast.AST, outline: Outline) -> list[tuple[str, str, int]]:
 
 
 def lock_name(expr: ast.expr, outline: Outline) -> str:
-    """Return the last part of a lock's name, of a condition that of its lock; empty for what is no lock."""
+    """Return the last part of a lock's name; of a condition, that of its lock; "" for anything else."""
     if isinstance(expr, ast.Call):
         expr = expr.func.value if isinstance(expr.func, ast.Attribute) else expr.func
     name = expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""
@@ -77,9 +77,9 @@ def lock_name(expr: ast.expr, outline: Outline) -> str:
 
 
 def asked_before(node: ast.AST, outline: Outline) -> frozenset[str]:
-    """Return the locks that are taken later in the function that a node only asks whether to leave.
+    """Return the locks that the function takes after a node that only decides whether to return early.
 
-    `if self.stamp == self.seen: return` before `with self.lock:` saves the trouble; what counts is read below.
+    `if self.stamp == self.seen: return` before `with self.lock:` only saves time; the value that counts is read later.
     """
     current = node
     for outer in outline.around(node):
@@ -93,7 +93,7 @@ def asked_before(node: ast.AST, outline: Outline) -> frozenset[str]:
 
 
 def _later(statement: ast.If, outline: Outline) -> frozenset[str]:
-    """Return the locks that the function takes below a statement."""
+    """Return the locks that the function takes after a statement."""
     function = outline.scope(statement, FUNCTIONS)
     if function is None:
         return frozenset()
@@ -110,7 +110,7 @@ def _later(statement: ast.If, outline: Outline) -> frozenset[str]:
 
 
 def in_loop(node: ast.AST, outline: Outline) -> bool:
-    """Tell whether a `while` repeats a node within its function."""
+    """Return whether a `while` repeats a node within its function."""
     for outer in outline.around(node):
         if isinstance(outer, ast.While):
             return True

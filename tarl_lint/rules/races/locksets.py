@@ -1,4 +1,4 @@
-"""Which locks are held where state is read and written, along the chain of calls."""
+"""Locksets: the locks held at each access to shared state, along the chain of calls."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ State = tuple[object, str]  # an object with one of its attributes, or a module 
 
 @dataclass(frozen=True)
 class Spot:
-    """An access, or a call that leads to it: where, in which function, with which locks held.
+    """An access, or a call that leads to it: its place, its function, and the locks held there.
 
-    `asked` are locks that the function takes later, if all it does here is to ask whether to leave.
+    `asked` are locks that the function takes later, if this access only decides whether to return early.
     """
 
     path: str
@@ -35,9 +35,9 @@ class Spot:
 
 @dataclass(frozen=True)
 class Use:
-    """One access to shared state in one thread: its spots from the inside out, the access first.
+    """One access to shared state in one thread: the access first, then the calls that lead to it.
 
-    `name` is as written (`self.pose`, `pose`); `constant`: it stores a constant, as flags do.
+    `name` is as in the source (`self.pose`, `pose`); `constant`: the access stores a constant, like a flag.
     """
 
     name: str
@@ -54,7 +54,7 @@ class Use:
 
 
 class Locking:
-    """Collects the accesses to attributes of objects, and to globals, in modules that make locks."""
+    """Collects the accesses to attributes and globals in modules that create locks."""
 
     def __init__(self, evidence: Evidence) -> None:
         self.evidence = evidence
@@ -64,7 +64,7 @@ class Locking:
         self._accesses: dict[tuple[str, Pos], list[Access]] = {}
 
     def uses(self) -> dict[State, list[Use]]:
-        """Return every access by what it is to, except while the object is being made."""
+        """Return all accesses by state, without those during construction of the object."""
         found: dict[State, dict[Use, None]] = {}
         if not self.active:
             return {}
@@ -81,7 +81,7 @@ class Locking:
                 if state is None:
                     continue
                 if thread in (MAIN, EXECUTOR) and _top(frame) and not (repeated or access.repeated):
-                    continue  # it may be from before the threads started
+                    continue  # the call may run before the threads start
                 use = self._use(access, frame, thread, callers)
                 found.setdefault(state, {})[use] = None
         return {state: list(uses) for state, uses in found.items()}
@@ -96,7 +96,7 @@ class Locking:
         return Use(name, (spot, *callers), thread, access.writes, access.constant, access.how)
 
     def _callers(self, frame: Frame) -> tuple[list[Spot], bool]:
-        """Return the calls that lead to a frame, the nearest first, and whether one is made again and again."""
+        """Return the calls that lead to a frame, the nearest first, and whether one of them is in a loop."""
         spots: list[Spot] = []
         repeated = False
         current: Frame = frame
@@ -117,7 +117,7 @@ class Locking:
         return spots, repeated
 
     def accesses(self, frame: Frame) -> list[Access]:
-        """Return the accesses written in a function."""
+        """Return the accesses in the source of a function."""
         key = (frame.program.path, frame.function.pos)
         known = self._accesses.get(key)
         if known is None:
@@ -128,9 +128,9 @@ class Locking:
 
 
 def unguarded(uses: Sequence[Use]) -> Iterator[tuple[Use, Spot]]:
-    """Yield the accesses without lock, each with the place where the lock is missing.
+    """Yield the accesses without a lock, each with the place where the lock is missing.
 
-    That is the access itself, unless others come to it with a lock: then it is the call that comes without.
+    That is the access itself or, if other calls reach the access with a lock, the call that does not hold it.
     """
     held = {(s.path, s.pos) for use in uses for s in use.spots if s.locks}
     locks = frozenset(lock for use in uses for lock in use.locks)
@@ -143,17 +143,17 @@ def unguarded(uses: Sequence[Use]) -> Iterator[tuple[Use, Spot]]:
 
 
 class Harm:
-    """Tells where an access without lock can go wrong beside one that holds it.
+    """Decides whether an access without a lock can go wrong beside one with the lock.
 
-    Python stores a reference at once: one look at something that is only ever replaced sees the old or the new one,
-    and storing something new is lost only where another changes what is there, or relies on it for longer.
+    Python replaces a reference atomically: a single read of a value that is only ever replaced sees the old or the
+    new one. A store is lost only if another thread changes the value in place or relies on it across several accesses.
     """
 
     def __init__(self, uses: Mapping[State, Sequence[Use]]) -> None:
-        self._times: dict[object, set[Pos]] = {}  # by state and function: where it is accessed
-        self._read: dict[object, set[State]] = {}  # by function: what it reads without lock
-        self._written: dict[object, set[State]] = {}  # by function: what it writes under a lock
-        self._locked: set[object] = set()  # by state and function: what it accesses under a lock
+        self._times: dict[object, set[Pos]] = {}  # (state, function) → positions of its accesses
+        self._read: dict[object, set[State]] = {}  # function → state that it reads without a lock
+        self._written: dict[object, set[State]] = {}  # function → state that it writes under a lock
+        self._locked: set[object] = set()  # (state, function) pairs with an access under a lock
         for state, every in uses.items():
             for use in every:
                 if use.locks:
@@ -165,7 +165,7 @@ class Harm:
                     self._read.setdefault(_by(use), set()).add(state)
 
     def between(self, state: State, use: Use, guarded: Use) -> bool:
-        """Tell whether `use`, without lock, can go wrong beside `guarded`."""
+        """Return whether `use`, without a lock, can go wrong beside `guarded`."""
         if use.how == "length":
             return False
         if use.writes:
@@ -175,28 +175,28 @@ class Harm:
         return guarded.how == "inside" or self._often(state, use) or len(torn) > 1
 
     def _relied_on(self, state: State, use: Use) -> bool:
-        """Tell whether a function that stores something without lock takes the lock to work with it."""
+        """Return whether a function stores the state without a lock and also accesses it under the lock."""
         return (state, *_by(use)[:3]) in self._locked
 
     def _often(self, state: State, use: Use) -> bool:
-        """Tell whether a function relies on the same state several times."""
+        """Return whether a function accesses the same state several times."""
         return len(self._times[(state, *_by(use))]) > 1
 
 
 def _by(use: Use) -> tuple[object, ...]:
-    """Return what tells one function's accesses from others': where it is written, its thread, the locks held."""
+    """Return the key of a function's accesses: its definition, its thread, the locks held."""
     return use.spots[0].path, use.spots[0].function, use.thread, use.locks
 
 
 def _state(access: Access, frame: Frame, receiver: Obj | None) -> State | None:
-    """Return what an access is to; None while it is being made, and where that is not known."""
+    """Return the state that is accessed; None during its construction, and if it is unknown."""
     if access.is_global:
         return frame.module, access.name
     return None if receiver is None or _making(frame, receiver) else (receiver, access.name)
 
 
 def _method(frame: Frame) -> Frame | None:
-    """Return the method that a function is, or is written inside of."""
+    """Return the method that is, or encloses, a function."""
     current: Frame | None = frame
     while current is not None and current.owner is None:
         current = current.outer
@@ -204,7 +204,7 @@ def _method(frame: Frame) -> Frame | None:
 
 
 def _receiver(frame: Frame) -> Obj | None:
-    """Return the object whose method runs."""
+    """Return the receiver of the running method."""
     method = _method(frame)
     key = method.key if method is not None else None
     found = key[4] if isinstance(key, tuple) and len(key) == 5 else None
@@ -221,7 +221,7 @@ def _receiver_name(frame: Frame) -> str:
 
 
 def _making(frame: Frame, receiver: Obj) -> bool:
-    """Tell whether the object is only being made: no other thread knows it yet."""
+    """Return whether the object is under construction, so that no other thread knows it."""
     current: Frame | None = frame
     while current is not None:
         if current.function.name == "__init__" and _receiver(current) is receiver:
@@ -231,7 +231,7 @@ def _making(frame: Frame, receiver: Obj) -> bool:
 
 
 def _top(frame: Frame) -> bool:
-    """Tell whether the program's own start leads here, not a callback."""
+    """Return whether the main program leads here, not a callback."""
     top = frame
     while top.caller is not None:
         top = top.caller

@@ -1,4 +1,4 @@
-"""Which thread a function runs in: every rospy callback has its own, rclpy's share one unless told otherwise."""
+"""Thread of a function: each rospy callback has its own; rclpy's share one unless the executor and groups differ."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SPUN_ASIDE: Final = re.compile(r"target\s*=\s*[\w.]*spin|target\s*=\s*lambda[^,)
 
 
 class Threads:
-    """Names the thread of each activation; None where nothing tells."""
+    """Identifies the thread of each frame; None if unknown."""
 
     def __init__(self, evidence: Evidence) -> None:
         self.evidence = evidence
@@ -31,7 +31,7 @@ class Threads:
         self.aside = any(SPUN_ASIDE.search(t) for t in texts)
 
     def of(self, frame: Frame) -> object:
-        """Return what tells a frame's thread from others."""
+        """Return an identifier of the frame's thread."""
         top = frame
         while top.caller is not None:
             top = top.caller
@@ -63,7 +63,7 @@ class Threads:
         return "rclpy" in self.machine.modules[path].text
 
     def _group(self, path: str, pos: Pos, root: Root) -> object:
-        """Return the thread of a callback of rclpy: callbacks of one group that excludes itself never overlap."""
+        """Return the thread of an rclpy callback: callbacks of a mutually exclusive group never overlap."""
         if not self.several:
             return EXECUTOR
         call = self.evidence.outline(path).call(pos)

@@ -46,6 +46,8 @@ def told(result: pytest.RunResult) -> str:
 HOLD = {
     "of a signal that the test observes": 'requires=["always (gap > 0.15)"], signals=["gap"]',
     "of a sensor": 'requires=["eventually[0:3] (wet > 0)"], signals=["gap"]',
+    "beside an observation that no formula names": 'requires=["eventually wet"]',
+    "of a name that is observed and not declared": 'requires=["always (gap > 0.15)", "eventually wet"]',
     "of a field of a message": (
         'requires=["always (dry > 0) or eventually wet"], '
         'signals=[Signal("dry", topic="/wet", field=lambda message: not message.data), "gap"]'
@@ -95,6 +97,12 @@ def test_require_adds_a_formula(pytester: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(["requirement violated at 2.7 s: always (gap > 0.5) *"])
 
 
+def test_require_finds_its_signals_without_any_word_in_the_marker(pytester: pytest.Pytester) -> None:
+    result = run(pytester, "", f'{OBSERVE}; step == 4 and tarl.require("always (gap > 0.5)")')
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["requirement violated at 2.7 s: always (gap > 0.5) *"])
+
+
 MISTAKES = {
     "no text": ("requires=[3]", OBSERVE, "a formula is a text"),
     "a text in place of a list": ('requires="always (wet > 0)"', OBSERVE, "requires lists formulas"),
@@ -106,7 +114,37 @@ MISTAKES = {
     "an unknown signal": (
         'requires=["always (speed > 0)"]',
         OBSERVE,
-        "declare it in the marker, signals=['speed']",
+        "names 'speed', which is no signal (wet, gap): it is no sensor and the test never observes it. Give its value",
+    ),
+    "a typing error in a name that is observed and not declared": (
+        'requires=["always (gip > 0)"]',
+        "tarl.observe(gap=gap); tarl.reward(1.0)",
+        "names 'gip', which is no signal; did you mean 'gap'?",
+    ),
+    "a name that the test computes": (
+        'requires=["always (gap > 0)"]',
+        "tarl.observe(**{'g' + 'ap': gap}); tarl.reward(1.0)",
+        "which cannot be read from its source; declare this one in the marker, signals=['gap'].",
+    ),
+    "a name that only another test observes": (
+        'requires=["always (ahead > 0)"]',
+        OBSERVE + "\n\n\ndef test_other(tarl):\n    tarl.observe(ahead=1)",
+        "names 'ahead', which is no signal (wet, gap): it is no sensor and the test never observes it",
+    ),
+    "an observation without any formula": (
+        "drifts={}",
+        "tarl.observe(gap=gap)",
+        "no such sensor or signal: 'gap'; the marker declares wet, mode.",
+    ),
+    "an observation that is a typing error of a sensor": (
+        'requires=["always wet"]',
+        "tarl.observe(wett=gap)",
+        "no such sensor or signal: 'wett'; did you mean 'wet'?",
+    ),
+    "an unknown signal in the body": (
+        "",
+        "tarl.require('always (gip > 0)'); tarl.observe(gap=gap); tarl.reward(1.0)",
+        "tarl.require: the formula 'always (gip > 0)' names 'gip', which is no signal; did you mean 'gap'?",
     ),
     "a typing error in an operator": ('requires=["alway (wet > 0)"]', OBSERVE, "did you mean 'always'?"),
     "a bracket that is not closed": ('requires=["always (wet > 0"]', OBSERVE, "it ends too early"),
@@ -190,7 +228,7 @@ MISTAKES = {
     ),
     "a require too late": (
         "drifts={}",
-        "tarl.require('always wet')",
+        "getattr(tarl, 'require')('always wet')",
         "its signals were not followed until now",
     ),
     "no field": (

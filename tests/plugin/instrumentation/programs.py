@@ -11,7 +11,9 @@ import traceback
 from dataclasses import dataclass, field
 from typing import Any
 
+from pytest_tarl.instrumentation.constants import bound
 from pytest_tarl.instrumentation.instrument import Offset, instrument
+from pytest_tarl.instrumentation.instrument import compiled as code_of
 
 FILE = "<program>"
 MODES = [False, True]
@@ -42,9 +44,9 @@ def everywhere(tree: ast.Module) -> dict[Offset, int]:
 
 def compiled(source: str, sites: dict[Offset, int] | None, *, inline: bool, **options: Any):
     tree = ast.parse(source)
-    if sites is not None:
-        tree = instrument(tree, sites, inline=inline, **options)
-    return compile(tree, FILE, "exec", dont_inherit=True)
+    if sites is None:
+        return compile(tree, FILE, "exec", dont_inherit=True)
+    return code_of(instrument(tree, sites, inline=inline, **options), FILE)
 
 
 def run(
@@ -58,9 +60,7 @@ def run(
         return value
 
     space: dict[str, Any] = {"__name__": "program"}
-    if sites is not None:
-        space |= {"__tarl__": hook, "__tarl_list__": buffer, "__tarl_type__": type, "__tarl_float__": float}
-    code = compiled(source, sites, inline=inline)
+    code = bound(compiled(source, sites, inline=inline), hook, buffer)
     linecache.cache[FILE] = (len(source), None, source.splitlines(keepends=True), FILE)
 
     def follow(frame, event, _):

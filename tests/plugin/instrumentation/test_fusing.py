@@ -9,7 +9,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from pytest_tarl.instrumentation.instrument import instrument
+from pytest_tarl.instrumentation.constants import bound
+from pytest_tarl.instrumentation.instrument import compiled, instrument
 from tests.plugin.instrumentation.programs import assert_same, everywhere
 
 RUN = """
@@ -60,8 +61,8 @@ def written(source: str, call: str) -> tuple[list[str], list[Any]]:
 
     tree = ast.parse(source)
     tree = instrument(tree, everywhere(tree), inline=True)
-    space = {"__tarl__": hook, "__tarl_list__": spy, "__tarl_type__": type, "__tarl_float__": float}
-    exec(compile(tree, "<program>", "exec"), space)
+    space: dict[str, Any] = {}
+    exec(bound(compiled(tree, "<program>"), hook, spy), space)
     spy.clear()
     spy.calls.clear()
     eval(call, space)

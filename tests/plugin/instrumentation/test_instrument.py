@@ -11,7 +11,9 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+from pytest_tarl.instrumentation.constants import bound
 from pytest_tarl.instrumentation.instrument import Offset, instrument
+from pytest_tarl.instrumentation.instrument import compiled as code_of
 from tests.plugin.instrumentation.programs import (
     FILE,
     MODES,
@@ -169,7 +171,7 @@ def test_a_publish_is_recorded_with_0_before_it_happens_and_after_its_arguments(
         order.append((number, value))
         return value
 
-    exec(compile(tree, FILE, "exec"), {"__tarl__": hook, "order": order})
+    exec(bound(code_of(tree, FILE), hook, []), {"order": order})
     assert order == ["made", (7, 0.0), ("published", 2.0)]
 
 
@@ -177,8 +179,8 @@ def test_a_publish_is_recorded_with_0_before_it_happens_and_after_its_arguments(
 def test_other_calls_are_publishes_when_the_plan_says_so(inline):
     events: list[Any] = []
     tree = instrument(ast.parse("send(5.0)\n"), {(1, 0): 3}, publishes={3}, inline=inline)
-    space = {"__tarl__": lambda n, v: events.append((n, v)) or v, "send": lambda v: events.append(v)}
-    exec(compile(tree, FILE, "exec"), space)
+    code = bound(code_of(tree, FILE), lambda n, v: events.append((n, v)) or v, [])
+    exec(code, {"send": lambda v: events.append(v)})
     assert events == [(3, 0.0), 5.0]
 
 
@@ -227,7 +229,7 @@ class Names(dict):
     def __missing__(self, name):
         if name in seen: raise KeyError(name)
         seen.append(name); return name
-seen = ["__name__", "print", "x", "__tarl__", "__tarl_list__", "__tarl_type__", "__tarl_float__"]
+seen = ["__name__", "print", "x"]
 class Meta(type):
     def __prepare__(*_): return Names()
 class A(metaclass=Meta):
@@ -425,9 +427,8 @@ def test_code_that_looks_at_itself_sees_the_original(inline):
             )]
         '''
     )
-    space: dict[str, Any] = {"__tarl__": lambda n, v: v, "__tarl_list__": []}
-    space |= {"__tarl_type__": type, "__tarl_float__": float}
-    exec(compiled(source, everywhere(ast.parse(source)), inline=inline), space)
+    space: dict[str, Any] = {}
+    exec(bound(compiled(source, everywhere(ast.parse(source)), inline=inline), lambda n, v: v, []), space)
     linecache.cache[FILE] = (len(source), None, source.splitlines(keepends=True), FILE)
     assert inspect.getsource(space["f"]) == "".join(source.splitlines(keepends=True)[2:6])
     assert str(inspect.signature(space["f"])) == "(a, b=2, *, c: int = 3)"

@@ -56,7 +56,6 @@ def test_any_program_of_the_grammar_does_the_same(source):
     assume(not any(isinstance(node, (ast.While, ast.Import, ast.ImportFrom)) for node in ast.walk(tree)))
     expected = outcome(plain)
     for inline in (False, True):
-        recorder, names = Recorder(), dict[str, Any]()
-        recorder.bind(names)
-        assert outcome(compiled(source, everywhere(tree), inline=inline), **names) == expected
+        recorder = Recorder()
+        assert outcome(recorder.bind(compiled(source, everywhere(tree), inline=inline))) == expected
         recorder.finish()

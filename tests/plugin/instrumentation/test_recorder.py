@@ -13,8 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pytest_tarl.instrumentation import recorder as recording
+from pytest_tarl.instrumentation.entries import Entries
 from pytest_tarl.instrumentation.events import paired, sizes
-from pytest_tarl.instrumentation.instrument import instrument
+from pytest_tarl.instrumentation.instrument import compiled, instrument
 from pytest_tarl.instrumentation.magnitude import LIMIT, magnitude
 from pytest_tarl.instrumentation.recorder import Recorder
 
@@ -30,8 +31,7 @@ SITES = {(3, 4): 0, (4, 8): 1, (5, 8): 2, (6, 12): 3}
 
 def program(recorder: Recorder, **extra: Any) -> dict[str, Any]:
     space: dict[str, Any] = {"note": lambda value: value, **extra}
-    recorder.bind(space)
-    exec(compile(instrument(ast.parse(SOURCE), SITES, inline=True), "<p>", "exec"), space)
+    exec(recorder.bind(compiled(instrument(ast.parse(SOURCE), SITES, inline=True), "<p>")), space)
     return space
 
 
@@ -118,11 +118,10 @@ VALUES = [
 def test_every_way_to_record_gives_the_same_flow_value_and_the_value_itself(value, threads):
     recorder = Recorder(threads=threads)
     space: dict[str, Any] = {"value": value}
-    recorder.bind(space)
-    source = "x = value\ny = [value][0]"
-    exec(compile(instrument(ast.parse(source), {(1, 0): 0, (2, 0): 1}, inline=True), "<p>", "exec"), space)
-    assert space["x"] is value
-    assert space["__tarl__"](2, value) is value
+    source = "x = value\ny = [value][0]\nz = (lambda: value)()"
+    tree = instrument(ast.parse(source), {(1, 0): 0, (2, 0): 1, (3, 13): 2}, inline=True)
+    exec(recorder.bind(compiled(tree, "<p>")), space)
+    assert space["x"] is space["z"] is value
     assert recorder.hook(3, value) is value
     trace = recorder.finish()
     assert trace.site.tolist() == [0, 1, 2, 3]
@@ -321,8 +320,9 @@ def test_threads_of_test_tools_cost_nothing_and_those_of_others_are_kept_apart(m
 
     job.__module__ = module
     threads = [running(threading.Thread(target=job)), running(threading.Timer(0.0, job))]
-    space = program(Recorder())
-    assert (type(space["__tarl_list__"]) is list) is direct
+    recorder = Recorder()
+    program(recorder)
+    assert (type(recorder._own.entries) is Entries) is direct
     go_on.set()
     for thread in threads:
         thread.join()

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from pytest_tarl.instrumentation.instrument import instrument
+from pytest_tarl.instrumentation.instrument import compiled, instrument
 from pytest_tarl.instrumentation.recorder import Recorder
 
 PAGE = Path(__file__).parents[3] / "docs" / "recording.md"
@@ -135,10 +135,9 @@ def recorded(statement: str, context: str) -> str:
     space: dict[str, Any] = {"drive": drive, "stream": stream, "later": later, "Halt": Halt, "ready": Ready()}
     space |= {"o": SimpleNamespace(gain=2.0), "d": {}, "pub": SimpleNamespace(publish=lambda _message: None)}
     space["functools"] = __import__("functools")
-    recorder.bind(space)
     tree = instrument(ast.parse(before + after), {site: 0}, inline=True)
     with contextlib.suppress(Halt):
-        exec(compile(tree, "<table>", "exec"), space)
+        exec(recorder.bind(compiled(tree, "<table>")), space)
     return ", ".join(f"{flow:g}" for flow in recorder.finish().flow) or "nothing"
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
+from pytest_tarl.learning.binomial import BinomialTail
 from pytest_tarl.learning.bounds import (
-    BinomialTail,
     Range,
     bet_low,
     episodes_for_quantile,

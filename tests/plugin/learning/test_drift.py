@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from pytest_tarl.instrumentation.trace import Trace
+from pytest_tarl.learning.bounds import detectable_loss
 from pytest_tarl.learning.drift import (
     compare,
     loss_bounds,
     outstanding,
     paper_region,
-    smallest_detectable_loss,
 )
 from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.permutation import max_statistic, permuted_loss
@@ -132,8 +132,8 @@ def test_totals_that_cancel_out_are_tied_all_the_same() -> None:
 
 def test_episodes_too_few_to_tell_anything_detect_no_loss_whatever_its_size() -> None:
     few = np.array([1.0, 1.0])
-    assert smallest_detectable_loss(few, few, 0.05) == np.inf
-    assert smallest_detectable_loss(few, np.ones(40), 0.05) < np.inf
+    assert detectable_loss(few, few, 0.05) == np.inf
+    assert detectable_loss(few, np.ones(40), 0.05) < np.inf
 
 
 def test_two_episodes_on_either_side_are_compared_without_a_verdict() -> None:

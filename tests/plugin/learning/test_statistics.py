@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning.merging import aligned, merge
 from pytest_tarl.learning.sequences import event_sequences
-from pytest_tarl.learning.statistics import sample
+from pytest_tarl.learning.statistics import sample, total_reward, total_rewards
 from pytest_tarl.learning.tables import END, START, Sample
 
 MEMBERS = ((0, 1, 2), (3, 1))
@@ -196,3 +196,13 @@ def test_the_chain_counts_every_step_with_a_known_cell() -> None:
     assert chain.count.sum() == known.sum()
     assert chain.reward.sum() == pytest.approx(trace.reward[known].sum())
     assert chain.parts.sum() == pytest.approx(trace.parts["progress"][known].sum())
+
+
+@given(lengths=st.lists(st.integers(0, 300), max_size=12), seed=st.integers(0, 2**16))
+@settings(max_examples=40)
+def test_totals_of_many_episodes_are_those_of_each_to_the_last_bit(lengths: list[int], seed: int) -> None:
+    draws = np.random.default_rng(seed)
+    reward = draws.normal(size=sum(lengths)) * 10.0 ** draws.integers(-8, 8, sum(lengths))
+    ends = np.concatenate(([0], np.cumsum(np.array(lengths, np.int64))))
+    alone = [total_reward(part) for part in np.split(reward, ends[1:-1])] if lengths else []
+    assert total_rewards(reward, ends).tolist() == alone

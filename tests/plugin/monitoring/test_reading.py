@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import os
+import struct
+import zlib
 from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pytest_tarl.monitoring.reading import Expected, LogReader, Mission, Progress, columns
+from pytest_tarl.monitoring import blocks
+from pytest_tarl.monitoring import reading as reading_module
+from pytest_tarl.monitoring.assembling import Expected
+from pytest_tarl.monitoring.mission import Mission, Progress, columns
+from pytest_tarl.monitoring.reading import LogReader
 from pytest_tarl.observing.frames import MAGIC, encoded
 from pytest_tarl.sensors import binning_digest
 from tests.plugin.monitoring.missions import SENSORS, TEST, content, log, records, start, walks
@@ -25,6 +33,7 @@ EXPECTED = Expected(
 )
 
 
+SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 OPEN: list[Reading] = []
 
 
@@ -54,7 +63,7 @@ class Reading:
 
     def take(self, mission: Mission) -> None:
         self.known[mission.progress.log] = mission.progress
-        self.rewards.append(float(columns([mission])[1].sum()))
+        self.rewards.append(float(columns([mission])[2].sum()))
 
     def close(self) -> None:
         for reader in self.readers:
@@ -65,13 +74,25 @@ class Reading:
         return [one.problem for one in self.readers if one.problem]
 
 
+@contextmanager
+def blocks_of(size: int) -> Iterator[None]:
+    """Have logs read in blocks of so many bytes."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(reading_module, "next_block", partial(blocks.next_block, size=size))
+        yield
+
+
 def sums(some: list) -> list[float]:  # type: ignore[type-arg]
     return [float(np.sum(one.reward)) for one in some]
 
 
-@given(cuts=st.lists(st.integers(0, 10_000), max_size=12), restart=st.booleans())
+SIZES = st.sampled_from([1, 7, 100, 400, 1000, 5000, blocks.BLOCK])
+
+
+@settings(max_examples=200 if SLOW else 40)
+@given(cuts=st.lists(st.integers(0, 10_000), max_size=12), restart=st.booleans(), size=SIZES)
 def test_a_log_that_grows_piece_by_piece_gives_every_mission_once(
-    tmp_path_factory: pytest.TempPathFactory, cuts: list[int], restart: bool
+    tmp_path_factory: pytest.TempPathFactory, cuts: list[int], restart: bool, size: int
 ) -> None:
     some = walks(6, 3)
     path = tmp_path_factory.mktemp("grows") / "m.log"
@@ -79,7 +100,8 @@ def test_a_log_that_grows_piece_by_piece_gives_every_mission_once(
     reading = Reading(path)
     for end in [*sorted(min(cut, len(whole)) for cut in cuts), len(whole)]:
         path.write_bytes(whole[:end]) if not path.exists() else _grow(path, whole[:end])
-        reading.read()
+        with blocks_of(size):
+            reading.read()
         if restart:
             again = Reading(path)
             again.known.update(reading.known)
@@ -96,6 +118,83 @@ def _grow(path: Path, content: bytes) -> None:
         file.write(content[path.stat().st_size :])
 
 
+KINDS = (
+    "at once",
+    "in pieces",
+    "otherwise",
+    "new cell",
+    "without steps",
+    "torn",
+    "stray",
+    "start",
+    "foreign",
+)
+
+
+def written(kind: str, number: int) -> bytes:
+    """Return what an observer, or another writer, adds to a log."""
+    one, began = walks(1, number)[0], 2000.0 + number
+    if kind in ("start", "foreign"):
+        return encoded(start(time=began, **({"sensors": ["y"]} if kind == "foreign" else {})))
+    if kind == "new cell":
+        one = type(one)(((9, 9), (0, 0)), (1.0, 2.0), False)
+    told = records(one, began, pieces=3 if kind == "in pieces" else 1)
+    if kind == "otherwise":
+        told = [dict(reversed(one.items())) for one in told]
+    if kind == "without steps":
+        told = [told[0], told[-1]]
+    if kind == "torn":
+        told = told[:-1]
+    if kind == "stray":
+        told = told[1:]
+    return b"".join(map(encoded, told))
+
+
+def everything(path: Path, size: int) -> tuple[list[tuple[object, ...]], object]:
+    """Return all missions of a log, read in blocks of so many bytes, and how far it was read with each."""
+    reader = LogReader(path, EXPECTED, {}, {})
+    with blocks_of(size):
+        found = [
+            (one.passed, one.time, one.new, one.progress, *(column.tobytes() for column in columns([one])))
+            for one in reader.missions()
+        ]
+    progress, problem = reader.progress, reader.problem
+    reader.close()
+    return found, (progress, problem)
+
+
+@settings(max_examples=300 if SLOW else 30)
+@given(kinds=st.lists(st.sampled_from(KINDS), max_size=14), size=SIZES, torn=st.integers(0, 60))
+def test_what_is_read_is_the_same_wherever_blocks_end(
+    tmp_path_factory: pytest.TempPathFactory, kinds: list[str], size: int, torn: int
+) -> None:
+    """One record a block has every record read as JSON, a large block missions that were written at once by pattern."""
+    path = tmp_path_factory.mktemp("blocks") / "m.log"
+    whole = MAGIC + encoded(start()) + b"".join(written(kind, number) for number, kind in enumerate(kinds))
+    path.write_bytes(whole[: max(len(MAGIC) + len(encoded(start())), len(whole) - torn)])
+    assert everything(path, size) == everything(path, 1)
+
+
+def test_missions_that_were_read_ahead_and_not_taken_come_again(tmp_path: Path) -> None:
+    some = walks(5, 3)
+    reading = Reading(log(tmp_path / "m.log", some))
+    for mission in reading.readers[0].missions():
+        reading.take(mission)
+        break
+    assert reading.read() == 5
+    assert reading.rewards == sums(some)
+
+
+def test_a_record_that_is_no_json_is_named(tmp_path: Path) -> None:
+    path = log(tmp_path / "m.log", walks(2, 2))
+    payload = zlib.compress(b"no json")
+    with path.open("ab") as file:
+        file.write(struct.pack("<II", len(payload), zlib.crc32(payload)) + payload + content(walks(1, 3)))
+    reading = Reading(path)
+    assert reading.read() == 2
+    assert "is damaged at byte" in reading.problems[0]
+
+
 def test_steps_cells_and_new_cells_are_told(tmp_path: Path) -> None:
     some = walks(4, 7)
     other = type(some[0])(((9, 9), (0, 0), (9, 9)), (1.0, 2.0, 3.0), True)
@@ -104,9 +203,9 @@ def test_steps_cells_and_new_cells_are_told(tmp_path: Path) -> None:
     missions = list(reader.missions())
     reader.close()
     assert missions[-1].new == ((9, 9),)
-    assert columns(missions[-1:])[0].tolist() == [len(CELLS), CELLS.index((0, 0)), len(CELLS)]
+    assert columns(missions[-1:])[1].tolist() == [len(CELLS), CELLS.index((0, 0)), len(CELLS)]
     for mission, one in zip(missions, some, strict=False):
-        assert [CELLS[row] for row in columns([mission])[0].tolist()] == [*one.cells]
+        assert [CELLS[row] for row in columns([mission])[1].tolist()] == [*one.cells]
         assert mission.new == ()
 
 
@@ -182,7 +281,7 @@ def test_missions_of_another_fixture_are_named_and_never_mixed(
     assert reading.read() == 2
     assert says in reading.problems[0]
     again = Reading(path)  # the state does not forget it
-    again.known.update({one._at.log: one._at for one in reading.readers})
+    again.known.update({one.progress.log: one.progress for one in reading.readers if one.progress})
     assert again.read() == 0
     assert says in again.problems[0]
     log(path, some[3:])
@@ -228,5 +327,6 @@ def test_missions_without_an_end_are_counted_apart(tmp_path: Path) -> None:
     path.write_bytes(MAGIC + encoded(start()) + b"".join(pieces[:4] + pieces[5:]))
     reading = Reading(path)
     assert reading.read() == 2
-    assert reading.readers[0]._at.unfinished == 1
+    assert reading.readers[0].progress is not None
+    assert reading.readers[0].progress.unfinished == 1
     assert reading.rewards == sums(some[1:])

@@ -14,7 +14,7 @@ from pytest_tarl.errors import LogError
 from pytest_tarl.learning.fixture import load
 from pytest_tarl.logged import missions
 from pytest_tarl.observing.command import Order, observe
-from pytest_tarl.observing.observer import unpacked
+from pytest_tarl.observing.writer import unpacked
 from pytest_tarl.ros import Ros, message_type
 from tests.plugin.tank import NODE, RECORD, TEST
 
@@ -85,6 +85,14 @@ def test_a_log_of_another_world_is_degraded_and_one_of_the_same_is_not(
     assert result.ret == 1
 
 
+def test_missions_of_logs_that_were_set_aside_are_compared_as_well(recorded: Path) -> None:
+    drive(order(recorded, log_size=1), [1.0, 0.1, 1.0])
+    assert len(list(recorded.glob(".tarl/missions.log.*"))) == 3
+    fixture = load(next(recorded.glob(".tarl/utility/*.npz")))
+    found = missions(recorded / ".tarl/missions.log", fixture)
+    assert [(one.ended, one.passed) for one in found] == [(True, True), (True, False), (True, True)]
+
+
 def test_a_mission_without_an_end_takes_no_part_and_is_told(
     recorded: Path, pytester: pytest.Pytester
 ) -> None:
@@ -111,9 +119,9 @@ def test_without_a_reward_topic_the_markers_judge_rewards_the_steps(
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        ({"reward": ""}, "Give --reward-topic"),
-        ({"idle": 1.0}, "two ways to tell missions apart"),
-        ({"node": Path("nowhere.py")}, "There is no file"),
+        ({"reward": ""}, "Give either --reward-topic"),
+        ({"idle": 1.0}, "cannot be used together"),
+        ({"node": Path("nowhere.py")}, "no such file"),
         ({"reward": "/monitor:nonsense_msgs/Float99"}, "nonsense_msgs"),
     ],
 )
@@ -136,5 +144,5 @@ def test_only_a_comparison_takes_a_log(pytester: pytest.Pytester) -> None:
 def test_a_fixture_is_needed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "keeper.py").write_text(NODE)
-    with pytest.raises(LogError, match="choose one with --fixture"):
+    with pytest.raises(LogError, match="Choose one with --fixture"):
         observe(order(tmp_path))

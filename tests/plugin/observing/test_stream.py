@@ -2,13 +2,26 @@
 
 from __future__ import annotations
 
+import marshal
 import threading
 
 import numpy as np
 
 from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.observing import stream
-from pytest_tarl.observing.stream import Stream
+from pytest_tarl.observing.stream import Chunk, Cut, Stream, chunk, joined
+from pytest_tarl.sensors import Cell
+
+
+class Emptied(Stream):
+    """A stream with the other end of its pipe."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.known: list[Cell] = []
+
+    def drain(self) -> Chunk:
+        return chunk(Cut(*marshal.loads(marshal.dumps(tuple(self.cut()), 2))), self.known)
 
 
 def drive(recorder: Recorder, begin: int, end: int) -> None:
@@ -24,7 +37,7 @@ def test_emptied_in_pieces_it_records_what_it_records_in_one() -> None:
     whole = Recorder(threads=True)
     drive(whole, 0, 60)
     trace = whole.finish()
-    pieces = Stream()
+    pieces = Emptied()
     chunks, done = [], 0
     for end in (1, 2, 17, 30, 31, 59, 60):
         drive(pieces, done, end)
@@ -40,8 +53,22 @@ def test_emptied_in_pieces_it_records_what_it_records_in_one() -> None:
     np.testing.assert_array_equal(np.concatenate([chunk.reward for chunk in chunks]), trace.reward)
 
 
+def test_chunks_in_a_row_are_one() -> None:
+    whole, pieces = Emptied(), Emptied()
+    chunks, done = [], 0
+    for end in (1, 2, 17, 30, 31, 59, 60):
+        drive(pieces, done, end)
+        chunks.append(pieces.drain())
+        done = end
+    drive(whole, 0, 60)
+    one, other = joined(chunks), whole.drain()
+    assert one.cells == other.cells
+    for name in ("site", "flow", "cell", "step", "thread", "step_cell", "reward"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+
+
 def test_a_site_whose_value_is_still_to_come_waits_for_it() -> None:
-    recorder = Stream()
+    recorder = Emptied()
     entries = recorder._entries()
     entries.append(3)
     assert recorder.drain().empty
@@ -51,7 +78,7 @@ def test_a_site_whose_value_is_still_to_come_waits_for_it() -> None:
 
 
 def test_threads_that_record_while_it_is_emptied_lose_nothing() -> None:
-    recorder = Stream()
+    recorder = Emptied()
     count, over = 20_000, threading.Event()
 
     def work(site: int) -> None:
@@ -74,7 +101,7 @@ def test_threads_that_record_while_it_is_emptied_lose_nothing() -> None:
 
 def test_memory_is_bounded_when_the_disk_stands_still(monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.setattr(stream, "MOST_ENTRIES", 100)
-    recorder = Stream()
+    recorder = Emptied()
     for _ in range(10):
         drive(recorder, 0, 60)
         recorder.relieve()

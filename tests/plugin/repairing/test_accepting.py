@@ -198,6 +198,49 @@ def test_between_too_little_and_what_breaks_the_designed_world_lies_a_repair(
     assert max(designed) <= high * 1.2 + 1e-3
 
 
+@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.floats(1.5, 4.0), st.floats(1.08, 1.25), st.floats(0.82, 0.94), st.floats(1.15, 1.6))
+def test_a_narrow_window_between_two_refused_values_is_bisected(
+    low: float, width: float, weak: float, strong: float
+) -> None:
+    """The bisection begins at the value that is known to gain too little, not at the original."""
+    field: Any = Window(low, low * width)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(
+            "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+        )
+        examiner = Examiner(field, (ALWAYS,))
+        (first,) = field.candidates
+        moved = first.mutations[0].operand
+        tried = [
+            Candidate((field.mutate(moved, factor),), ALWAYS) for factor in (low * weak, low * width * strong)
+        ]
+        trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
+        accepted = examiner.first(iter(tried), trials)
+    assert isinstance(accepted, Accepted)
+    value = float(accepted.candidate.mutations[0].value) / float(moved.value or 1)
+    assert low <= value <= low * width
+
+
+def test_missions_that_a_refused_candidate_lost_are_asked_of_the_next_ones_before_their_test(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(
+        "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+    )
+    line_up = ["lucky on known seeds", "lucky on known seeds", "good"]
+    field: Any = Field(line_up)
+    examiner = Examiner(field, (ALWAYS,))
+    trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
+    accepted = examiner.first(iter(field.candidates), trials)
+    assert isinstance(accepted, Accepted)
+    assert accepted.candidate == field.candidates[2]
+    first, second, _ = examiner.tried
+    assert (first.reason, second.reason) == ("gain too small", "gain too small")
+    assert first.fresh
+    assert not second.fresh
+
+
 def test_what_differs_by_a_few_percent_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds

@@ -45,6 +45,24 @@ def test_a_conflict_is_told_with_its_lines_and_both_stay(robot: Path) -> None:
     assert len(found.commands) == 2
 
 
+@pytest.mark.parametrize("other", ["node.py", "user.py"])
+def test_a_constant_changed_at_its_definition_and_at_a_use_is_a_conflict(robot: Path, other: str) -> None:
+    (robot / "user.py").write_text(NODE.replace("GAIN = 5", "from node import GAIN"))
+    git("add", "-A", cwd=robot)
+    git("commit", "-qm", "another module uses it", cwd=robot)
+    constant = ("constant: node.py:3 column 8",)
+    first = repair(robot, {"node.py": NODE.replace("GAIN = 5", "GAIN = 7")}, "worn", constant)
+    second = repair(robot, {other: guarded((robot / other).read_text())}, "mud", constant)
+    third = repair(
+        robot, {other: guarded((robot / other).read_text())}, "wind", ("constant: node.py:4 column 7",)
+    )
+    found = joined([first, second], robot)
+    told = f"node.py:3 is changed in two ways, by {first.name} and by {second.name}: apply one"
+    assert found.lines[0].startswith(told)
+    assert len(found.commands) == 2
+    assert "changed in two ways" not in "".join(joined([first, third], robot).lines)
+
+
 BOTH = "from std_msgs.msg import Bool, Float32, Float64"
 IMPORTING = NODE.replace("import rospy\n", "import rospy\nfrom std_msgs.msg import Float64\n")
 

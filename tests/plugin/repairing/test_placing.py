@@ -104,28 +104,48 @@ def test_a_named_constant_is_changed_where_it_is_defined(
     assert where
 
 
-def test_a_default_of_rclpy_is_changed(worn: pytest.Pytester) -> None:
-    text = IN_CLASS.format(before="", attribute="pass", gain="2.0", argument="", use="self.gain")
-    text = text[: text.index("class Keeper")].replace(
-        "import rospy", "import rclpy\nfrom rclpy.node import Node"
-    ) + (
-        "class Keeper(Node):\n"
-        "    def __init__(self):\n"
-        '        super().__init__("keeper")\n'
-        '        self.declare_parameter("gain", 2.0)\n'
-        '        self.gain = self.get_parameter("gain").value\n'
-        '        self.valve = self.create_publisher(Float64, "/valve", 1)\n'
-        '        self.create_subscription(Float64, "/level", self.on_level, 1)\n\n'
-        "    def on_level(self, msg):\n"
-        "        self.valve.publish(Float64(data=self.gain * (1.0 - msg.data)))\n\n\n"
-        'if __name__ == "__main__":\n'
-        "    rclpy.init()\n"
-        "    rclpy.spin(Keeper())\n"
-    )
-    (worn.path / "keeper.py").write_text(text)
+DECLARED = """\
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Float64
+
+
+class Keeper(Node):
+    def __init__(self):
+        super().__init__("keeper")
+        {declaration}
+        self.gain = self.get_parameter("gain").value
+        self.valve = self.create_publisher(Float64, "/valve", 1)
+        self.create_subscription(Float64, "/level", self.on_level, 1)
+
+    def on_level(self, msg):
+        self.valve.publish(Float64(data=self.gain * (1.0 - msg.data)))
+
+
+if __name__ == "__main__":
+    rclpy.init()
+    rclpy.spin(Keeper())
+"""
+ONE = 'self.declare_parameter("gain", 2.0)'
+SEVERAL = 'self.declare_parameters("", [("rate", 4.0), ("gain", 2.0)])'
+
+
+@pytest.mark.parametrize("declaration", [ONE, SEVERAL])
+def test_a_default_of_rclpy_is_changed(worn: pytest.Pytester, declaration: str) -> None:
+    (worn.path / "keeper.py").write_text(DECLARED.format(declaration=declaration))
     where, _, lines = repaired(worn)
     assert where.endswith(" gain")
-    assert '+        self.declare_parameter("gain", ' in lines
+    assert f"+        {declaration[:-5].removesuffix('2')}" in lines
+
+
+def test_a_parameter_is_changed_in_the_file_that_the_command_line_names(worn: pytest.Pytester) -> None:
+    (worn.path / "keeper.py").write_text(DECLARED.format(declaration=SEVERAL.replace("2.0", "0.7")))
+    (worn.path / "params.yaml").write_text("keeper:\n  ros__parameters:\n    gain: 2.0\n")
+    started = 'tarl.start("keeper.py", argv=["--ros-args", "--params-file", "params.yaml"])'
+    changed(worn, "test_tank", 'tarl.start("keeper.py")', started)
+    where, _, lines = repaired(worn)
+    assert where == "params.yaml:3 gain"
+    assert "+    gain: " in lines
 
 
 FILES = {

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import re
 from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pytest_tarl.drifts import Drift, sizes
 from pytest_tarl.model import Sizes
 from pytest_tarl.repairing.order import spread
+from pytest_tarl.repairing.ranges import STRATA, spread_seeds
 from tests.plugin.tank import ONLINE, RECORD, changed, result
 
 REPAIR = (*ONLINE, "--tarl-repair")
@@ -97,6 +101,41 @@ def test_pairs_are_taken_so_that_the_first_ones_span_the_sizes(sizes: list[float
             sorted(range(len(sizes)), key=lambda at: (sizes[at], at)).index(at) for at in order[:7]
         )
         assert max(later - earlier for earlier, later in pairwise(ranks)) <= len(sizes) // 4 + 1
+
+
+PARTS = {"": Drift.range(0.1, 0.6)}, {"a": Drift.range(-1, 1), "b": Drift.range(0, 9), "c": Drift.range(2, 3)}
+
+
+@pytest.mark.parametrize("parts", PARTS)
+def test_every_four_seeds_of_a_test_are_spread_over_the_range(parts: dict[str, Drift]) -> None:
+    value = Drift(parts) if len(parts) > 1 else parts[""]
+    spans = {part: one.value for part, one in parts.items()}
+    order: Any = SimpleNamespace(
+        world=value,
+        drift="mud",
+        options=SimpleNamespace(seed=3),
+        comparison=SimpleNamespace(
+            sizes={part: Sizes(part, one.low, one.high) for part, one in spans.items()}
+        ),
+    )
+    chosen = spread_seeds(order, "acceptance 1", 48)
+    assert len(set(chosen)) == 48
+    assert chosen[:8] == spread_seeds(order, "acceptance 1", 8)
+    assert not set(chosen) & set(spread_seeds(order, "acceptance 2", 48))
+    for at in range(0, 48, STRATA):
+        shares = [
+            [
+                (drawn[part] - one.low) / (one.high - one.low)
+                for drawn in (sizes(value, "mud", seed) for seed in chosen[at : at + STRATA])
+            ]
+            for part, one in list(spans.items())[:2]
+        ]
+        if len(shares) == 1:
+            assert [int(share * 4) for share in shares[0]] == [0, 1, 2, 3]
+        else:
+            assert {(one < 0.5, two < 0.5) for one, two in zip(*shares, strict=True)} == {
+                (first, second) for first in (True, False) for second in (True, False)
+            }
 
 
 @given(st.floats(-1e3, 1e3), st.floats(1e-3, 1e3))

@@ -133,7 +133,7 @@ def prepared(pytester: pytest.Pytester, case: str) -> None:
     [
         ("sign", ("turn the sign of",)),
         ("limit", ("limit", "at most", "smooth")),
-        ("integral", ("of the sum of",)),
+        ("integral", ("the sum of",)),
     ],
 )
 def test_what_no_constant_brings_back_is_brought_back_by_structure(

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from pytest_tarl.ros.literals import parse_value
@@ -55,3 +57,12 @@ def test_ros2_command_line_is_taken_apart() -> None:
 def test_values_are_read_as_on_a_command_line(text: str, value: object) -> None:
     assert parse_value(text) == value
     assert type(parse_value(text)) is type(value)
+
+
+def test_a_file_of_parameters_is_read_where_the_command_line_names_it(tmp_path: Path) -> None:
+    file = tmp_path / "params.yaml"
+    file.write_text("/**:\n  ros__parameters:\n    gain: 2.5\n")
+    line = parse_ros2(["--ros-args", "-p", "low:=1", "--params-file", str(file)])
+    assert line.parameters == {"low": 1, "/**": {"ros__parameters": {"gain": 2.5}}}
+    with pytest.raises(RuntimeError, match=r"Couldn't parse params file.*Error opening"):
+        parse_ros2(["--ros-args", "--params-file", str(tmp_path / "none.yaml")])

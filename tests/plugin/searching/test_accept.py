@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pytest_tarl.learning.betting import bet
 from pytest_tarl.learning.bounds import rate
 from pytest_tarl.searching.accept import (
     LOOKS,
@@ -23,7 +24,6 @@ from pytest_tarl.searching.accept import (
     risk_of,
 )
 from pytest_tarl.searching.acceptance_numbers import NEVER, acceptance_numbers
-from pytest_tarl.searching.betting import Bet, bet
 
 DESIGNED, LOWEST, MARGIN = 10.0, -10.0, 0.5
 RISK = risk_of(0.05, 0)
@@ -181,11 +181,49 @@ def test_a_bet_against_a_true_claim_is_rarely_won_whatever_the_totals_look_like(
     assert stake.wealth(runs[0].tolist()) == pytest.approx(float(np.log(money[0, -1])), abs=1e-6)
 
 
-def test_the_loss_that_a_bet_shows_covers_the_true_one() -> None:
-    stake = Bet(MARGIN, -20.0, (0.04, 0.02))
-    draws = np.random.default_rng(2)
-    missed = 0
-    for _ in range(300):
-        totals = np.where(draws.random(150) < 0.02, -20.0, 0.1)
-        missed += stake.loss(totals.tolist(), 0.05) < 0.02 * 20.0 - 0.98 * 0.1
-    assert missed <= 300 * 0.05 + 3 * np.sqrt(300 * 0.05)
+STRATA = st.lists(st.floats(0.0, 1.0), min_size=4, max_size=4).filter(lambda rates: sum(rates) > 0.01)
+
+
+@settings(max_examples=60, deadline=None)
+@given(STRATA, st.sampled_from([0.05, 0.1, 0.25]), st.sampled_from([0.0333, 0.0111]))
+def test_failures_whose_rate_differs_over_a_range_are_accepted_no_more_often(
+    shares: list[float], rate: float, risk: float
+) -> None:
+    """Seeds come from four strata in turn; exact, over the paths of the count (Hoeffding 1956 for one look)."""
+    rates = [min(4 * rate * share / sum(shares), 1.0) for share in shares]
+    numbers = acceptance_numbers(LOOKS, sum(rates) / 4, risk)
+    waiting, seen, accepted = np.ones(1), 0, 0.0
+    for look, number in zip(LOOKS, numbers, strict=True):
+        for episode in range(seen, look):
+            failing = rates[episode % 4]
+            waiting = np.convolve(waiting, [1 - failing, failing])
+        seen = look
+        if number > NEVER:
+            accepted += float(waiting[: number + 1].sum())
+            waiting[: number + 1] = 0.0
+    assert accepted <= risk + 1e-12
+
+
+@settings(max_examples=40, deadline=None)
+@given(STRATA, st.lists(st.floats(-20, 5), min_size=2, max_size=8), st.integers(0, 2**16))
+def test_a_bet_is_rarely_won_where_the_mean_of_the_strata_is_the_margin_below(
+    weights: list[float], known: list[float], seed: int
+) -> None:
+    """Each stratum loses another amount, the mean of them is exactly the margin; looks come after whole blocks."""
+    losses = np.array(weights) / sum(weights) * 4 * MARGIN
+    draws = np.random.default_rng(seed)
+    runs = -np.tile(losses, 50) + draws.choice([-1.0, 1.0], (300, 200)) * 0.3
+    stake = bet(MARGIN, -20.0, known)
+    money = np.mean([np.cumprod(1.0 + one * (runs + MARGIN), axis=1) for one in stake.stakes], axis=0)
+    won = float(np.mean(money[:, np.array(LOOKS) - 1].max(axis=1) >= 1 / RISK))
+    assert won <= RISK + 4 * np.sqrt(RISK / 300) + 0.01
+
+
+def test_a_declared_range_says_what_a_mission_can_lose_up_to_what_a_designed_one_earns() -> None:
+    recorded = Reference([9.9, 10.1], 1.0, MARGIN, 8.0)
+    declared = Reference([9.9, 10.1], 1.0, MARGIN, 6.0, 11.0)
+    failing_dearly = Reference([9.9, 10.1], 1.0, MARGIN, -500.0, 11.0)
+    assert recorded.least == pytest.approx(8.0 - 10.1)
+    assert declared.least == pytest.approx(6.0 - 11.0)
+    assert failing_dearly.least == pytest.approx(-DESIGNED)
+    assert accept(world(DESIGNED), None, AS_DESIGNED, seeds(0), failing_dearly, RISK).accepted

@@ -199,8 +199,8 @@ def test_episodes_run_elsewhere_are_of_the_same_budget() -> None:
 
 def test_ending_early_is_not_taken_for_doing_well() -> None:
     failed = Outcome(OFFLINE, passed=False)
-    assert GOAL.reached(failed)
-    assert not replace(GOAL, passing=True).reached(failed)
+    assert GOAL.reached(failed, 0)
+    assert not replace(GOAL, passing=True).reached(failed, 0)
 
 
 def test_an_effect_is_the_mean_over_all_seeds_that_were_tried() -> None:
@@ -236,3 +236,54 @@ def test_epsilon_greedy_measures_gains_from_all_on_line_episodes() -> None:
         list(search.candidates())
         found.append(search.effects()[str(GAIN.site)][0].effect)
     assert found[0] - found[1] == pytest.approx(3.0)
+
+
+NARROW = 1.2  # the right factor, of which no more than 7 % may be missing
+
+
+def run_narrow(candidate: Candidate, seed: int) -> Outcome:
+    """Missions fail, each a little sooner or later, but for a narrow window of one constant."""
+    (mutation,) = candidate.mutations
+    factor = float(mutation.value) / float(mutation.operand.value or 1)
+    if mutation.operand == GAIN and NARROW / 1.07 < factor < NARROW * 1.07:
+        return Outcome(OFFLINE, passed=True)
+    moved = 0.1 * math.tanh(math.log(abs(factor) or 1e-9)) if mutation.operand != LIMIT else 0.0
+    return Outcome(-5.0 + moved, passed=False)
+
+
+def test_a_narrow_window_is_found_without_refining_what_gains_hardly_anything() -> None:
+    pairs = tuple(Pair(seed, -5.0) for seed in range(10))
+    goal = Goal(pairs, near=OFFLINE - 1.2, enough=OFFLINE - 1.0, online=-5.0, passing=True)
+    trials = Trials(run_narrow, 300)
+    found = next(Sweep(OPERANDS, mutations, (ALWAYS,), trials, goal).candidates())
+    assert found.mutations[0].operand == GAIN
+    assert trials.spent < 50
+
+
+def test_a_proposed_value_is_tried_as_it_is_first() -> None:
+    def proposed(moved: Operand, factor: float) -> Mutation:
+        return Mutation(moved, round(float(moved.value or 1.0) * factor, 6))
+
+    def run_proposed(candidate: Candidate, seed: int) -> Outcome:
+        (mutation,) = candidate.mutations
+        return Outcome(OFFLINE if (mutation.operand, mutation.value) == (GAIN, 2.0) else 0.0, passed=True)
+
+    pairs = tuple(Pair(seed, 0.0) for seed in range(10))
+    goal = Goal(pairs, near=OFFLINE - 1.2, enough=OFFLINE - 1.0, online=0.0)
+    trials = Trials(run_proposed, 300)
+    search = Sweep(OPERANDS, proposed, (ALWAYS,), trials, goal, proposed=True)
+    assert next(search.candidates()).mutations == (Mutation(GAIN, 2.0),)
+    assert trials.spent <= len(OPERANDS) + CONFIRMATIONS
+    (effect,) = search.effects()[str(GAIN.site)]
+    assert effect.effect == OFFLINE
+
+
+def test_a_failed_mission_ends_the_confirmation_at_once_where_designed_ones_succeed() -> None:
+    def once(candidate: Candidate, seed: int) -> Outcome:
+        return Outcome(OFFLINE, passed=seed != 1)
+
+    goal = replace(GOAL, passing=True)
+    for passing, runs in ((True, 1), (False, CONFIRMATIONS)):
+        trials = Trials(once, 300)
+        found = confirmed(Candidate((), ALWAYS), trials, replace(goal, passing=passing), 0)
+        assert (found, trials.spent) == (not passing, runs)

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from pytest_tarl.learning.intervals import difference_bounds, effect_size, student_quantile
+from pytest_tarl.learning.effect_size import effect_size
+from pytest_tarl.learning.student import difference_bounds, student_quantile
 
 
 @pytest.mark.parametrize(

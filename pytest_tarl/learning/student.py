@@ -1,9 +1,13 @@
-"""How large a difference of means is, and how surely it is known."""
+"""Student's t: bounds of a mean and of a difference of means, for totals that are about normal.
+
+They hold less often than stated for skewed totals and few episodes, so learning/bounds.py, which says so of each, is
+the only module that may use them.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import nan, sqrt, tan
+from math import sqrt, tan
 from statistics import NormalDist, fmean, variance
 
 import numpy as np
@@ -27,16 +31,6 @@ def mean_bounds(values: Sequence[float], confidence: float) -> tuple[float, floa
     """Return the two-sided interval of a mean (Student)."""
     reach = student_quantile((1 + confidence) / 2, max(len(values) - 1, 1)) * sqrt(_spread(values))
     return fmean(values) - reach, fmean(values) + reach
-
-
-def effect_size(first: Sequence[float], second: Sequence[float]) -> float:
-    """Return Hedges' g: mean(first) - mean(second) in pooled standard deviations; NaN where nothing varies."""
-    degrees = len(first) + len(second) - 2
-    squares = sum((len(group) - 1) * variance(group) for group in (first, second) if len(group) > 1)
-    if degrees < 1 or squares <= 0:
-        return nan
-    correction = 1 - 3 / (4 * degrees - 1)
-    return correction * (fmean(first) - fmean(second)) / sqrt(squares / degrees)
 
 
 def student_quantile(probability: float, degrees: float) -> float:

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from math import exp, inf, log, log1p
 from statistics import fmean, variance
 
-from pytest_tarl.learning.intervals import student_quantile
+from pytest_tarl.learning.bounds import mean_of
 
 BOLD, CAREFUL = 0.95, 0.5  # shares that may be lost in the worst episode there is
 DOUBT = 1.5  # by which a variance of few episodes is taken for larger than it looks
 CERTAIN = (
-    0.005  # risk at which a mean is taken to be lower than the limit: this ends tests, it accepts nothing
+    0.005  # risk, about, at which a mean is taken to be below the limit: this ends tests, it accepts nothing
 )
 
 
@@ -38,21 +38,10 @@ class Bet:
         most = max(each)
         return most if most == -inf else most + log(fmean(exp(one - most) for one in each))
 
-    def loss(self, differences: Sequence[float], risk: float) -> float:
-        """Return the upper bound of the mean loss that the bets show at `risk`, at most `-least`."""
-        low, high = -fmean(max(one, self.least) for one in differences), -self.least
-        while high - low > 1e-6 * max(1.0, abs(self.least)):
-            margin = (low + high) / 2
-            stakes = tuple(_bounded(stake, margin, self.least, BOLD) for stake in self.stakes)
-            shown = Bet(margin, self.least, stakes).wealth(differences) >= -log(risk)
-            low, high = (low, margin) if shown else (margin, high)
-        return high
-
     def hopeless(self, differences: Sequence[float], left: int, risk: float) -> bool:
         """Tell whether `left` more episodes, as good as those seen may truly be, would not win the bet."""
         counted = [max(one, self.least) for one in differences]
-        spread = variance(counted) / len(counted) if len(counted) > 1 else 0.0
-        best = fmean(counted) + student_quantile(1 - CERTAIN, max(len(counted) - 1, 1)) * spread**0.5
+        best = mean_of(counted, 1.0 - CERTAIN).high
         if best < -self.margin:
             return True
         growing = [log1p(stake * (max(best, 0.0) + self.margin)) for stake in self.stakes]

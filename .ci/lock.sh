@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# Write requirements-dev.txt anew: the newest versions of what the extra `dev` needs on every Python and system that
+# pyproject.toml allows, with the digests of their files. Needs uv (pip install uv).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+{
+    echo "# The environment of development, pinned with digests. Written by .ci/lock.sh; install it with"
+    echo "#   python -m pip install --require-hashes -r requirements-dev.txt && python -m pip install --no-deps -e ."
+    uv pip compile --quiet --universal --generate-hashes --no-header --python-version 3.10 --extra dev pyproject.toml
+} >requirements-dev.txt.new
+mv requirements-dev.txt.new requirements-dev.txt

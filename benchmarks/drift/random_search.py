@@ -1,0 +1,32 @@
+"""Random search as a plug-in of `--tarl-search`, so that its candidates meet the very same acceptance as ours."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Sequence
+
+from pytest_tarl.searching.asking import Constant
+
+MOVED = 0.5  # share of the constants that a draw moves
+REACH = math.log(10.0)  # by which the logarithm of a factor differs from 0 at most
+
+
+class Random:
+    """Half of the constants stay as they are, the others are multiplied by a factor of 0.1 to 10."""
+
+    def __init__(self, constants: Sequence[Constant], seed: int) -> None:
+        self.constants = constants
+        self.draws = random.Random(seed)
+
+    def ask(self) -> list[float]:
+        """Return the next factors; a negative one flips a boolean."""
+        return [self._factor(isinstance(constant.value, bool)) for constant in self.constants]
+
+    def tell(self, factors: Sequence[float], gain: float) -> None:
+        """Learn nothing."""
+
+    def _factor(self, boolean: bool) -> float:
+        if self.draws.random() >= MOVED:
+            return 1.0
+        return -1.0 if boolean else math.exp(self.draws.uniform(-REACH, REACH))

@@ -1,0 +1,259 @@
+"""Do the tests catch faults? Sow small ones, chosen by a seed, and run the tests that reach the line.
+
+`make mutants` sows ten in each package of pytest_tarl. Coverage contexts say which tests reach which line, those of
+processes that tests start included. Each fault is sown into a copy of the checkout without any cache; it is caught
+when a test fails or the tests take far longer than they did without it. A fault that no test reaches is not caught.
+Prints the share that is caught with its exact 95 % interval, and the faults that survived.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import random
+import shutil
+import sqlite3
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from time import monotonic
+
+from scipy.stats import beta
+from sown_faults import Fault, faults
+
+ROOT = Path(__file__).resolve().parent.parent
+EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
+ELSEWHERE = {"realros"}  # needs a real ROS: make test-ros1, make test-ros2
+LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache", "*.egg-info", ".coverage*")
+MOST_TESTS = 60  # that are run for a fault, the quickest first
+PATIENCE = 60.0  # seconds beyond three times what its tests took
+SETTINGS = """[run]
+source = {source}
+parallel = true
+patch = subprocess
+context = ${{PYTEST_CURRENT_TEST-}}
+data_file = {data}
+"""
+Reached = dict[tuple[str, int], set[str]]  # tests by file and line
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a fault: caught, survived, timeout, unreached."""
+
+    fault: Fault
+    word: str
+    tests: int
+
+
+def main() -> None:
+    """Sow the faults and print what became of them."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--package", default="pytest_tarl", help="(default pytest_tarl)")
+    parser.add_argument("--only", nargs="*", default=[], metavar="PACKAGE", help="some of its packages")
+    parser.add_argument("--each", type=int, default=10, help="faults in each of its packages (default 10)")
+    parser.add_argument("--seed", type=int, default=0, help="chooses the faults (default 0)")
+    parser.add_argument("--tests", nargs="*", default=["tests"], help="that are asked (default: all)")
+    parser.add_argument(
+        "--keep", type=Path, metavar="FILE", help="keep which tests reach what, or take it from there"
+    )
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
+        copy = Path(folder) / "copy"
+        shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(*LEFT_OUT))
+        reached, seconds = known(given.keep, copy, given.package, given.tests)
+        chosen = sample(copy, given.package, set(given.only), given.each, given.seed)
+        proven: dict[str, str] = json.loads(EQUIVALENT.read_text())
+        outcomes = []
+        for fault in chosen:
+            if fault.name in proven:
+                print(f"equivalent  {fault.name}: {proven[fault.name]}", flush=True)
+                continue
+            outcomes.append(tried(fault, copy, reaching(fault, reached), seconds))
+            print(
+                f"{outcomes[-1].word:<11} {fault.path}:{fault.line} {fault.kind}: {fault.was!r} → {fault.now!r}",
+                flush=True,
+            )
+    report(outcomes)
+
+
+def known(
+    keep: Path | None, copy: Path, package: str, tests: Sequence[str]
+) -> tuple[Reached, Mapping[str, float]]:
+    """Return which tests reach which lines and how long each takes, measured or as kept."""
+    if keep is not None and keep.exists():
+        lines, seconds = json.loads(keep.read_text())
+        return {(path, line): set(names) for path, line, names in lines}, seconds
+    reached, seconds = measured(copy, package, tests)
+    if keep is not None:
+        keep.write_text(json.dumps([[[*place, sorted(names)] for place, names in reached.items()], seconds]))
+    return reached, seconds
+
+
+def measured(copy: Path, package: str, tests: Sequence[str]) -> tuple[Reached, dict[str, float]]:
+    """Run the tests once under coverage."""
+    with tempfile.TemporaryDirectory() as folder:
+        settings, data, times = Path(folder) / "rc", Path(folder) / "data", Path(folder) / "times.json"
+        settings.write_text(SETTINGS.format(source=copy / package, data=data))
+        (Path(folder) / "test_times.py").write_text(TIMES)
+        surroundings = {
+            **environment(copy),
+            "COVERAGE_PROCESS_START": str(settings),
+            "TEST_TIMES": str(times),
+        }
+        surroundings["PYTHONPATH"] += os.pathsep + folder
+        own = [sys.executable, "-m", "coverage"]
+        run = [
+            *own,
+            "run",
+            f"--rcfile={settings}",
+            "-m",
+            "pytest",
+            "-q",
+            "-p",
+            "test_times",
+            "-p",
+            "no:cacheprovider",
+        ]
+        subprocess.run([*run, *tests], cwd=copy, env=surroundings, check=False, stdout=sys.stderr)
+        subprocess.run(
+            [*own, "combine", f"--rcfile={settings}", "-q"], cwd=copy, env=surroundings, check=True
+        )
+        return contexts(data, copy), json.loads(times.read_text())
+
+
+TIMES = """
+import json, os
+from pathlib import Path
+passed, owner = {}, os.getpid()
+def pytest_runtest_logreport(report):
+    if report.when == "call" and report.passed:
+        passed[report.nodeid] = report.duration
+def pytest_unconfigure():
+    if os.getpid() == owner and not os.environ.get("PYTEST_CURRENT_TEST"):
+        Path(os.environ["TEST_TIMES"]).write_text(json.dumps(passed))
+import coverage
+def pytest_runtest_setup(item):
+    if (current := coverage.Coverage.current()) is not None:
+        current.switch_context(item.nodeid)
+"""
+
+
+def contexts(data: Path, copy: Path) -> Reached:
+    """Read the tests by line from coverage's file; its lines are bits of a blob."""
+    reached: Reached = {}
+    query = (
+        "select file.path, context.context, numbits from line_bits "
+        "join file on file.id = file_id join context on context.id = context_id"
+    )
+    with sqlite3.connect(data) as base:
+        for path, context, bits in base.execute(query):
+            test = context.rpartition(" (")[0] if context.endswith(")") and " (" in context else context
+            name = Path(path).relative_to(copy).as_posix()
+            if not test:
+                continue
+            for byte, value in enumerate(bits):
+                for bit in range(8):
+                    if value & (1 << bit):
+                        reached.setdefault((name, byte * 8 + bit), set()).add(test)
+    return reached
+
+
+def sample(copy: Path, package: str, only: set[str], each: int, seed: int) -> list[Fault]:
+    """Choose the faults: so many in each package, files weighted by how many can be sown."""
+    chosen: list[Fault] = []
+    folders = sorted(path for path in (copy / package).iterdir() if (path / "__init__.py").exists())
+    homes = {path.name: sorted(path.rglob("*.py")) for path in folders if path.name not in ELSEWHERE}
+    homes["."] = sorted((copy / package).glob("*.py"))
+    for name, files in homes.items():
+        if not only or name in only:
+            all_ = [one for file in files for one in faults(file, file.relative_to(copy).as_posix())]
+            chosen += random.Random(f"{seed} {name}").sample(all_, min(each, len(all_)))
+    return chosen
+
+
+def reaching(fault: Fault, reached: Reached) -> set[str]:
+    """Return the tests that reach the statement of a fault."""
+    return set[str]().union(*(reached.get((fault.path, line), set()) for line in fault.lines))
+
+
+def tried(fault: Fault, copy: Path, tests: Iterable[str], seconds: Mapping[str, float]) -> Outcome:
+    """Sow a fault, run the tests that reach it, and take it out again."""
+    passing = sorted((test for test in tests if test in seconds), key=lambda test: (seconds[test], test))
+    chosen = passing[:MOST_TESTS]
+    if not chosen:
+        return Outcome(fault, "unreached", 0)
+    file = copy / fault.path
+    text = file.read_bytes()
+    file.write_bytes(fault.sown(text))
+    limit = PATIENCE + 3 * sum(seconds[test] for test in chosen)
+    try:
+        word = "caught" if fails(copy, chosen, limit) else "survived"
+    except subprocess.TimeoutExpired:
+        word = "timeout"
+    finally:
+        file.write_bytes(text)
+        for cache in [*copy.rglob(".tarl"), *copy.rglob("__pycache__")]:
+            shutil.rmtree(cache, ignore_errors=True)
+    return Outcome(fault, word, len(chosen))
+
+
+def fails(copy: Path, tests: Sequence[str], limit: float) -> bool:
+    """Tell whether one of the tests fails. Raises TimeoutExpired where they take longer than the limit."""
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--no-header", *tests]
+    with subprocess.Popen(
+        command,
+        cwd=copy,
+        env=environment(copy),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    ) as running:
+        begun = monotonic()
+        try:
+            status = running.wait(limit - (monotonic() - begun))
+        except subprocess.TimeoutExpired:
+            os.killpg(running.pid, 9)
+            raise
+    return status != 0
+
+
+def environment(copy: Path) -> dict[str, str]:
+    """Return the environment in which the copy is imported, and nothing is cached."""
+    return {
+        **os.environ,
+        "PYTHONPATH": str(copy),
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "HYPOTHESIS_STORAGE_DIRECTORY": os.devnull,
+    }
+
+
+def report(outcomes: Sequence[Outcome]) -> None:
+    """Print the shares by package, all in all, and the survivors."""
+    words = ("caught", "timeout", "survived", "unreached")
+    packages = sorted({home(one) for one in outcomes})
+    print(f"\n| package | {' | '.join(words)} |\n|---|---|---|---|---|")
+    for name in [*packages, "all"]:
+        counts = [sum(one.word == word and name in (home(one), "all") for one in outcomes) for word in words]
+        print(f"| {name} | {' | '.join(map(str, counts))} |")
+    total, good = len(outcomes), sum(one.word in ("caught", "timeout") for one in outcomes)
+    low = beta.ppf(0.025, good, total - good + 1) if good else 0.0
+    high = beta.ppf(0.975, good + 1, total - good) if good < total else 1.0
+    print(f"\n{good} of {total} caught: {good / max(1, total):.0%} (95 % interval {low:.0%} to {high:.0%})")
+    for one in outcomes:
+        if one.word in ("survived", "unreached"):
+            print(f"{one.word}: {one.fault.name} (line {one.fault.line}, {one.tests} tests)")
+
+
+def home(outcome: Outcome) -> str:
+    """Return the package of a fault."""
+    parts = outcome.fault.path.split("/")
+    return parts[1] if len(parts) > 2 else "."
+
+
+if __name__ == "__main__":
+    main()

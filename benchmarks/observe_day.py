@@ -1,0 +1,118 @@
+"""A day of `observe` at 100 Hz, with a clock that runs as fast as it can: does memory grow, is a second lost?
+
+`python benchmarks/observe_day.py --hours 24` runs the control cycle of observe.py under a simulated clock, one mission
+an hour, and sets the log aside by size. It prints the resident memory of the node's process and of the writer by the
+hour, then reads the log back: each step must be there once, in order, each second must have its steps. The exit status
+is 1 where one is missing, or the median memory of the last quarter is more than --growth MB above the second's.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from time import process_time, sleep
+
+import numpy as np
+from observe import SENSORS, Message, node
+
+from pytest_tarl.instrumentation.trace import Floats
+from pytest_tarl.observing import observer as observing
+from pytest_tarl.observing.frames import records, set_aside
+from pytest_tarl.observing.observer import Observer
+from pytest_tarl.observing.writer import Rotation, unpacked
+
+RATE = 100  # cycles a second
+SAMPLES = 24  # of memory, and missions
+ABOUT = {"node": "node.py", "sites": [], "sensors": [one.name for one in SENSORS]}
+
+
+class Clock:
+    """Seconds that pass as the loop says."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        """Return the time."""
+        return self.now
+
+
+def main() -> None:
+    """Run the day and print what came of it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--hours", type=float, default=24.0, help="simulated (default 24)")
+    parser.add_argument("--log-size", type=float, default=50.0, metavar="MB", help="(default 50)")
+    parser.add_argument("--growth", type=float, default=5.0, metavar="MB", help="allowed (default 5)")
+    given = parser.parse_args()
+    cycles = max(SAMPLES, round(given.hours * 3600 * RATE / SAMPLES) * SAMPLES)
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / "log"
+        sizes, dropped = day(log, cycles, Rotation(round(given.log_size * 1e6)))
+        parts = [*set_aside(log), log]
+        rewards, times = (np.concatenate(column) for column in zip(*read(parts), strict=True))
+        lengths = [part.stat().st_size / 1e6 for part in parts]
+    missing = cycles - len(np.unique(rewards))
+    disorder = int((np.diff(rewards) != 1).sum())
+    seconds = np.bincount(np.floor((np.arange(cycles) + 0.5) / RATE).astype(int)[: len(rewards)])
+    late = (
+        float(np.abs(times - (np.arange(len(times)) % (cycles // SAMPLES)) / RATE).max())
+        if not missing
+        else -1
+    )
+    quarter = len(sizes) // 4
+    growth = np.median(sizes[-quarter:], axis=0) - np.median(sizes[quarter : 2 * quarter], axis=0)
+    print(f"\n{cycles:,} steps in {len(seconds):,} s: {missing} missing, {disorder} out of order")
+    print(f"{dropped} events dropped; times are off by {late * 1e3:.3f} ms at most")
+    print(f"{len(parts)} files of {min(lengths):.1f} to {max(lengths):.1f} MB")
+    print(f"memory, last quarter over second: node {growth[0]:+.1f} MB, writer {growth[1]:+.1f} MB")
+    if missing or disorder or dropped or growth.max() > given.growth:
+        sys.exit(1)
+
+
+def day(log: Path, cycles: int, rotation: Rotation) -> tuple[list[tuple[float, float]], int]:
+    """Run the cycles; return the memory of both processes in MB at each sample, and the events dropped."""
+    clock, sizes = Clock(), []
+    vars(observing)["monotonic"] = clock
+    observer = Observer(SENSORS, log, ABOUT, rotation=rotation, following=True)
+    cycle = node(log.parent, observer.stream)
+    print("| hour | node MB | writer MB | files | CPU s of the node |\n|---|---|---|---|---|", flush=True)
+    for number in range(cycles):
+        if number % (cycles // SAMPLES) == 0:
+            sizes.append((resident("self"), resident(str(observer._outlet._process.pid))))
+            row = f"| {clock.now / 3600:.1f} | {sizes[-1][0]:.1f} | {sizes[-1][1]:.1f} | {len(set_aside(log)) + 1} |"
+            print(f"{row} {process_time():.0f} |", flush=True)
+            observer.begin()
+        value = (number % 1000) / 100.0
+        message = Message(value, number % 50 < 10)
+        for sensor in SENSORS:
+            observer.told(sensor, message)
+        cycle(value)
+        observer.step(float(number))
+        clock.now += 1 / RATE
+        while number % 100 == 0 and (observer._outlet._put - observer._outlet._sent) > 1 << 20:
+            sleep(0.005)  # the clock is faster than the disk
+    observer.end(passed=True)
+    observer.close()
+    sizes.append((resident("self"), sizes[-1][1]))
+    return sizes, observer.stream.dropped
+
+
+def resident(process: str) -> float:
+    """Return the resident memory of a process in MB."""
+    lines = Path(f"/proc/{process}/status").read_text().splitlines()
+    return next(int(line.split()[1]) / 1e3 for line in lines if line.startswith("VmRSS"))
+
+
+def read(parts: list[Path]) -> Iterator[tuple[Floats, Floats]]:
+    """Yield the rewards and times of each record of steps."""
+    for part in parts:
+        for record in records(part):
+            if record["kind"] == "steps":
+                yield unpacked(record["reward"], "float64"), np.array(record["times"])
+
+
+if __name__ == "__main__":
+    main()

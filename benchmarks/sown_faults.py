@@ -1,0 +1,202 @@
+"""Small faults in a file of source: where they can be sown, and the text with one of them."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+_COMPARED: dict[type[ast.cmpop], str] = {
+    ast.Lt: "<=",
+    ast.LtE: "<",
+    ast.Gt: ">=",
+    ast.GtE: ">",
+    ast.Eq: "!=",
+    ast.NotEq: "==",
+    ast.Is: "is not",
+    ast.IsNot: "is",
+    ast.In: "not in",
+    ast.NotIn: "in",
+}
+_SIGNS: dict[type[ast.operator], str] = {
+    ast.Add: "-",
+    ast.Sub: "+",
+    ast.Mult: "/",
+    ast.Div: "*",
+    ast.FloorDiv: "*",
+}
+_TEXT: dict[type[ast.cmpop] | type[ast.operator] | type[ast.boolop], str] = {
+    ast.Lt: "<",
+    ast.LtE: "<=",
+    ast.Gt: ">",
+    ast.GtE: ">=",
+    ast.Eq: "==",
+    ast.NotEq: "!=",
+    ast.Is: "is",
+    ast.IsNot: "is not",
+    ast.In: "in",
+    ast.NotIn: "not in",
+    ast.Add: "+",
+    ast.Sub: "-",
+    ast.Mult: "*",
+    ast.Div: "/",
+    ast.FloorDiv: "//",
+    ast.And: "and",
+    ast.Or: "or",
+}
+_UNSEEN = (ast.Import, ast.ImportFrom, ast.Assert, ast.Raise)  # messages are not worth a test each
+
+
+@dataclass(frozen=True, order=True)
+class Fault:
+    """A piece of a file, by its offsets in bytes, that other text takes the place of."""
+
+    path: str
+    line: int
+    start: int
+    end: int
+    kind: str
+    was: str
+    now: str
+    lines: tuple[int, ...] = ()  # of the statement, up to its body: where tests may be seen to pass
+
+    @property
+    def name(self) -> str:
+        """Name it so that it is found again after edits elsewhere in the file."""
+        return f"{self.path}: {self.kind}: {' '.join(self.was.split())} → {' '.join(self.now.split())}"
+
+    def sown(self, text: bytes) -> bytes:
+        """Return the text of the file with the fault."""
+        return text[: self.start] + self.now.encode() + text[self.end :]
+
+
+def faults(path: Path, name: str) -> list[Fault]:
+    """Return every fault that can be sown into a file and still compiles."""
+    data = path.read_bytes()
+    found = sorted(set(_Finder(data, name).module(ast.parse(data))))
+    return [one for one in found if one.was != one.now and _compiles(one.sown(data))]
+
+
+def _compiles(data: bytes) -> bool:
+    try:
+        compile(data, "<mutant>", "exec", dont_inherit=True)
+    except (SyntaxError, ValueError):
+        return False
+    return True
+
+
+class _Finder:
+    """One walk over a module."""
+
+    def __init__(self, data: bytes, name: str) -> None:
+        self._data = data
+        self._name = name
+        self._lines = [0]
+        for line in data.split(b"\n"):
+            self._lines.append(self._lines[-1] + len(line) + 1)
+
+    def module(self, tree: ast.Module) -> Iterator[Fault]:
+        """Yield the faults of all functions; what runs at import is mostly declarations."""
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not node.name.startswith(
+                "__repr"
+            ):
+                yield from self._block(node.body)
+
+    def _block(self, body: list[ast.stmt]) -> Iterator[Fault]:
+        for statement in body:
+            if isinstance(statement, (*_UNSEEN, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+                continue
+            inside: list[ast.stmt] = getattr(statement, "body", [])
+            last_line = inside[0].lineno - 1 if inside else statement.end_lineno or statement.lineno
+            lines = tuple(range(statement.lineno, max(statement.lineno, last_line) + 1))
+            for fault in self._statement(statement, alone=len(body) == 1):
+                yield replace(fault, lines=lines)
+            for inner in (getattr(statement, name, []) for name in ("body", "orelse", "finalbody")):
+                if inner and isinstance(inner[0], ast.stmt):
+                    yield from self._block(inner)
+            for handler in getattr(statement, "handlers", []):
+                yield from self._block(handler.body)
+
+    def _statement(self, node: ast.stmt, *, alone: bool) -> Iterator[Fault]:
+        called = isinstance(node, ast.Expr) and isinstance(node.value, ast.Call | ast.Await)
+        stored = isinstance(node, ast.Assign | ast.AugAssign) and isinstance(
+            node.targets[0] if isinstance(node, ast.Assign) else node.target, ast.Attribute | ast.Subscript
+        )
+        if called or stored or (isinstance(node, ast.Continue | ast.Break) and not alone):
+            yield self._fault(node, "statement dropped", "pass")
+        if isinstance(node, ast.If | ast.While) and not isinstance(node.test, ast.Constant):
+            yield self._fault(node.test, "condition turned", f"not ({self._text(node.test)})")
+        if (
+            isinstance(node, ast.Return)
+            and isinstance(node.value, ast.Constant)
+            and isinstance(node.value.value, bool)
+        ):
+            yield self._fault(node.value, "answer turned", str(not node.value.value))
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, ast.expr) and child is not getattr(node, "annotation", None):
+                for inner in ast.walk(child):
+                    yield from self._expression(inner)
+
+    def _expression(self, node: ast.AST) -> Iterator[Fault]:
+        if isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in _COMPARED:
+            operator = type(node.ops[0])
+            yield from self._between(
+                node.left, node.comparators[0], operator, _COMPARED[operator], "comparison"
+            )
+        elif isinstance(node, ast.BinOp) and type(node.op) in _SIGNS and not _of_texts(node):
+            yield from self._between(
+                node.left, node.right, type(node.op), _SIGNS[type(node.op)], "arithmetic"
+            )
+        elif isinstance(node, ast.BoolOp):
+            other = "or" if isinstance(node.op, ast.And) else "and"
+            yield from self._between(node.values[0], node.values[1], type(node.op), other, "connective")
+        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+            yield self._fault(node, "negation dropped", self._text(node.operand))
+        elif isinstance(node, ast.Constant) and isinstance(node.value, bool):
+            yield self._fault(node, f"truth in {self._line(node)}", repr(not node.value))
+        elif isinstance(node, ast.Constant) and isinstance(node.value, int | float):
+            yield self._fault(node, f"number in {self._line(node)}", repr(node.value + 1))
+
+    def _between(
+        self,
+        left: ast.expr,
+        right: ast.expr,
+        operator: type[ast.cmpop] | type[ast.operator] | type[ast.boolop],
+        now: str,
+        kind: str,
+    ) -> Iterator[Fault]:
+        """Yield the fault at the operator between two operands, parentheses and line breaks around it left alone."""
+        start, end = self._offsets(left)[1], self._offsets(right)[0]
+        gap, was = self._data[start:end].decode(), _TEXT[operator]
+        if gap.count(was) == 1 and "#" not in gap:
+            at = start + len(gap[: gap.index(was)].encode())
+            context = f"{self._text(left)[-30:]} {was} {self._text(right)[:30]}".replace("\n", " ")
+            line = self._data.count(b"\n", 0, at) + 1
+            yield Fault(self._name, line, at, at + len(was), f"{kind} in {context}", was, now)
+
+    def _fault(self, node: ast.expr | ast.stmt, kind: str, now: str) -> Fault:
+        start, end = self._offsets(node)
+        return Fault(self._name, node.lineno, start, end, kind, self._text(node), now)
+
+    def _offsets(self, node: ast.expr | ast.stmt) -> tuple[int, int]:
+        assert node.end_lineno is not None
+        assert node.end_col_offset is not None
+        return self._lines[node.lineno - 1] + node.col_offset, self._lines[
+            node.end_lineno - 1
+        ] + node.end_col_offset
+
+    def _line(self, node: ast.expr) -> str:
+        return self._data.split(b"\n")[node.lineno - 1].decode().strip()
+
+    def _text(self, node: ast.expr | ast.stmt) -> str:
+        start, end = self._offsets(node)
+        return self._data[start:end].decode()
+
+
+def _of_texts(node: ast.BinOp) -> bool:
+    return any(
+        isinstance(one, ast.JoinedStr) or (isinstance(one, ast.Constant) and isinstance(one.value, str))
+        for one in (node.left, node.right)
+    )

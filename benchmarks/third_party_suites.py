@@ -1,0 +1,229 @@
+"""Suites of other projects, as they are and with every statement of the project recorded: the same, test by test?
+
+`python benchmarks/third_party_suites.py toolz attrs` downloads their sdists (pinned, with digests), installs them in an
+environment that is thrown away, runs each suite twice and prints the tests whose outcome differs. Where some do, the
+plain suite runs up to three times more: an outcome that it has by itself, now and then, was not made by recording. The
+exit status is 1 where recording changed an outcome.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import os
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import venv
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parent.parent
+PLAIN_RUNS = 4  # at most
+TOOLS = ("pytest==8.4.2", "hypothesis==6.135.0")
+
+
+@dataclass(frozen=True)
+class Suite:
+    """A release: its sdist's digest, the folder of its package, what its tests need, and how they are run."""
+
+    version: str
+    sha256: str
+    package: str
+    tests: tuple[str, ...] = ("tests",)
+    needs: tuple[str, ...] = ()
+    options: tuple[str, ...] = ()
+
+
+SUITES = {
+    "toolz": Suite(
+        "1.0.0", "2c86e3d9a04798ac556793bced838816296a2f085017664e4995cb40a1047a02", "toolz", ("toolz", "tlz")
+    ),
+    "sortedcontainers": Suite(  # its sdist holds no tests, but examples in every docstring
+        "2.4.0",
+        "25caa5a06cc30b6b83d11423433f65d1f9d76c4c6a0c90e3379eaa43b9bfdb88",
+        "sortedcontainers",
+        ("sortedcontainers",),
+        options=("--doctest-modules",),
+    ),
+    "attrs": Suite(
+        "25.3.0",
+        "75d7cefc7fb576747b2c81b4442d4d4a1ce0900973527c011d1030fd3bf4af1b",
+        "src",
+        needs=("cloudpickle==3.1.1",),
+    ),
+    "more-itertools": Suite(
+        "10.7.0", "9fddd5403be01a94b204faadcff459ec3568cf110265d3c54323e1e866ad29d3", "more_itertools"
+    ),
+    "transitions": Suite(
+        "0.9.2",
+        "2f8490dbdbd419366cef1516032ab06d07ccb5839ef54905e842a472692d4204",
+        "transitions",
+        needs=("six==1.17.0", "dill==0.4.0", "mock==5.2.0"),
+        options=("-o", "addopts=", "--ignore=tests/test_codestyle.py"),  # of its sources, by other tools
+    ),
+    "jinja2": Suite(
+        "3.1.6",
+        "0137fb05990d35f1275a587e9aee6d56da821fc83491a0fb838183be43f66d6d",
+        "src/jinja2",
+        needs=("trio==0.30.0",),
+    ),
+    "click": Suite("8.2.1", "27c491cc05d968d271d5a1db13e3b5a184636d9d930f148c50b038f0d0646202", "src/click"),
+    "filterpy": Suite(
+        "1.4.5",
+        "4f2a4d39e4ea601b9ab42b2db08b5918a9538c168cff1c6895ae26646f3d73b1",
+        "filterpy",
+        ("filterpy",),
+        ("scipy==1.15.3", "matplotlib==3.10.3"),
+    ),
+    "pydantic": Suite(
+        "2.11.7",
+        "d989c3c6cb79469287b1569f7447a17848c998458d49ebe294e975b9baf0f0db",
+        "pydantic",
+        needs=(
+            "dirty-equals==0.9.0",
+            "jsonschema==4.24.0",
+            "pytz==2025.2",
+            "pytest-mock==3.14.1",
+            "email-validator",
+        ),
+        options=("--ignore=tests/benchmarks", "--ignore=tests/mypy", "--ignore=tests/test_docs.py"),
+    ),
+    "networkx": Suite(
+        "3.4.2",
+        "307c3669428c5362aab27c8a1260aa8f47c4e91d3891f48be0141738d8d053e1",
+        "networkx",
+        ("networkx",),
+        ("scipy==1.15.3",),
+    ),
+}
+Outcomes = dict[str, list[str]]
+
+
+def main() -> None:
+    """Run the suites that are named, or all of them."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("suites", nargs="*", help=f"of {', '.join(SUITES)} (default: all)")
+    parser.add_argument("--keep", type=Path, help="a folder for the results, test by test")
+    given = parser.parse_args()
+    unknown = sorted(set(given.suites) - set(SUITES))
+    if unknown:
+        parser.error(f"there is no suite {unknown[0]!r}: name some of {', '.join(SUITES)}")
+    print(
+        "| suite | tests | passed | files recorded | sites | events | CPU s plain, recorded | changed by recording |"
+    )
+    print("|---|---|---|---|---|---|---|---|", flush=True)
+    changed: list[str] = []
+    with tempfile.TemporaryDirectory(prefix="suites-") as folder:
+        python = environment(Path(folder))
+        for name in given.suites or SUITES:
+            changed += compared(name, Path(folder), python, given.keep)
+    if changed:
+        sys.exit("\n".join(["", "changed by recording:", *changed]))
+
+
+def environment(folder: Path) -> Path:
+    """Make an environment with this checkout in it and return its interpreter."""
+    venv.create(folder / "venv", with_pip=True)
+    python = folder / "venv" / "bin" / "python"
+    install(python, "--editable", f"{ROOT}[pytest]", *TOOLS)
+    return python
+
+
+def install(python: Path, *what: str) -> None:
+    """Install distributions. Ends the run with pip's words where it cannot."""
+    done = subprocess.run([python, "-m", "pip", "install", "-q", *what], capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(f"pip install {' '.join(what)}:\n{done.stderr[-2000:]}")
+
+
+def sources(name: str, folder: Path, python: Path) -> Path:
+    """Download a suite's sdist, compare its digest and return the folder it unpacks to."""
+    suite, store = SUITES[name], folder / name
+    install(python, f"{name}=={suite.version}", *suite.needs)  # its metadata, and what it needs
+    wanted = ("--no-deps", "--no-binary", ":all:", "-d", str(store), f"{name}=={suite.version}")
+    subprocess.run([python, "-m", "pip", "download", "-q", *wanted], check=True, capture_output=True)
+    (archive,) = store.iterdir()
+    found = hashlib.sha256(archive.read_bytes()).hexdigest()
+    if found != suite.sha256:
+        sys.exit(
+            f"{archive.name}: sha256 {found} is not the pinned {suite.sha256}; look at what was released."
+        )
+    shutil.unpack_archive(archive, store)
+    (unpacked,) = (path for path in store.iterdir() if path.is_dir())
+    return unpacked
+
+
+def compared(name: str, folder: Path, python: Path, keep: Path | None) -> list[str]:
+    """Print the row of a suite and return the tests that recording changed."""
+    suite, at = SUITES[name], sources(name, folder, python)
+    plain, plain_seconds = run(python, suite, at, folder, record=False)
+    recorded, recorded_seconds = run(python, suite, at, folder, record=True)
+    runs = [plain["tests"]]
+    changed = different(runs, recorded["tests"])
+    while changed and len(runs) < PLAIN_RUNS:
+        runs.append(run(python, suite, at, folder, record=False)[0]["tests"])
+        changed = different(runs, recorded["tests"])
+    restless = different([runs[0]], *runs[1:])
+    tests: Outcomes = plain["tests"]
+    passed = sum(outcome == ["setup passed", "call passed", "teardown passed"] for outcome in tests.values())
+    if not passed or not recorded["events"]:
+        sys.exit(
+            f"{name}: {passed} tests passed and {recorded['events']} events were recorded, which tells nothing."
+        )
+    note = f"{len(changed)}" + (f" ({len(restless)} differ between plain runs)" if restless else "")
+    print(
+        f"| {name} {suite.version} | {len(tests):,} | {passed:,} | {recorded['files']} | {recorded['sites']:,} | "
+        f"{recorded['events']:,} | {plain_seconds:.0f}, {recorded_seconds:.0f} | {note} |",
+        flush=True,
+    )
+    if keep is not None:
+        keep.mkdir(parents=True, exist_ok=True)
+        (keep / f"{name}.json").write_text(json.dumps({"plain": plain, "recorded": recorded}, indent=1))
+    return [f"{one}: {tests.get(one)} → {recorded['tests'].get(one)}" for one in changed]
+
+
+def different(runs: list[Outcomes], *others: Outcomes) -> list[str]:
+    """Return the tests that have an outcome in `others` which they had in none of the runs."""
+    names = {name for one in (*runs, *others) for name in one}
+    return sorted(
+        name
+        for name in names
+        if any(other.get(name) not in [one.get(name) for one in runs] for other in others)
+    )
+
+
+def run(python: Path, suite: Suite, at: Path, folder: Path, *, record: bool) -> tuple[dict[str, Any], float]:
+    """Run a suite; return what became of its tests and the CPU seconds it took."""
+    result = folder / "result.json"
+    result.unlink(missing_ok=True)
+    package = at / suite.package
+    importable = package if suite.package == "src" else package.parent
+    surroundings = {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join([str(importable), str(ROOT / "benchmarks")]),
+        "PYTHONHASHSEED": "0",
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "MPLBACKEND": "agg",
+        "SUITE_RECORDED": str(package) if record else "",
+        "SUITE_RESULT": str(result),
+    }
+    tests = [test for test in suite.tests if (at / test).exists()]
+    plugins = ("-p", "suite_recorder", "-p", "no:cacheprovider", "-p", "no:tarl")
+    command = [str(python), "-m", "pytest", "-q", *plugins, *suite.options, *tests]
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run(command, cwd=at, env=surroundings, capture_output=True, text=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if not result.exists():
+        sys.exit(f"{at.name}: pytest ended without a result:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+    spent = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    outcome: dict[str, Any] = json.loads(result.read_text())
+    return outcome, spent
+
+
+if __name__ == "__main__":
+    main()

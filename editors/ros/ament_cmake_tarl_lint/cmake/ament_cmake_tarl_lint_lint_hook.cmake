@@ -1,0 +1,5 @@
+file(GLOB_RECURSE _tarl_lint_files FOLLOW_SYMLINKS "*.py")
+if(_tarl_lint_files)
+  message(STATUS "Added test 'tarl_lint' to find new flows between topics")
+  ament_tarl_lint()
+endif()

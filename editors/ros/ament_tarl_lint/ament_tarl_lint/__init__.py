@@ -1,0 +1,1 @@
+"""Run tarl-lint as a linter of an ament package."""

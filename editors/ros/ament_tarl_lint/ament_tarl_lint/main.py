@@ -1,0 +1,35 @@
+"""The command `ament_tarl_lint`: tarl-lint with a result file where colcon looks for it."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Lint paths, the working directory by default; return 0 where nothing is new, 1 for findings, 2 for mistakes.
+
+    Options that are not known here are those of tarl-lint, such as `--fail-on implicit`.
+    """
+    parser = argparse.ArgumentParser(prog="ament_tarl_lint", description=main.__doc__, allow_abbrev=False)
+    parser.add_argument("--xunit-file", type=Path, help="write the result there in JUnit's format, too")
+    asked, others = parser.parse_known_args(sys.argv[1:] if argv is None else argv)
+    try:
+        from tarl_lint.cli import main as lint
+    except ImportError:
+        print(
+            "ament_tarl_lint: tarl is not installed for this Python: run pip install tarl.", file=sys.stderr
+        )
+        return 2
+    if asked.xunit_file is not None:
+        asked.xunit_file.parent.mkdir(parents=True, exist_ok=True)
+        written = lint([*others, "--format", "junit", "--output-file", str(asked.xunit_file)])
+        if written not in (0, 1):
+            return written
+    return lint(others)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,40 @@
+"""Reading the command line of `tarl`: a mistake shows the help of the command, and the closest word that is known."""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import re
+import sys
+from collections.abc import Sequence
+from typing import NoReturn
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser of a command, or of the words before it."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print the help and a sentence, and exit with 2."""
+        self.print_help(sys.stderr)
+        self.exit(2, f"\n{self.prog}: {sentence(message)}\n")
+
+    def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
+        """Read the words; those that are left over are a mistake in the command, not in `tarl`."""
+        found, extra = self.parse_known_args(args)
+        if extra:
+            command: Parser = getattr(found, "parser", self)
+            command.error(f"unrecognized arguments: {' '.join(extra)}")
+        return found
+
+
+def sentence(message: str) -> str:
+    """Return argparse's message as a sentence that says what to do."""
+    if wrong := re.match(r"argument COMMAND: invalid choice: '(.*)' \(choose from (.*)\)$", message):
+        known = re.findall(r"[\w-]+", wrong[2])
+        close = difflib.get_close_matches(wrong[1], known, 1)
+        return f"There is no command {wrong[1]!r}" + (f"; did you mean {close[0]!r}?" if close else ".")
+    if missing := re.match(r"the following arguments are required: (.*)$", message):
+        return f"{missing[1]} is missing."
+    if extra := re.match(r"unrecognized arguments: (.*)$", message):
+        return f"It does not know {extra[1]!r}."
+    return f"{message[:1].upper()}{message[1:]}."

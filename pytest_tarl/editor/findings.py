@@ -1,0 +1,91 @@
+"""What the linter found as the protocol has it: diagnostics with the statements of a flow, and code lenses."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+from lsprotocol import types
+
+from pytest_tarl.editor.positions import Places
+from tarl_lint.editing import Result
+from tarl_lint.model import Finding, Flow, Span
+
+SOURCE = "tarl-lint"
+_HAZARD = "TARL2"
+
+
+def diagnostics(result: Result, places: Places) -> dict[str, list[types.Diagnostic]]:
+    """Return the diagnostics of each file that was read, by its path. Accepted findings are hints."""
+    found: dict[str, list[types.Diagnostic]] = {path: [] for path in result.texts}
+    for finding in result.findings:
+        found.setdefault(finding.span.path, []).append(_diagnostic(finding, places))
+    for error in result.errors:
+        start = types.Position(max(error.line - 1, 0), 0)
+        end = places.end_of_line(error.path, error.line)
+        found.setdefault(error.path, []).append(
+            types.Diagnostic(
+                types.Range(start, end if end.line == start.line else start),
+                error.message,
+                severity=types.DiagnosticSeverity.Error,
+                source=SOURCE,
+                code="TARL001",
+            )
+        )
+    return found
+
+
+def _diagnostic(finding: Finding, places: Places) -> types.Diagnostic:
+    return types.Diagnostic(
+        places.range(finding.span),
+        finding.message,
+        severity=_severity(finding),
+        source=SOURCE,
+        code=finding.code,
+        related_information=_taint_list(finding.flow, places) if finding.flow else None,
+        data={"fingerprint": finding.fingerprint, "code": finding.code, "new": finding.status == "new"},
+    )
+
+
+def _severity(finding: Finding) -> types.DiagnosticSeverity:
+    if finding.status == "accepted":
+        return types.DiagnosticSeverity.Hint
+    if finding.code.startswith(_HAZARD):
+        return types.DiagnosticSeverity.Warning
+    return types.DiagnosticSeverity.Information
+
+
+def _taint_list(flow: Flow, places: Places) -> list[types.DiagnosticRelatedInformation]:
+    """Return the statements of a flow: the shortest chain where there is one, with what each of them does."""
+    chosen = [flow.steps[at] for at in flow.chain] or list(flow.steps)
+    return [
+        types.DiagnosticRelatedInformation(places.location(step.span), f"{step.role}: {step.code}")
+        for step in chosen
+    ]
+
+
+def lenses(result: Result, path: str, places: Places) -> list[types.CodeLens]:
+    """Return a line above each publish call of a file: whose data it sends, and what decides about it."""
+    by_call: dict[Span, list[Flow]] = defaultdict(list)
+    for finding in (*result.findings, *result.silenced):
+        if finding.flow is not None and finding.flow.sink.span.path == path:
+            by_call[finding.flow.sink.span].append(finding.flow)
+    return [
+        types.CodeLens(places.range(span), types.Command(title(flows), ""))
+        for span, flows in sorted(by_call.items())
+    ]
+
+
+def title(flows: Sequence[Flow]) -> str:
+    """Return a lens: `data of /odom, decided by /estop`."""
+    words = {"explicit": "data of", "implicit": "decided by"}
+    parts = []
+    for kind, word in words.items():
+        names = sorted({_name(flow) for flow in flows if flow.kind == kind})
+        if names:
+            parts.append(f"{word} {', '.join(names)}")
+    return ", ".join(parts)
+
+
+def _name(flow: Flow) -> str:
+    return " or ".join(flow.source.topics) or f"a topic heard by {flow.source.callback or 'a call'}"

@@ -1,0 +1,46 @@
+"""What the plugin and the commands need beyond the linter, and what to say where that is not installed."""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec
+
+NEEDED = ("greenlet", "libcst", "numpy", "pytest")
+SERVER = ("pygls",)
+
+
+def missing_packages() -> list[str]:
+    """Return the packages of the extra `pytest` that are not installed, by name. Nothing is imported."""
+    return [name for name in NEEDED if find_spec(name) is None]
+
+
+def missing_extra(what: str) -> str | None:
+    """Return a sentence saying what `what` needs of this environment, or None where all of it is there."""
+    return _sentence(what, missing_packages(), "pytest") or no_lock(what)
+
+
+def missing_server(what: str) -> str | None:
+    """Return a sentence saying that `what` needs the extra `lsp`, or None where it is installed."""
+    return _sentence(what, [name for name in SERVER if find_spec(name) is None], "lsp")
+
+
+def _sentence(what: str, missing: list[str], extra: str) -> str | None:
+    if not missing:
+        return None
+    verb = "is" if len(missing) == 1 else "are"
+    return f'{what} needs {_listed(missing)}, which {verb} not installed: run pip install "tarl[{extra}]".'
+
+
+def no_lock(what: str) -> str | None:
+    """Return a sentence where Python runs without its global interpreter lock (3.13t, 3.14t), else None.
+
+    Recording relies on it: events are appended by one thread while another one takes them off.
+    """
+    enabled = getattr(sys, "_is_gil_enabled", None)  # from 3.13 on
+    if enabled is None or enabled():
+        return None
+    return f"{what} needs the global interpreter lock, which is off in this Python: set PYTHON_GIL=1 and run it again."
+
+
+def _listed(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

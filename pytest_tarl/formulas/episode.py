@@ -1,0 +1,77 @@
+"""The formulas of an episode that runs: its signals as they are given, and the verdict when its body is over."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from pytest_tarl.errors import RequirementError, SettingsError, TarlError
+from pytest_tarl.formulas.declared import Requirements, check_texts
+from pytest_tarl.formulas.judging import Judge, Judged
+from pytest_tarl.sensors import Sensor
+
+
+class EpisodeFormulas:
+    """What is required of one episode; `now` returns its virtual time in ns."""
+
+    def __init__(self, requirements: Requirements, sensors: Sequence[Sensor], now: Callable[[], int]) -> None:
+        self.judged: tuple[Judged, ...] = ()
+        self._requirements = requirements
+        self._sensors = sensors
+        self._now = now
+        followed = requirements.followed
+        self._judge = (
+            Judge(requirements.names, requirements.formulas, requirements.said) if followed else None
+        )
+
+    def give(self, name: str, value: object) -> None:
+        """Let a signal have a value from now on. Raises SettingsError for what is no number."""
+        if self._judge is not None:
+            self._judge.give(name, value, self._now())
+
+    def require(self, formula: str, *, begun: bool) -> None:
+        """Require a formula; `begun` tells whether signals were given already. Raises SettingsError."""
+        check_texts("tarl.require", formula, self._sensors)
+        if self._judge is None:
+            if begun or self._now():
+                raise SettingsError(
+                    "tarl.require: the episode has begun and its signals were not followed until now: call it before "
+                    "the world moves, or say requires=[] in the marker."
+                )
+            self._judge = Judge(self._requirements.names, (), self._requirements.said)
+        self._judge.require(formula)
+
+    def stepped(self) -> bool:
+        """Close a step; return whether formulas give its reward, which is known when the episode is over."""
+        if self._judge is None:
+            return False
+        self._judge.steps.append(self._now())
+        return self._requirements.rewarding
+
+    def conclude(self, *, whole: bool, alone: bool) -> None:
+        """Judge the formulas of an episode whose body is over; only a `whole` one can fail by them.
+
+        `alone` tells whether it is the only episode of a plain run, which must be long enough for every formula.
+        Raises RequirementError where one is violated.
+        """
+        if self._judge is None:
+            return
+        try:
+            self.judged = self._judge.conclude(self._now())
+        except TarlError:
+            if whole:
+                raise
+            return
+        if not whole:
+            return
+        too_short = self._judge.unjudged(self._now()) if alone else ""
+        if too_short:
+            raise SettingsError(too_short)
+        violation = self._judge.violation(self.judged)
+        if violation:
+            raise RequirementError(violation)
+
+    def rewards(self) -> list[float] | None:
+        """Return the reward of each step by the formulas; None where the test gives it."""
+        if not self._requirements.rewarding or self._judge is None:
+            return None
+        return self._judge.rewards(self._now(), self._requirements.cap)

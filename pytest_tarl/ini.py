@@ -1,0 +1,108 @@
+"""The flags of TARL as options of an ini file: `--tarl-alpha=0.01` is `tarl_alpha = 0.01`. The command line wins."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.flags import FLAGS, Flag
+
+SWITCHES = {
+    "true": True,
+    "yes": True,
+    "on": True,
+    "1": True,
+    "false": False,
+    "no": False,
+    "off": False,
+    "0": False,
+}
+MODES = ("record", "online", "repair")
+# What only makes sense in some modes: an ini file may hold it, and a run in another mode does without it
+WITHIN: Mapping[str, tuple[str, ...]] = {
+    "drift": ("record", "online"),
+    "search": ("repair",),
+    "localize": ("repair",),
+    "strict": ("online",),
+    "holm": ("online",),
+    "log": ("online",),
+    "bag": ("online",),
+}
+
+
+def declare(parser: pytest.Parser) -> None:
+    """Declare an ini option for each flag."""
+    for flag in FLAGS:
+        about = f"as {flag.name}: {flag.help}"
+        if flag.many:
+            parser.addini(ini_name(flag), about, "linelist", None)
+        else:
+            parser.addini(ini_name(flag), about, "string", None)
+
+
+def ini_name(flag: Flag) -> str:
+    """Return the name of a flag in an ini file."""
+    return flag.name.removeprefix("--").replace("-", "_")
+
+
+def mode_asked(config: pytest.Config) -> bool:
+    """Tell whether the command line asks for something of ours, or the ini file for a mode.
+
+    Raises SettingsError where the ini file holds no such value.
+    """
+    if any(config.getoption(flag.name) for flag in FLAGS if flag.asks):
+        return True
+    return any(_from_ini(config, flag) for flag in FLAGS if flag.key in MODES)
+
+
+def value_of(config: pytest.Config, key: str) -> Any:
+    """Return the value of one flag: as typed, else as in the ini file, else its default. Raises SettingsError."""
+    flag = next(flag for flag in FLAGS if flag.key == key)
+    typed = config.getoption(flag.name)
+    if typed not in (None, False):
+        return typed
+    found = _from_ini(config, flag)
+    return found if found is not None else (False if flag.metavar is None else flag.default)
+
+
+def values(config: pytest.Config) -> tuple[dict[str, Any], list[Flag]]:
+    """Return the value of every flag by its key, and the flags whose value is from the ini file.
+
+    Raises SettingsError.
+    """
+    found = {flag.key: value_of(config, flag.key) for flag in FLAGS}
+    chosen = [flag for flag in FLAGS if config.getoption(flag.name) in (None, False)]
+    for flag in chosen:
+        if flag.key in WITHIN and not any(found[mode] for mode in WITHIN[flag.key]):
+            found[flag.key] = False if flag.metavar is None else flag.default
+    return found, [flag for flag in chosen if found[flag.key] not in (None, False, flag.default)]
+
+
+def _from_ini(config: pytest.Config, flag: Flag) -> Any:
+    name = ini_name(flag)
+    try:
+        text = config.getini(name)
+    except (TypeError, ValueError) as error:  # a value of TOML's own types that is another one
+        raise SettingsError(f"{config.inipath}: {name}: {error}") from None
+    if text is None or text == []:
+        return None
+    if flag.many:
+        return [_resolved(config, flag, line) for line in text]
+    text = text.strip()
+    if flag.metavar is None:
+        if text.lower() not in SWITCHES:
+            raise SettingsError(f"{config.inipath}: {name}: it must be true or false, got {text!r}.")
+        return SWITCHES[text.lower()]
+    try:
+        return _resolved(config, flag, flag.type(text))
+    except ValueError:
+        what = "a whole number" if flag.type is int else "a number"
+        raise SettingsError(f"{config.inipath}: {name}: it must be {what}, got {text!r}.") from None
+
+
+def _resolved(config: pytest.Config, flag: Flag, value: Any) -> Any:
+    """Let the path of a file begin where the ini file is."""
+    return str(config.rootpath / value) if flag.metavar == "FILE" else value

@@ -1,0 +1,152 @@
+"""Missions of the records of one log, as they come."""
+
+from __future__ import annotations
+
+import json
+from binascii import a2b_base64
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pytest_tarl.monitoring.blocks import AtOnce, Block, Spot, end_of
+from pytest_tarl.monitoring.mission import Mission, Progress, Steps, Table, advanced
+from pytest_tarl.observing.frames import Record
+from pytest_tarl.sensors import Cell
+
+LATEST = 1e11  # seconds since 1970: no clock of a robot is further
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What a log must have been written with to be of one kind with the fixture."""
+
+    test: str
+    sensors: tuple[str, ...]
+    digest: str
+    number: Mapping[Cell, int]
+
+    def problem(self, start: Record, path: Path) -> str:
+        """Return why missions after this record are not comparable, as a sentence; empty where they are."""
+        names = start.get("sensors", [])
+        if [*names] != [*self.sensors]:
+            return (
+                f"{path} was written with the sensors {', '.join(map(str, names))}, the fixture of {self.test} has "
+                f"{', '.join(self.sensors)}: its missions are not counted. Watch it with its own fixture."
+            )
+        if start.get("test", self.test) != self.test:
+            return (
+                f"{path} was written for the fixture of {start['test']}, not of {self.test}: its missions are not "
+                "counted. Watch it with its own fixture."
+            )
+        if start.get("bins", self.digest) != self.digest:
+            return (
+                f"{path} was written when the sensors of {self.test} had other bins: its missions are not counted. "
+                "Observe again with the fixture as it is now."
+            )
+        return ""
+
+
+@dataclass
+class Assembly:
+    """What was read of an open log, up to `place`; a mission that has not ended is kept for the next time."""
+
+    expected: Expected
+    path: Path
+    begun: Progress  # how far it had been read when it was opened, and whether its missions count now
+    place: int
+    missions: int = 0
+    unfinished: int = 0
+    _last: Spot | None = None  # the record with which the latest mission ended, or what else is done with
+    _latest: Spot | None = None  # the record that was read last
+    _mission: tuple[float, list[Steps]] | None = None  # when the one began that has not ended, and its steps
+    _table: Table = field(default_factory=lambda: Table([], np.array([-1]), ()))
+    _text: bytes = (
+        b""  # the cells of the table as they stand in the log, where they were read from a mission at once
+    )
+
+    @property
+    def progress(self) -> Progress:
+        """Return how far the log was read with whole missions."""
+        return advanced(self.begun, self._last, self.missions, self.unfinished)
+
+    def of_block(self, block: Block) -> Iterator[Mission]:
+        """Yield the missions that end with a record of the block; it is left at a record that is none."""
+        while block.left():
+            if self._mission is None and self._latest == self._last and not self.begun.refused:
+                for found in block.at_once():
+                    yield self._at_once(found)
+                if not block.left():
+                    return
+            try:
+                record = block.record()
+            except ValueError:
+                return
+            before, self._latest = self._latest, block.spot()
+            self.place = end_of(self._latest)
+            if record["kind"] == "steps":
+                if self._mission is not None:
+                    self._mission[1].append(
+                        self._steps(record["cells"], record["step_cell"], record["reward"])
+                    )
+            elif record["kind"] == "end" and self._mission is not None and not self.begun.refused:
+                time, steps = self._mission
+                yield self._ended(bool(record["passed"]), time, steps, self._latest)
+            else:
+                self._take(record, before)
+
+    def _at_once(self, found: AtOnce) -> Mission:
+        time, cells, cell, reward, passed, spot = found
+        self._latest, self.place = spot, end_of(spot)
+        if cells == self._text:
+            steps = self._table, a2b_base64(cell), a2b_base64(reward)
+        else:
+            steps = self._steps(json.loads(cells), cell, reward)
+            self._text = cells
+        return self._ended(passed == b"true", _time(time), [steps], spot)
+
+    def _ended(self, passed: bool, time: float, steps: list[Steps], spot: Spot) -> Mission:
+        """Return a mission that ends with the record at this spot."""
+        self._mission, self._last, self.missions = None, spot, self.missions + 1
+        new = _new(steps) if any(table.new for table, _, _ in steps) else ()
+        return Mission(passed, time, steps, new, self.begun, spot, self.missions, self.unfinished)
+
+    def _take(self, record: Record, before: Spot | None) -> None:
+        """Take a record with which no mission ends that counts; `before` is the record before it, if it was read."""
+        kind, last, refused = record["kind"], self._latest, self.begun.refused
+        torn, self._mission = self._mission is not None and kind != "end", None
+        if kind == "mission":
+            self._mission = _time(record["time"]), []
+            if not torn and (before is None or before == self._last):
+                return  # it begins where the last one ended
+            last = before
+        elif kind == "start":
+            self.begun = self.begun._replace(refused=self.expected.problem(record, self.path))
+        self._last = last
+        self.unfinished += torn and not refused
+
+    def _steps(self, cells: list[Any], cell: str | bytes, reward: str | bytes) -> Steps:
+        if cells != self._table.cells:
+            number = self.expected.number
+            named = [tuple(one) for one in cells]
+            rows = np.array([*(number.get(one, len(number)) for one in named), -1], np.int64)
+            new = [None if one in number else one for one in named]
+            self._table, self._text = Table(cells, rows, [*new, None] if any(new) else ()), b""
+        return self._table, a2b_base64(cell), a2b_base64(reward)
+
+
+def _new(steps: Sequence[Steps]) -> tuple[Cell, ...]:
+    found: set[Cell] = set()
+    for table, cell, _ in steps:
+        if table.new:
+            here = set(np.frombuffer(cell, "<i4").tolist())
+            found.update(one for place in here if (one := table.new[place]) is not None)
+    return tuple(sorted(found))
+
+
+def _time(told: float | bytes) -> float:
+    """Return seconds since 1970; 0 where a clock was wrong."""
+    time = float(told)
+    return time if 0.0 <= time < LATEST else 0.0

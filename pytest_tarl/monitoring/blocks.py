@@ -1,0 +1,99 @@
+"""Whole records of a log, many at a time: what is read is the same wherever a block ends."""
+
+from __future__ import annotations
+
+import json
+import re
+import zlib
+from collections.abc import Iterator
+from typing import BinaryIO
+
+from pytest_tarl.observing.frames import HEAD, LARGEST, Record, unpack_head
+
+BLOCK = 1 << 15  # bytes that are read together: some two hundred records
+_DECODED = json.JSONDecoder().raw_decode
+_TEXTS = b"".join(rb'"%s":"[^"\n]*",' % name for name in (b"site", b"flow", b"cell", b"step", b"thread"))
+# A mission as an observer writes it that found time to write only once: the records mission, steps and end
+_AT_ONCE = re.compile(
+    rb'\{"kind":"mission","time":([0-9.e+-]+)\}\n'
+    rb'\{"kind":"steps","cells":(\[[^"\n]*\]),'
+    + _TEXTS
+    + rb'"step_cell":"([^"\n]*)","reward":"([^"\n]*)",.*\}\n'
+    rb'\{"kind":"end","passed":(true|false),.*\}\n'
+)
+RECORDS = 3  # of such a mission
+
+
+Spot = tuple[int, int, int]  # where a record begins in its log, and the length and checksum of its payload
+
+
+# A mission that was written at once: its time and cells as JSON, cells and rewards of its steps as base64, whether it
+# passed as JSON, and the spot of its last record
+AtOnce = tuple[bytes, bytes, bytes, bytes, bytes, Spot]
+
+
+class Block:
+    """Consecutive records of a log, read one after the other or, where a mission was written at once, together."""
+
+    def __init__(self, texts: list[bytes], spots: list[Spot]) -> None:
+        self._texts = texts
+        self._spots = spots
+        self._number = 0  # of the record that comes next
+        joined = b"\n".join((*texts, b""))
+        self._lines = joined if joined.count(b"\n") == len(texts) else b""  # else some record has more lines
+        self._at = 0
+
+    def left(self) -> bool:
+        """Tell whether there is a record that was not taken."""
+        return self._number < len(self._texts)
+
+    def at_once(self) -> Iterator[AtOnce]:
+        """Take the missions that come next, up to the first one that was not written at once."""
+        match, lines = _AT_ONCE.match, self._lines
+        while (found := match(lines, self._at)) is not None:
+            self._at = found.end()
+            self._number += RECORDS
+            time, cells, cell, reward, passed = found.groups()
+            yield time, cells, cell, reward, passed, self._spots[self._number - 1]
+
+    def record(self) -> Record:
+        """Take the next record. Raises ValueError where it is none."""
+        text = self._texts[self._number]
+        found: Record = _DECODED(text.decode())[0]
+        self._number += 1
+        self._at += len(text) + 1
+        return found
+
+    def spot(self) -> Spot:
+        """Return where the record that was taken last is."""
+        return self._spots[self._number - 1]
+
+
+def end_of(spot: Spot) -> int:
+    """Return where the record after this one begins."""
+    begin, length, _ = spot
+    return begin + HEAD + length
+
+
+def next_block(file: BinaryIO, place: int, size: int = BLOCK) -> Block:
+    """Return the records from `place` on, of about `size` bytes; none where no whole one is there."""
+    file.seek(place)
+    data = file.read(max(size, HEAD))
+    texts: list[bytes] = []
+    spots: list[Spot] = []
+    at, most = 0, len(data) - HEAD
+    while at <= most:
+        length, checksum = unpack_head(data, at)
+        begin = at + HEAD
+        if length > most - at and not spots and length <= LARGEST:
+            data += file.read(begin + length - len(data))  # one record that is larger than a block
+        payload = data[begin : begin + length]
+        if len(payload) < length or length > LARGEST or zlib.crc32(payload) != checksum:
+            break
+        try:
+            texts.append(zlib.decompress(payload))
+        except zlib.error:
+            break
+        spots.append((place + at, length, checksum))
+        at = begin + length
+    return Block(texts, spots)

@@ -1,0 +1,134 @@
+"""What the writer's process makes of the messages of an observer: records of the log.
+
+Columns, base64, JSON, compression and syncing happen here, so that the node's process never waits for them.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pytest_tarl.instrumentation.trace import Floats, Ints
+from pytest_tarl.observing.frames import LogFile, Record
+from pytest_tarl.observing.stream import Chunk, Cut, chunk, joined
+from pytest_tarl.sensors import Cell
+
+MOST_HELD = 100_000  # events of a record, roughly, so that memory stays bounded
+
+
+@dataclass(frozen=True)
+class Rotation:
+    """When a log is set aside: before a mission begins, once it holds `size` bytes; `keep` 0 keeps all."""
+
+    size: int = 0  # 0: never
+    keep: int = 0
+
+
+class Writer:
+    """Turns messages into records. A message is a tuple: what it tells, then its parts (`take`)."""
+
+    def __init__(self, log: LogFile, about: Mapping[str, Any], rotation: Rotation) -> None:
+        self._log = log
+        self._about = about
+        self._rotation = rotation
+        self._cells: list[Cell] = []
+        self._chunks: list[Chunk] = []  # of the running mission, not written yet
+        self._readings: list[list[Any]] = []
+        self._times: list[float] = []
+        self._changes: list[list[Any]] = []
+        self._following = False
+        self._dropped = 0
+        self._held = 0  # events of the chunks
+
+    def take(self, message: tuple[Any, ...]) -> None:
+        """Take one message; `sync` writes down what belongs to the running mission."""
+        what, *parts = message
+        getattr(self, f"_take_{what}")(*parts)
+
+    def sync(self) -> None:
+        """Write what has come, and have it survive a power cut."""
+        self._write_steps()
+        self._log.sync()
+
+    def close(self) -> None:
+        """Sync, then close."""
+        self._write_steps()
+        self._log.close()
+
+    def _take_start(self, time: float) -> None:
+        self._log.append({"kind": "start", "time": time, **self._about})
+        self._log.sync()
+
+    def _take_cells(self, cells: list[Cell]) -> None:
+        self._cells += map(tuple, cells)
+
+    def _take_steps(
+        self,
+        cut: tuple[Any, ...],
+        readings: list[list[Any]],
+        dropped: int,
+        followed: tuple[list[float], list[list[Any]]] | None,
+    ) -> None:
+        self._chunks.append(chunk(Cut(*cut), self._cells))
+        self._held += self._chunks[-1].site.size
+        self._readings += readings
+        self._dropped = dropped
+        if followed is not None:
+            self._following = True
+            self._times += followed[0]
+            self._changes += followed[1]
+        if self._held > MOST_HELD:
+            self._write_steps()
+
+    def _take_mission(self, time: float) -> None:
+        self._write_steps()
+        if self._rotation.size and self._log.size >= self._rotation.size:
+            self._log.set_aside(self._rotation.keep)
+            self._take_start(time)
+        self._log.append({"kind": "mission", "time": time})
+
+    def _take_end(self, record: Record) -> None:
+        self._write_steps()
+        self._log.append({"kind": "end", **record})
+
+    def _write_steps(self) -> None:
+        if not self._chunks:
+            return
+        record = steps_record(joined(self._chunks), self._readings, self._dropped)
+        if self._following:
+            record |= {"times": self._times, "changes": self._changes}
+        self._log.append(record)
+        self._chunks, self._readings, self._times, self._changes = [], [], [], []
+        self._held = 0
+
+
+def steps_record(one: Chunk, readings: list[list[Any]], dropped: int) -> Record:
+    """Return the record of some steps; a watch reads those whose fields come in this order fastest."""
+    return {
+        "kind": "steps",
+        "cells": [list(cell) for cell in one.cells],
+        "site": packed(one.site),
+        "flow": packed(one.flow),
+        "cell": packed(one.cell),
+        "step": packed(one.step),
+        "thread": packed(one.thread),
+        "step_cell": packed(one.step_cell),
+        "reward": packed(one.reward),
+        "readings": readings,
+        "dropped": dropped,
+    }
+
+
+def packed(column: Ints | Floats) -> str:
+    """Return a column as text: base64 of its little-endian bytes."""
+    little = column.astype(column.dtype.newbyteorder("<"))
+    return base64.b64encode(little.tobytes()).decode()
+
+
+def unpacked(text: str, kind: str) -> Any:
+    """Return a column from its text; `kind` is numpy's name of its type."""
+    return np.frombuffer(base64.b64decode(text), np.dtype(kind).newbyteorder("<")).astype(kind)

@@ -1,0 +1,85 @@
+"""The writer's process: messages of an observer from standard input to its log.
+
+It ends when it is told to, or when the node's process is gone, however that came; what had been sent is written.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import marshal
+import os
+import select
+import signal
+import struct
+import sys
+from pathlib import Path
+from time import monotonic
+from typing import Any
+
+from pytest_tarl.errors import LogError
+from pytest_tarl.observing.frames import LogFile
+from pytest_tarl.observing.writer import Rotation, Writer
+
+PERIOD = 0.25  # seconds between two syncs: what a power cut can cost at most, but for the writing itself
+LENGTH = struct.Struct("<I")  # of a message, in bytes; 0 says that there are no more
+READY = "ready"
+NICER = 5  # the node's own threads go first
+_PIECE = 1 << 20
+
+
+def main() -> int:
+    """Run; say on standard output that it is ready, or what is in the way."""
+    for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(one, signal.SIG_IGN)  # the node decides when it is over
+    with contextlib.suppress(OSError):
+        os.nice(NICER)
+    order: dict[str, Any] = json.loads(sys.argv[1])
+    try:
+        writer = Writer(LogFile(Path(order["log"])), order["about"], Rotation(*order["rotation"]))
+        print(READY, flush=True)
+        _serve(writer)
+    except LogError as problem:
+        print(problem, flush=True)
+        return 1
+    except OSError as problem:
+        print(
+            f"{order['log']} cannot be written any more ({problem.strerror}): what came after is lost. Make room, "
+            "or name another place with --log.",
+            flush=True,
+        )
+        return 1
+    return 0
+
+
+def _serve(writer: Writer) -> None:
+    source, waiting, due, over = sys.stdin.fileno(), bytearray(), monotonic() + PERIOD, False
+    while not over:
+        if select.select([source], [], [], max(0.0, due - monotonic()))[0]:
+            piece = os.read(source, _PIECE)
+            waiting += piece
+            over = not piece or _take(writer, waiting)
+        if monotonic() >= due:
+            writer.sync()
+            due = monotonic() + PERIOD
+    writer.close()
+
+
+def _take(writer: Writer, waiting: bytearray) -> bool:
+    """Take the whole messages off the front; tell whether the last one has come."""
+    at = 0
+    while len(waiting) - at >= LENGTH.size:
+        (length,) = LENGTH.unpack_from(waiting, at)
+        if not length:
+            return True
+        end = at + LENGTH.size + length
+        if len(waiting) < end:
+            break
+        writer.take(marshal.loads(waiting[at + LENGTH.size : end]))  # noqa: S302 - from the process that began this one
+        at = end
+    del waiting[:at]
+    return False
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,55 @@
+"""A line on the terminal that says how far the episodes are, how fast they run, and how long they will take.
+
+It is shown at once and at most ten times a second. The clock decides what is shown, never what is computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from time import monotonic
+
+INTERVAL = 0.1  # seconds between two updates
+SETTLED = 0.5  # seconds after which a rate is worth showing
+
+
+@dataclass
+class ProgressLine:
+    """Episodes done of those planned, phase by phase; `write` replaces the line that was written before."""
+
+    name: str
+    write: Callable[[str], None]
+    clock: Callable[[], float] = monotonic
+    done: int = 0
+    total: int = 0
+    _phase: str = ""
+    _begun: tuple[float, int] = field(default=(0.0, 0))  # when the phase began, and what was done then
+    _shown: float = 0.0
+
+    def __call__(self, done: int, total: int, phase: str) -> None:
+        """Show that so many episodes of a phase are done."""
+        now = self.clock()
+        fresh = phase != self._phase or done < self.done
+        if fresh:
+            self._phase, self._begun = phase, (now, done)
+        self.done, self.total = done, total
+        if fresh or now - self._shown >= INTERVAL:
+            self._shown = now
+            self.write(f"{self.name} {phase} {done}/{total}{self._pace(now)} ")
+
+    def _pace(self, now: float) -> str:
+        seconds, episodes = now - self._begun[0], self.done - self._begun[1]
+        if seconds < SETTLED or episodes < 1:
+            return ""
+        rate = episodes / seconds
+        return f", {rate:.3g}/s, {duration((self.total - self.done) / rate)} left"
+
+
+def duration(seconds: float) -> str:
+    """Return a time in the two units that matter: `8 s`, `3 min 20 s`, `2 h 5 min`."""
+    whole = max(0, round(seconds))
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"

@@ -1,0 +1,22 @@
+"""Which subscriptions of real rclpy hold a message that nobody has taken yet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from typing import Any
+
+
+def silent(rclpy: Any, context: Any, subscriptions: Sequence[Any]) -> list[Any]:
+    """Return those of the subscriptions in which no message has arrived; nothing is taken."""
+    make = rclpy.impl.implementation_singleton.rclpy_implementation.WaitSet
+    with ExitStack() as open_:
+        for one in (*(subscription.handle for subscription in subscriptions), context.handle):
+            open_.enter_context(one)
+        waiting = make(len(subscriptions), 0, 0, 0, 0, 0, context.handle)
+        waiting.clear_entities()
+        for subscription in subscriptions:
+            waiting.add_subscription(subscription.handle)
+        waiting.wait(0)
+        ready = set(waiting.get_ready_entities("subscription"))
+        return [one for one in subscriptions if one.handle.pointer not in ready]

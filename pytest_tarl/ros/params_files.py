@@ -1,0 +1,26 @@
+"""The files that `--ros-args --params-file` names: parameters by node, as YAML."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from pytest_tarl.ros.missing import unsupported
+
+
+def read(filename: str) -> dict[str, Any]:
+    """Return what a file says, by node name or `/**`. Raises RuntimeError, as ROS does, where it cannot be read."""
+    try:
+        import yaml
+    except ModuleNotFoundError:
+        raise unsupported("--params-file without the package PyYAML (pip install PyYAML)") from None
+    said = f"failed to initialize: Couldn't parse params file: '--params-file {filename}'. Error:"
+    try:
+        found = yaml.safe_load(Path(filename).read_text("utf-8"))
+    except (OSError, UnicodeDecodeError) as problem:
+        raise RuntimeError(f"{said} Error opening YAML file ({problem})") from problem
+    except yaml.YAMLError as problem:
+        raise RuntimeError(f"{said} {problem}") from problem
+    if not isinstance(found, dict):
+        raise RuntimeError(f"{said} it holds no parameters by node")
+    return found

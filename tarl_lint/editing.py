@@ -1,0 +1,76 @@
+"""A workspace that is open in an editor: linted again after each change, including unsaved texts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from tarl_lint import baseline, cache, runner
+from tarl_lint.cache import Cache, Report
+from tarl_lint.config import Options, resolve
+from tarl_lint.keys import BASELINE_NAME
+from tarl_lint.runner import Result
+
+__all__ = ["Result", "Workspace"]
+
+
+class Workspace:
+    """The files at and below some paths. Programs that a change does not affect are not analysed again."""
+
+    def __init__(self, paths: Sequence[Path]) -> None:
+        self._options = Options(paths=tuple(paths), jobs=1)
+        self._known: _Memory | None = None
+
+    def lint(self, buffers: Mapping[Path, str]) -> Result:
+        """Return the result; `buffers` maps absolute paths to the texts of unsaved files.
+
+        Raises LintError for unusable settings or an unusable baseline, and if there is nothing to lint.
+        """
+        config = resolve(self._options)
+        if self._known is None or self._known.config != config:
+            self._known = _Memory(config, cache.opened(self._options.paths, config))
+        texts = {path: text.encode("utf-8", "surrogatepass") for path, text in buffers.items()}
+        return runner.run(self._options, config, buffers=texts, known=self._known)
+
+    def accept(self, fingerprint: str, buffers: Mapping[Path, str]) -> Path:
+        """Add the findings with this fingerprint to the baseline and return its path.
+
+        Raises LintError like `lint`, and if the file cannot be written.
+        """
+        config = resolve(self._options)
+        path = config.baseline or (config.root or Path.cwd()) / BASELINE_NAME
+        before = baseline.load(path).entries if path.exists() else ()
+        found = [one for one in self.lint(buffers).found if one.fingerprint.digest() == fingerprint]
+        kept = [one for one in before if one.fingerprint.digest() != fingerprint]
+        baseline.save(path, baseline.merged(found, kept))
+        return path
+
+
+class _Memory(Cache):
+    """Reports of the last run by key, and those of the cache on disk, which is read only."""
+
+    def __init__(self, config: object, saved: Cache) -> None:
+        super().__init__(None)
+        self.config = config
+        self._saved = saved
+        self._before: dict[str, Report] = {}
+        self._now: dict[str, Report] = {}
+
+    def report(self, key: str) -> Report | None:
+        """Return the report stored under a key, None if there is none."""
+        found = self._now.get(key) or self._before.get(key) or self._saved.report(key)
+        if found is not None:
+            self._now[key] = found
+        return found
+
+    def put(self, key: str, report: Report) -> None:
+        """Keep a report until a whole run has not needed it."""
+        self._now[key] = report
+
+    def plan(self, _: str) -> Sequence[str]:
+        """Return no plan: each run determines the reports it needs."""
+        return []
+
+    def save(self) -> None:
+        """Drop the reports that the last run did not need."""
+        self._before, self._now = self._now, {}

@@ -1,0 +1,52 @@
+"""Mistakes on the command line of `tarl`, and the completion that shells get from its parser."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pytest_tarl.commands.cli import main
+
+
+@pytest.mark.parametrize(
+    ("words", "usage", "sentence"),
+    [
+        (["dif", "a", "b"], "usage: tarl [-h]", "tarl: There is no command 'dif'; did you mean 'diff'?"),
+        (["qqq"], "usage: tarl [-h]", "tarl: There is no command 'qqq'."),
+        ([], "usage: tarl [-h]", "tarl: COMMAND is missing."),
+        (["diff", "a"], "usage: tarl diff", "tarl diff: second is missing."),
+        (["diff", "a", "b", "c"], "usage: tarl diff", "tarl diff: It does not know 'c'."),
+        (["show", "--site", "--x"], "usage: tarl show", "tarl show: fixture is missing."),
+        (
+            ["diff", "a", "b", "--alpha", "x"],
+            "usage: tarl diff",
+            "tarl diff: Argument --alpha: invalid float value: 'x'.",
+        ),
+    ],
+)
+def test_a_mistake_shows_the_help_of_its_command(
+    words: list[str], usage: str, sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert said.startswith(usage)
+    assert "--help" in said
+    assert said.endswith(f"\n{sentence}\n")
+
+
+@pytest.mark.parametrize("parser", ["pytest_tarl.commands.cli.parser", "tarl_lint.options.parser"])
+def test_shells_complete_from_the_parsers(parser: str, tmp_path: Path) -> None:
+    made = subprocess.run(
+        [sys.executable, "-m", "shtab", "--shell=bash", parser], capture_output=True, text=True, check=True
+    )
+    script = tmp_path / "completion"
+    script.write_text(made.stdout)
+    assert ("--format" if "lint" in parser else "revert") in made.stdout
+    if bash := shutil.which("bash"):
+        subprocess.run([bash, "-n", script], check=True)

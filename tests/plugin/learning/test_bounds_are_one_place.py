@@ -1,0 +1,88 @@
+"""Whatever bound on a mean or a rate is used anywhere comes from learning/bounds.py, which states what it assumes."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import pytest_tarl
+
+PACKAGE = Path(pytest_tarl.__file__).parent
+PARTS = {"student", "shifts", "binomial"}  # of bounds.py, which no other module may use
+HOME = {f"learning/{name}.py" for name in (*PARTS, "bounds")}
+QUANTILES = {
+    "NormalDist",
+    "inv_cdf",
+    "ppf",
+    "isf",
+    "sem",
+    "student_quantile",
+    "mean_bounds",
+    "confidence_interval",
+}
+LIBRARIES = {"scipy", "statsmodels", "confseq"}
+SPREADS = {"std", "stdev", "var", "variance"}
+COUNTS = {"len", "size", "sqrt"}
+NORMAL = (1.28, 1.64, 1.645, 1.96, 2.33, 2.576, 2.58)  # quantiles that people know by heart
+
+
+def names(tree: ast.AST) -> set[str]:
+    return {
+        node.id if isinstance(node, ast.Name) else node.attr
+        for node in ast.walk(tree)
+        if isinstance(node, (ast.Name, ast.Attribute))
+    }
+
+
+def computed(source: str) -> Iterator[str]:
+    """Yield what in a module makes an interval: quantiles, libraries of them, the spread of a mean, a part of ours."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.ImportFrom):
+            module = node.module or ""
+            parts = {module.rpartition(".")[2], *(alias.name for alias in node.names)}
+            if module.startswith("pytest_tarl.learning") and parts & PARTS:
+                yield f"line {node.lineno}: a part of bounds.py"
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            first = {alias.name for alias in node.names} | {getattr(node, "module", None) or ""}
+            found = {one.partition(".")[0] for one in first} & LIBRARIES | first & QUANTILES
+            if found:
+                yield f"line {node.lineno}: {', '.join(sorted(found))}"
+        if isinstance(node, ast.Attribute) and node.attr in QUANTILES:
+            yield f"line {node.lineno}: {node.attr}"
+        if isinstance(node, ast.Constant) and isinstance(node.value, float) and node.value in NORMAL:
+            yield f"line {node.lineno}: {node.value}"
+        divided = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div)
+        if divided and names(node.left) & SPREADS and names(node.right) & COUNTS:
+            yield f"line {node.lineno}: the spread of a mean"
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "from pytest_tarl.learning.student import mean_bounds",
+        "from pytest_tarl.learning import student",
+        "from statistics import NormalDist",
+        "import scipy.stats",
+        "from scipy.stats import t",
+        "reach = stats.t.ppf(0.975, 7)",
+        "low = mean - 1.96 * error",
+        "error = values.std(ddof=1) / np.sqrt(values.size)",
+        "error = sqrt(variance(values) / len(values))",
+    ],
+)
+def test_an_interval_of_its_own_is_noticed(source: str) -> None:
+    assert [*computed(source)]
+
+
+def test_no_other_module_computes_an_interval() -> None:
+    modules = {path.relative_to(PACKAGE).as_posix(): path for path in PACKAGE.rglob("*.py")}
+    assert modules.keys() >= HOME
+    found = {
+        name: told
+        for name, path in modules.items()
+        if name not in HOME and (told := [*computed(path.read_text("utf-8"))])
+    }
+    assert found == {}

@@ -1,0 +1,133 @@
+"""Formulas against other ways to compute them: a number in them that is off by a little is seen."""
+
+from __future__ import annotations
+
+from math import comb, log
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from pytest_tarl.learning import tiles
+from pytest_tarl.learning.bounds import bet_low, detectable_loss, evidence_above, rate_sequence
+from pytest_tarl.learning.drift import MATERIAL, avoided, outstanding
+from pytest_tarl.learning.localize import slices
+from pytest_tarl.learning.student import difference_bounds, mean_bounds, student_quantile
+from pytest_tarl.learning.tables import Chain
+
+GROUPS = [
+    ([1.0, 9.0, 4.0], [2.0, 2.5, 3.0, 2.2, 2.9, 2.4, 2.6]),
+    ([0.0, 30.0], [1.0 + n % 5 / 10 for n in range(40)]),
+    ([5.0, 5.5, 4.5, 5.1], [5.0, 5.5, 4.5, 5.1]),
+    ([float(n) for n in range(30)], [n * 1e-3 for n in range(60)]),
+]
+
+
+@pytest.mark.parametrize("risk", [0.05, 0.001])
+@pytest.mark.parametrize("number", range(len(GROUPS)))
+def test_a_difference_of_means_is_bounded_with_welchs_degrees_of_freedom(number: int, risk: float) -> None:
+    first, second = GROUPS[number]
+    low, high = difference_bounds(first, second, risk)
+    wanted = stats.ttest_ind(first, second, equal_var=False).confidence_interval(1 - 2 * risk)
+    assert (low, high) == pytest.approx((wanted.low, wanted.high), rel=2e-3)
+
+
+@pytest.mark.parametrize("count", [2, 3, 10, 21, 60])
+def test_a_mean_is_bounded_as_student_says(count: int) -> None:
+    values = [float(n * n % 17) for n in range(count)]
+    wanted = stats.t.interval(0.95, count - 1, np.mean(values), stats.sem(values))
+    assert mean_bounds(values, 0.95) == pytest.approx(wanted, rel=1e-4)
+
+
+@pytest.mark.parametrize("degrees", [1, 1.5, 2, 5, 19.9, 20, 25, 100])
+@pytest.mark.parametrize("probability", [0.6, 0.95, 0.999])
+def test_quantiles_of_student_are_those_of_scipy(degrees: float, probability: float) -> None:
+    assert student_quantile(probability, degrees) == pytest.approx(
+        stats.t.ppf(probability, degrees), rel=1e-3
+    )
+
+
+@pytest.mark.parametrize(("passed", "episodes"), [(1, 4), (18, 20), (60, 200)])
+def test_the_bound_of_a_rate_lies_where_the_evidence_is_just_enough(passed: int, episodes: int) -> None:
+    bound = rate_sequence(passed, episodes, 0.9)
+    least = [log(1.0 / risk) for risk in (0.1, 0.05)]  # one bound, or two that share the risk
+    below = evidence_above(passed, episodes, bound.low)
+    assert min(abs(below - one) for one in least) < 1e-6 * max(least)
+
+
+def test_a_gambler_who_bets_on_the_bound_has_just_refuted_it() -> None:
+    values = np.array([0.9, 0.8, 1.0, 0.7, 0.95] * 12)
+    lows = [bet_low(values, risk) for risk in (0.2, 0.1, 0.05, 0.01)]
+    assert lows == sorted(lows, reverse=True)
+    assert 0.6 < lows[-1] < lows[0] < values.mean()
+    assert bet_low(np.ones(1), 0.05) < 0.2
+
+
+def test_a_loss_is_detectable_only_where_a_shuffle_can_be_significant() -> None:
+    few, many = np.array([1.0, 2.0, 3.0]), np.arange(30.0)
+    assert detectable_loss(few, few[:2], 1.01 / comb(5, 2)) < np.inf
+    assert detectable_loss(few, few[:2], 0.99 / comb(5, 2)) == np.inf
+    spread = np.sqrt(2 * many.var(ddof=1) / 30)
+    wanted = (stats.norm.ppf(0.95) + stats.norm.ppf(0.8)) * spread
+    assert detectable_loss(many, many, 0.05) == pytest.approx(wanted, rel=1e-9)
+
+
+def world(cells_of_episodes: list[list[int]], cells: int) -> SimpleNamespace:
+    pairs = [(episode, cell) for episode, visited in enumerate(cells_of_episodes) for cell in visited]
+    episode, cell = (np.array(column, np.int64) for column in zip(*pairs, strict=True))
+    chain = SimpleNamespace(episode=episode, cell=cell)
+    return SimpleNamespace(
+        chain=chain, cells=tuple((n,) for n in range(cells)), episodes=len(cells_of_episodes)
+    )
+
+
+@pytest.mark.parametrize("others", [0, 1, 4])
+def test_a_cell_is_avoided_where_chance_is_below_alpha_over_the_cells_that_are_not_met(others: int) -> None:
+    everyone, online = 12, 4
+    off = [
+        [0, 1, *range(2, 2 + others)] for _ in range(everyone - online)
+    ]  # cell 0: in all; cell 1 as well, …
+    chance = 1 / comb(everyone, online)  # that none of four is among the eight
+    alpha = chance * (1 + others)
+    for factor, answer in ((1.001, True), (0.999, False)):
+        found = avoided(world(off, 2 + others), world([[0]] * online, 2 + others), alpha * factor)
+        assert found.tolist() == [False, *[answer] * (1 + others)]
+
+
+def test_cells_that_stand_out_are_significant_and_not_small_beside_the_largest() -> None:
+    difference = np.array([-10.0, 10.0 * MATERIAL, 9.99 * MATERIAL, 50.0, 0.0])
+    significant = np.array([True, True, True, False, True])
+    assert outstanding(difference, significant).tolist() == [True, True, False, False, False]
+
+
+def test_slices_sum_what_both_worlds_have_visited_in_the_region() -> None:
+    nan = np.nan
+    offline = np.array([[1.0, nan], [2.0, 4.0], [nan, nan], [100.0, 100.0]])
+    online = np.array([[0.5, 7.0], [nan, 1.0], [3.0, 3.0], [0.0, 0.0]])
+    one = SimpleNamespace(sites=("a", "b"), name="list")
+    first, second = slices(one, offline, online, np.array([0, 1, 2]))  # type: ignore[arg-type]
+    assert [(cut.offline, cut.online) for cut in (first, second)] == [(1.0, 0.5), (4.0, 1.0)]
+
+
+@pytest.mark.parametrize("dense", [True, False])
+def test_tiles_are_drawn_to_zero_by_the_ridge_and_no_more(
+    dense: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not dense:
+        monkeypatch.setattr(tiles, "DENSE", 0)
+    count = np.array([30, 10])
+    reward = np.array([60.0, -5.0])
+    chain = Chain(
+        episode=np.zeros(2, np.int64),
+        cell=np.array([0, 1]),
+        next_cell=np.full(2, -1),
+        count=count,
+        reward=reward,
+        parts=np.zeros((2, 0)),
+    )
+    own = tiles.Tiles(np.array([[0], [1]]), 2)
+    ridge = tiles.RIDGE * count.mean()
+    wanted = reward / (count + ridge)
+    assert tiles.tiled_chain(chain, 2, own) == pytest.approx(wanted, rel=1e-7)
+    assert ridge > 0

@@ -1,0 +1,127 @@
+"""Each check of a recording's columns catches what it is there for: one value is put wrong at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pytest_tarl.learning.archive import DamagedError
+from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.soundness import check
+from tests.plugin.learning.test_fixture import example
+
+FIXTURE: Fixture = example()
+SAMPLE = FIXTURE.sample
+TABLES = [np.zeros((len(SAMPLE.cells), one.width)) for one in SAMPLE.lists]
+CELLS, STATES = len(SAMPLE.cells), 1 + len(SAMPLE.cells) * SAMPLE.lists[0].width
+
+LIMITS = [
+    ("chain", "episode", 0, SAMPLE.episodes),
+    ("chain", "cell", 0, CELLS),
+    ("chain", "next_cell", -1, CELLS),
+    ("edges", "episode", 0, SAMPLE.episodes),
+    ("edges", "state", 0, STATES),
+    ("edges", "next_state", -1, STATES),
+]
+
+
+def changed(part: str, name: str, change: Callable[[np.ndarray[Any, Any]], np.ndarray[Any, Any]]) -> Any:
+    """Return the sample with one column changed."""
+    if part == "chain":
+        chain = replace(SAMPLE.chain, **{name: change(getattr(SAMPLE.chain, name).copy())})
+        return replace(SAMPLE, chain=chain)
+    one = SAMPLE.lists[0]
+    inner = getattr(one, part)
+    listed = replace(
+        one,
+        **{
+            part: inner._replace(**{name: change(getattr(inner, name).copy())})
+            if hasattr(inner, "_replace")
+            else replace(inner, **{name: change(getattr(inner, name).copy())})
+        },
+    )
+    return replace(SAMPLE, lists=(listed, *SAMPLE.lists[1:]))
+
+
+def put(value: float) -> Callable[[np.ndarray[Any, Any]], np.ndarray[Any, Any]]:
+    def change(column: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+        column[column.size // 2] = value
+        return column
+
+    return change
+
+
+def sound(sample: Any) -> bool:
+    try:
+        check(sample, len(FIXTURE.sensors), TABLES)
+    except DamagedError:
+        return False
+    return True
+
+
+def test_the_sample_itself_is_sound() -> None:
+    assert sound(SAMPLE)
+    assert SAMPLE.chain.cell.size > 2
+    assert SAMPLE.lists[0].edges.state.size > 2
+
+
+@pytest.mark.parametrize(("part", "name", "low", "end"), LIMITS)
+def test_a_number_that_names_nothing_is_refused_and_the_last_that_names_something_is_not(
+    part: str, name: str, low: int, end: int
+) -> None:
+    assert not sound(changed(part, name, put(low - 1)))
+    assert not sound(changed(part, name, put(end)))
+    assert sound(changed(part, name, put(low)))
+    assert sound(changed(part, name, put(end - 1)))
+
+
+@pytest.mark.parametrize("part", ["chain", "edges"])
+def test_a_count_is_at_least_one(part: str) -> None:
+    assert not sound(changed(part, "count", put(0)))
+    assert sound(changed(part, "count", put(1)))
+
+
+@pytest.mark.parametrize(("part", "name"), [("chain", "reward"), ("visits", "reward"), ("visits", "scaled")])
+@pytest.mark.parametrize("value", [np.inf, np.nan])
+def test_sums_are_finite(part: str, name: str, value: float) -> None:
+    assert not sound(changed(part, name, put(value)))
+
+
+@pytest.mark.parametrize(
+    ("part", "name"),
+    [
+        ("chain", "next_cell"),
+        ("chain", "count"),
+        ("chain", "reward"),
+        ("visits", "scaled"),
+        ("visits", "reward_squared"),
+    ],
+)
+def test_columns_are_of_one_length(part: str, name: str) -> None:
+    assert not sound(changed(part, name, lambda column: column[:-1]))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"seeds": (SAMPLE.seeds[0],) * SAMPLE.episodes},
+        {"cells": SAMPLE.cells[::-1]},
+        {"cells": tuple((*cell, 0) for cell in SAMPLE.cells)},
+        {"total": SAMPLE.total * np.inf},
+        {"steps": SAMPLE.steps - 10**6},
+        {"passed": SAMPLE.passed.astype(int)},
+        {"part_names": (*SAMPLE.part_names, "more")},
+    ],
+    ids=lambda wrong: next(iter(wrong)),
+)
+def test_episodes_and_cells_are_those_that_it_names(wrong: dict[str, Any]) -> None:
+    assert not sound(replace(SAMPLE, **wrong))
+
+
+def test_tables_have_a_row_for_each_cell_and_a_column_for_each_site() -> None:
+    with pytest.raises(DamagedError):
+        check(SAMPLE, len(FIXTURE.sensors), [TABLES[0][:-1], *TABLES[1:]])

@@ -1,0 +1,73 @@
+"""Clocks that jump and machines that sleep: missions keep their steps, and their order."""
+
+from __future__ import annotations
+
+from itertools import chain
+from pathlib import Path
+
+import pytest
+
+from pytest_tarl import Sensor
+from pytest_tarl.observing import observer as observing
+from pytest_tarl.observing.frames import records
+from pytest_tarl.observing.observer import Observer
+from pytest_tarl.observing.writer import unpacked
+
+YEAR = 365 * 86400.0
+
+
+class Clock:
+    def __init__(self, now: float) -> None:
+        self.now = now
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.mark.parametrize("jump", [-YEAR, YEAR, -1e10])
+def test_a_wall_clock_that_jumps_changes_nothing_but_the_dates(
+    jump: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wall = Clock(1.7e9)
+    monkeypatch.setattr(observing, "time", wall)
+    observer = Observer([Sensor("x")], tmp_path / "log", {"sites": [], "sensors": ["x"]}, following=True)
+    for mission in range(3):
+        observer.begin()
+        for step in range(50):
+            if (mission, step) == (1, 20):
+                wall.now += jump
+            observer.step(100.0 * mission + step)
+        observer.end(passed=mission != 1)
+    observer.close()
+    found = list(records(tmp_path / "log"))
+    assert [one["passed"] for one in found if one["kind"] == "end"] == [True, False, True]
+    steps = [one for one in found if one["kind"] == "steps"]
+    rewards = list(chain.from_iterable(unpacked(one["reward"], "float64").tolist() for one in steps))
+    assert rewards == [100.0 * mission + step for mission in range(3) for step in range(50)]
+    times = list(chain.from_iterable(one["times"] for one in steps))
+    assert all(0 <= time < 60 for time in times)
+
+
+@pytest.mark.parametrize("asleep", [5.0, 8 * 3600.0])
+def test_after_a_sleep_longer_than_idle_another_mission_begins_and_no_step_is_lost(
+    asleep: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock = Clock(1000.0)
+    monkeypatch.setattr(observing, "monotonic", clock)
+    observer = Observer([], tmp_path / "log", {"sites": [], "sensors": []}, idle=60.0)
+    for number in range(100):
+        if number == 50:
+            clock.now += asleep
+            if asleep > 60.0:
+                while observer.running:
+                    pass
+        observer.active()
+        observer.step(float(number))
+        clock.now += 0.01
+    observer.end(passed=True)
+    observer.close()
+    found = list(records(tmp_path / "log"))
+    kinds = [one["kind"] for one in found if one["kind"] != "steps"]
+    assert kinds == ["start", *["mission", "end"] * (2 if asleep > 60 else 1)]
+    rewards = [unpacked(one["reward"], "float64").tolist() for one in found if one["kind"] == "steps"]
+    assert list(chain.from_iterable(rewards)) == [float(number) for number in range(100)]

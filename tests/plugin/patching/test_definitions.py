@@ -1,0 +1,88 @@
+"""What a constant is called where it is defined."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from pytest_tarl.model import Guard
+from pytest_tarl.patching.definitions import configured, defined, parameter
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.searching.search import Candidate
+from tarl_lint.api import analyse
+
+NODE = """\
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Float64
+
+GAINS = {{"hold": 0.45, "pull": {{"near": 0.3, "far": 0.7}}}}
+STEPS = [0.1, 0.2, (0.4, 0.8)]
+REACH: float = 2.5
+
+
+class Mast(Node):
+    def __init__(self):
+        super().__init__("mast")
+        self.declare_parameters("arm", [("rate", 5.0), ("kp", 1.25)])
+        self.declare_parameters(namespace="", parameters=[("ki", 0.75)])
+        self.kp = self.get_parameter("arm.kp").value
+        self.ki = self.get_parameter("ki").value
+        self.winch = self.create_publisher(Float64, "/winch", 1)
+        self.create_subscription(Float64, "/height", self.on_height, 1)
+
+    def on_height(self, msg):
+        self.winch.publish(Float64(data={use} * msg.data))
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Mast())
+
+
+if __name__ == "__main__":
+    main()
+"""
+
+
+@pytest.mark.parametrize(
+    ("use", "name", "value"),
+    [
+        ('GAINS["hold"]', 'GAINS["hold"]', 0.45),
+        ('GAINS["pull"]["far"]', 'GAINS["pull"]["far"]', 0.7),
+        ("STEPS[1]", "STEPS[1]", 0.2),
+        ("STEPS[2][0]", "STEPS[2][0]", 0.4),
+        ("REACH", "REACH", 2.5),
+        ("self.kp", "arm.kp", 1.25),
+        ("self.ki", "ki", 0.75),
+    ],
+)
+def test_an_entry_keeps_its_key_and_a_parameter_its_name(
+    tmp_path: Path, use: str, name: str, value: float
+) -> None:
+    path = tmp_path / "mast.py"
+    path.write_text(NODE.format(use=use))
+    analysis = analyse([path], root=tmp_path)
+    (operand,) = {one for step in analysis.sites for one in analysis.operands(step.site) if one.code == use}
+    place = defined(analysis, operand)
+    assert place is not None
+    assert (place.name, place.value) == (name, value)
+    assert parameter(analysis, operand) == (name if use.startswith("self.") else "")
+
+
+def test_a_place_in_a_file_that_nobody_has_read_is_read_when_it_is_written(tmp_path: Path) -> None:
+    path, file = tmp_path / "mast.py", tmp_path / "mast.yaml"
+    path.write_text(NODE.format(use="self.ki"))
+    file.write_text("mast:\n  ki: 0.5  # per second\n")
+    analysis = analyse([path], root=tmp_path)
+    (operand,) = {o for step in analysis.sites for o in analysis.operands(step.site) if o.code == "self.ki"}
+    (place,) = configured("ki", {"mast.yaml": file.read_text()})
+    order: Any = SimpleNamespace(
+        analysis=analysis, root=tmp_path, rollout=None, fixture=SimpleNamespace(topics={})
+    )
+    written = Mutants(order).source(Candidate((Mutation(operand, 2.0, place),), Guard()))
+    assert written == {file: "mast:\n  ki: 1.0  # per second\n"}

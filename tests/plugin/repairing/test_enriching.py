@@ -1,0 +1,113 @@
+"""Rare failures: missions that are hard for a reason, of which few are seen on-line."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pytest_tarl.repairing.enriching import CONTROLS, ENOUGH, LOOKED_AT, enriched
+from pytest_tarl.repairing.mutants import ORIGINAL
+from pytest_tarl.searching.accept import Outcome, Reference
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+
+DESIGNED, HARD, LOST = 10.0, 9.0, -20.0  # a hard mission earns less even as designed
+
+
+class Road:
+    """Some missions are hard; under the drift those are lost. The second sensor sees what makes them hard."""
+
+    def __init__(self, share: float, online: int = 40, seed: int = 0) -> None:
+        self.share, self.seed = share, seed
+        self.ran: list[tuple[int, str | None]] = []
+        recorded, met = range(1000, 1150), range(online)
+        totals = [self.total(one, None) for one in recorded]
+        lost = [Pair(one, LOST) for one in met if self.hard(one)]
+        goal = Goal(
+            tuple(lost) or tuple(Pair(one, DESIGNED) for one in met),
+            near=DESIGNED - 0.5,
+            enough=DESIGNED - 0.5,
+            online=sum(self.total(one, "wet") for one in met) / online,
+            passing=True,
+        )
+        self.order: Any = SimpleNamespace(
+            goal=goal,
+            drift="wet",
+            online=SimpleNamespace(recorded=SimpleNamespace(sample=self.sample(met, "wet"))),
+            fixture=SimpleNamespace(sample=self.sample(recorded, None)),
+            reference=Reference(totals, 1.0, 0.5, LOST),
+        )
+
+    def hard(self, seed: int) -> bool:
+        return bool(np.random.default_rng([self.seed, seed]).random() < self.share)
+
+    def total(self, seed: int, drift: str | None) -> float:
+        return DESIGNED if not self.hard(seed) else HARD if drift is None else LOST
+
+    def sample(self, seeds: range, drift: str | None) -> Any:
+        wet = int(drift is not None)
+        cells = [(wet, 0), (wet, 1)]
+        way = [(at, cell) for at, one in enumerate(seeds) for cell in ([0, 1] if self.hard(one) else [0])]
+        return SimpleNamespace(
+            seeds=tuple(seeds),
+            episodes=len(seeds),
+            total=np.array([self.total(one, drift) for one in seeds]),
+            cells=cells,
+            chain=SimpleNamespace(
+                episode=np.array([at for at, _ in way]), cell=np.array([cell for _, cell in way])
+            ),
+        )
+
+    def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+        assert candidate == ORIGINAL
+        self.ran.append((seed, drift))
+        return Outcome(self.total(seed, drift), passed=self.total(seed, drift) > 0)
+
+
+def never(candidate: Candidate, seed: int) -> Outcome:
+    raise AssertionError("nothing is searched here")
+
+
+@pytest.mark.parametrize("share", [0.08, 0.12, 0.3])
+def test_recorded_missions_that_are_hard_alike_are_found_by_what_the_lost_ones_met(share: float) -> None:
+    road: Any = Road(share)
+    trials = Trials(never, 300)
+    goal = enriched(road, trials)
+    assert len(goal.pairs) == ENOUGH
+    assert all(road.hard(pair.seed) for pair in goal.pairs)
+    assert trials.spent == len(road.ran) <= ENOUGH  # each run finds one, or tells what one is worth
+    assert len(goal.controls) == CONTROLS
+    assert not any(road.hard(pair.seed) for pair in goal.controls)
+
+
+def test_a_hard_mission_is_held_against_what_it_earns_as_designed() -> None:
+    road: Any = Road(0.12)
+    goal = enriched(road, Trials(never, 300))
+    seed, easy = goal.pairs[0].seed, goal.controls[0].seed
+    assert not road.order.goal.reached(Outcome(HARD, passed=True), seed)
+    assert goal.reached(Outcome(HARD, passed=True), seed)
+    assert not goal.reached(Outcome(HARD - 0.6, passed=True), seed)
+    assert not goal.reached(Outcome(HARD, passed=True), easy)
+    assert goal.enough_on([seed]) < goal.enough_on([easy]) == goal.enough
+
+
+def test_nothing_is_run_where_most_missions_lose_or_none_does() -> None:
+    for share in (0.0, 0.9):
+        road: Any = Road(share)
+        assert enriched(road, Trials(never, 300)) == road.order.goal
+        assert road.ran == []
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(1, 30), st.floats(0.03, 0.45), st.integers(0, 100))
+def test_it_stays_within_its_budget_whatever_is_left(budget: int, share: float, seed: int) -> None:
+    road: Any = Road(share, seed=seed)
+    trials = Trials(never, budget)
+    goal = enriched(road, trials)
+    assert trials.spent == len(road.ran) <= min(budget, ENOUGH + LOOKED_AT)
+    assert replace(goal, harder={}, controls=(), pairs=()) == replace(road.order.goal, pairs=())

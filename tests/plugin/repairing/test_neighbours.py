@@ -1,0 +1,145 @@
+"""Which missions of other tests are run again under a candidate, and when they have lost."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pytest_tarl import Sensor
+from pytest_tarl.repairing.neighbours import EPISODES, MOST, beside
+from pytest_tarl.searching.accept import Outcome
+
+X = Sensor("x", topic="/x", field="x", low=0, high=10, bins=10)
+Y = Sensor("y", topic="/y", field="y", low=0, high=10, bins=10)
+FIRST = 100  # seed of the first recorded episode
+NODE = Path("/project/node.py")
+
+
+def neighbour(
+    number: int = 0, *, holding: range = range(3, 40), sensors: tuple[Sensor, ...] = (X,), **more: Any
+) -> Any:
+    """Return a recorded test of 40 episodes; those in `holding` were in a cell at x = 7, each earned its number."""
+    episode = np.arange(40)
+    sample = SimpleNamespace(
+        seeds=tuple(FIRST + 2 * n for n in range(40)),
+        episodes=40,
+        cells=((2,), (7,)),
+        chain=SimpleNamespace(episode=episode, cell=np.array([int(n in holding) for n in range(40)])),
+        total=episode.astype(float),
+        passed=np.ones(40, bool),
+    )
+    about = {"nodes": (NODE,), "drift": None, "margin": 0.5, "rollout": f"rollout {number}"} | more
+    return SimpleNamespace(
+        test=f"test_{number}.py::test", fixture=SimpleNamespace(sample=sample, sensors=sensors), **about
+    )
+
+
+class Mutants:
+    """Runs what it is told to, and remembers it: a mission earns its episode's number plus `change`."""
+
+    def __init__(
+        self, neighbours: list[Any], change: float = 0.0, *, permanent: bool = False, fails: int = -1
+    ) -> None:
+        self.ran: list[tuple[str, int]] = []
+        self.changed, self.fails = change, fails
+        self.order = SimpleNamespace(
+            neighbours=lambda: neighbours, root=Path("/project"), permanent=permanent
+        )
+
+    def source(self, _candidate: object) -> dict[Path, str]:
+        return {NODE: ""}
+
+    def run_at(self, rollout: str, worst: float, candidate: object, seed: int, _drift: object) -> Outcome:
+        self.ran.append((rollout, seed))
+        assert worst == 0.0
+        change = self.changed if candidate is not None else 0.0
+        return Outcome((seed - FIRST) / 2 + change, (seed - FIRST) / 2 != self.fails)
+
+
+def guard(low: float, high: float, sensor: Sensor = X) -> Any:
+    return SimpleNamespace(
+        guard=SimpleNamespace(conjuncts=(SimpleNamespace(sensor=sensor, low=low, high=high),))
+    )
+
+
+def test_the_first_recorded_episodes_in_which_the_guard_holds_are_run_with_their_own_seeds() -> None:
+    mutants = Mutants([neighbour()])
+    found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
+    assert [seed for _, seed in mutants.ran] == [FIRST + 2 * n for n in range(3, 3 + EPISODES)]
+    assert (found.episodes, found.lost, len(found.held)) == (EPISODES, (), 1)
+    assert (
+        f"{3 + (EPISODES - 1) / 2:.4g} an episode where {3 + (EPISODES - 1) / 2:.4g} was recorded"
+        in found.held[0]
+    )
+
+
+def test_where_the_guard_holds_less_often_only_those_are_run() -> None:
+    mutants = Mutants([neighbour(holding=range(38, 40))])
+    assert beside(mutants, guard(7.0, 8.0)).episodes == 2  # type: ignore[arg-type]
+    assert [seed for _, seed in mutants.ran] == [FIRST + 76, FIRST + 78]
+
+
+def test_where_it_never_holds_nothing_is_run_and_that_is_said() -> None:
+    mutants = Mutants([neighbour()])
+    found = beside(mutants, guard(9.0, 10.0))  # type: ignore[arg-type]
+    assert (mutants.ran, found.episodes, found.lost) == ([], 0, ())
+    assert "the condition never holds there" in found.held[0]
+
+
+def test_where_the_recording_cannot_know_the_first_episodes_are_run() -> None:
+    mutants = Mutants([neighbour(sensors=(Y,))])
+    assert beside(mutants, guard(7.0, 8.0)).episodes == EPISODES  # type: ignore[arg-type]
+    assert [seed for _, seed in mutants.ran] == [FIRST + 2 * n for n in range(EPISODES)]
+
+
+@pytest.mark.parametrize(("change", "lost"), [(-0.5, False), (-0.51, True), (3.0, False)])
+def test_a_mission_has_lost_when_it_earns_less_than_recorded_by_more_than_its_margin(
+    change: float, lost: bool
+) -> None:
+    found = beside(Mutants([neighbour()], change), guard(7.0, 8.0))  # type: ignore[arg-type]
+    assert bool(found.lost) is lost
+    assert bool(found.held) is not lost
+
+
+def test_one_mission_that_fails_now_is_a_loss_whatever_it_earns() -> None:
+    found = beside(Mutants([neighbour()], 5.0, fails=4), guard(7.0, 8.0))  # type: ignore[arg-type]
+    assert "1 of them fail now" in found.lost[0]
+
+
+def test_after_a_loss_no_further_test_is_run() -> None:
+    mutants = Mutants([neighbour(0), neighbour(1)], -9.0)
+    found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
+    assert {rollout for rollout, _ in mutants.ran} == {"rollout 0"}
+    assert found.episodes == EPISODES
+
+
+def test_only_so_many_tests_are_run_and_the_rest_is_counted() -> None:
+    mutants = Mutants([neighbour(n) for n in range(MOST + 3)])
+    found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
+    assert len({rollout for rollout, _ in mutants.ran}) == MOST
+    assert found.held[-1] == "3 more of the node were not run"
+    assert found.episodes == MOST * EPISODES
+
+
+def test_under_a_drift_of_its_own_a_test_is_compared_with_the_node_as_it_is() -> None:
+    mutants = Mutants([neighbour(drift="mud")], -0.4)
+    found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
+    assert len(mutants.ran) == 2 * EPISODES
+    assert "it earns without the repair under the same drift" in found.held[0]
+
+
+def test_a_permanent_change_does_not_ask_the_old_world_of_others() -> None:
+    found = beside(Mutants([neighbour()], -9.0, permanent=True), guard(7.0, 8.0))  # type: ignore[arg-type]
+    assert (found.lost, "its old world, which is not asked" in found.held[0]) == ((), True)
+    under = beside(Mutants([neighbour(drift="mud")], -9.0, permanent=True), guard(7.0, 8.0))  # type: ignore[arg-type]
+    assert under.lost
+
+
+def test_tests_of_other_nodes_are_left_alone() -> None:
+    mutants = Mutants([neighbour(nodes=(Path("/project/other.py"),))])
+    assert beside(mutants, guard(7.0, 8.0)).episodes == 0  # type: ignore[arg-type]
+    assert mutants.ran == []

@@ -1,0 +1,186 @@
+"""Each template from search to running source: it brings a node back that needs just this change, and no constant.
+
+A world tells the node values and wants the commands of a node in which the change has been made by hand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pytest_tarl import Sensor
+from pytest_tarl.patching.mutate import rewrite
+from pytest_tarl.patching.templates import SHIPPED, template
+from pytest_tarl.repairing import structural
+from pytest_tarl.repairing.structural import Structures
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from tarl_lint.api import analyse
+from tests.plugin.patching.repairs import TinyRos
+
+NODE = """\
+import rospy
+from std_msgs.msg import Float64
+
+
+class Keeper:
+    def __init__(self):
+        self.bound = None
+        self.slope = None
+        self.out = rospy.Publisher("/out", Float64, queue_size=1)
+        rospy.Subscriber("/bound", Float64, self.on_bound)
+        rospy.Subscriber("/slope", Float64, self.on_slope)
+        rospy.Subscriber("/in", Float64, self.on_value)
+
+    def on_bound(self, msg):
+        self.bound = msg.data
+
+    def on_slope(self, msg):
+        self.slope = msg.data
+
+    def on_value(self, msg):
+        {body}
+
+
+if __name__ == "__main__":
+    rospy.init_node("keeper")
+    Keeper()
+"""
+VALUE = "value = msg.data + msg.data\n        self.out.publish(value)"
+INPUT = "value = msg.data\n        self.out.publish(value)"
+COMPARED = (
+    "value = msg.data\n        if value < self.bound:\n            self.out.publish(value)\n"
+    "        else:\n            self.out.publish(-value)"
+)
+PAIR = "first = Float64()\n        first.x = msg.x\n        first.y = msg.y\n        self.out.publish(first)"
+BOUNDS = {"comparison": 1.0, "hysteresis": 0.0}  # that values are compared with
+Command = Callable[[float, float], float]  # of the mended node, called with value and slope, call after call
+
+
+def kept(step: Callable[[dict[str, float], float], float]) -> Command:
+    """Return a command that keeps state between calls."""
+    state: dict[str, float] = {}
+    return lambda value, _: step(state, 2.0 * value)
+
+
+def integral(state: dict[str, float], x: float) -> float:
+    state["sum"] = max(-6.0, min(6.0, state.get("sum", 0.0) + 0.08 * x))
+    return x + state["sum"]
+
+
+def derivative(state: dict[str, float], x: float) -> float:
+    before, state["before"] = state.get("before", 0.0), x
+    return x + 3.5 * (x - before)
+
+
+def low_pass(state: dict[str, float], x: float) -> float:
+    state["smooth"] = state.get("smooth", 0.0) + 0.15 * (x - state.get("smooth", 0.0))
+    return state["smooth"]
+
+
+def rate_limit(state: dict[str, float], x: float) -> float:
+    last = state.get("last", 0.0)
+    state["last"] = last + max(-0.35, min(0.35, x - last))
+    return state["last"]
+
+
+def prediction(state: dict[str, float], x: float) -> float:
+    value = x / 2.0  # of the input itself
+    change = value - state["before"] if "before" in state else 0.0
+    state["before"] = value
+    return value + 6.0 * change
+
+
+def hysteresis(state: dict[str, float], x: float) -> float:
+    value = x / 2.0
+    state["on"] = float(value < (0.9 if state.get("on") else 0.0))
+    return value if state["on"] else -value
+
+
+MENDED: dict[str, tuple[str, Callable[[], Command]]] = {
+    "at_least": (VALUE, lambda: lambda value, _: max(0.8, 2 * value)),
+    "at_most": (VALUE, lambda: lambda value, _: min(0.7, 2 * value)),
+    "comparison": (COMPARED, lambda: lambda value, _: value if value <= 1.0 else -value),
+    "dead_band": (VALUE, lambda: lambda value, _: 2 * value if abs(2 * value) > 1.2 else 0.0),
+    "derivative": (VALUE, lambda: kept(derivative)),
+    "hysteresis": (COMPARED, lambda: kept(hysteresis)),
+    "integral": (VALUE, lambda: kept(integral)),
+    "limit": (VALUE, lambda: lambda value, _: max(-0.9, min(0.9, 2 * value))),
+    "low_pass": (VALUE, lambda: kept(low_pass)),
+    "prediction": (INPUT, lambda: kept(prediction)),
+    "rate_limit": (VALUE, lambda: kept(rate_limit)),
+    "scale": (VALUE, lambda: lambda value, slope: 2 * value * (1.0 + 0.6 * slope)),
+    "sign": (VALUE, lambda: lambda value, _: -2 * value),
+    "swapped_axes": (PAIR, lambda: lambda value, slope: slope),
+}
+
+
+class World:
+    """Thirty values a mission, and ten points less the share of the wanted commands by which those sent are off."""
+
+    def __init__(self, name: str, folder: Path) -> None:
+        body, self.mended = MENDED[name]
+        self.bound = BOUNDS.get(name, 0.0)
+        self.pair = name == "swapped_axes"
+        self.steps = name == "comparison"
+        path = folder / "keeper.py"
+        path.write_text(NODE.format(body=body))
+        self.analysis = analyse([path], root=folder)
+
+    def told(self, seed: int) -> Iterator[tuple[float, float]]:
+        draws = np.random.default_rng(seed)
+        value = float(draws.uniform(-1, 1))
+        for _ in range(30):
+            value = max(-1.0, min(1.0, value + float(draws.normal(0, 0.35))))
+            yield (float(round(value)) if self.steps else value), float(draws.uniform(0, 2))
+
+    def total(self, texts: dict[str, str], seed: int) -> float:
+        ros, mended, off, whole = TinyRos(), self.mended(), 0.0, 0.0
+        ros.run(texts, next(iter(texts)))
+        ros.deliver("/bound", SimpleNamespace(data=self.bound))
+        for value, slope in self.told(seed):
+            ros.deliver("/slope", SimpleNamespace(data=slope))
+            ros.deliver("/in", SimpleNamespace(data=value, x=value, y=slope))
+            sent = ros.published[-1]
+            wanted = mended(value, slope)
+            off += abs((sent.x if self.pair else float(sent)) - wanted)
+            whole += abs(wanted)
+        return 10.0 - 10.0 * min(off / whole, 2.0)
+
+    def run(self, candidate: Candidate, seed: int) -> Outcome:
+        text = rewrite(
+            self.analysis, candidate.mutations, candidate.guard, {"/slope": "std_msgs/msg/Float64"}
+        )
+        total = self.total({**self.analysis.sources, **text}, seed)
+        return Outcome(total, total > 5.0)
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in SHIPPED.glob("*.toml")))
+def test_a_template_is_found_fitted_and_runs(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    world = World(name, tmp_path)
+    monkeypatch.setattr(structural, "templates", lambda _: (template(SHIPPED / f"{name}.toml"),))
+    pairs = tuple(Pair(seed, world.run(Candidate((), ALWAYS), seed).total) for seed in range(8))
+    online = sum(pair.total for pair in pairs) / len(pairs)
+    assert online < 8.0, "the node needs no change"
+    slope = Sensor("slope", topic="/slope", field="data", low=0, high=2, bins=4)
+    order: Any = SimpleNamespace(
+        analysis=world.analysis,
+        root=tmp_path,
+        comparison=SimpleNamespace(culprits=(), sensors=(slope,)),
+        fixture=SimpleNamespace(sample=SimpleNamespace(lists=()), lists=()),
+        goal=Goal(pairs, near=8.5, enough=9.0, online=online),
+    )
+    trials = Trials(world.run, 100)
+    found = next(Structures(order, (ALWAYS,), trials).candidates())
+    forms = {mutation.form.template.name for mutation in found.mutations if mutation.form is not None}
+    assert forms == {name}
+    fresh = [world.run(found, seed).total for seed in range(100, 110)]
+    assert sum(fresh) / len(fresh) > 8.0

@@ -1,0 +1,58 @@
+"""When a candidate is confirmed: on which seeds it is tried, how many misses it may have, what it must earn."""
+
+from __future__ import annotations
+
+import pytest
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.search import CONFIRMATIONS, Candidate, Goal, Pair, Trials, confirmed
+
+CANDIDATE = Candidate((), Guard(()))
+
+
+def asked(
+    totals: list[float], first: int = 0, *, enough: float = 5.0, near: float = 4.0
+) -> tuple[bool, list[int]]:
+    """Return whether a candidate is confirmed that earns these totals by seed, and the seeds that were run."""
+    pairs = tuple(Pair(seed, 0.0) for seed in range(len(totals)))
+    ran: list[int] = []
+
+    def run(_candidate: Candidate, seed: int) -> Outcome:
+        ran.append(seed)
+        return Outcome(totals[seed], True)
+
+    return confirmed(CANDIDATE, Trials(run, 100), Goal(pairs, near, enough, 0.0), first), ran
+
+
+def test_it_is_tried_on_so_many_seeds_after_the_first_and_around_the_end() -> None:
+    assert asked([9.0] * 9) == (True, [1, 2, 3, 4, 5])
+    assert asked([9.0] * 9, 6) == (True, [7, 8, 0, 1, 2])
+    assert asked([9.0] * 3, 1) == (True, [2, 0])
+    assert len(asked([9.0] * 40)[1]) == CONFIRMATIONS
+
+
+def test_one_seed_alone_has_nothing_to_add() -> None:
+    assert asked([9.0]) == (True, [])
+
+
+@pytest.mark.parametrize(("total", "enough"), [(5.0, True), (4.99, False)])
+def test_it_must_earn_enough_on_average(total: float, enough: bool) -> None:
+    assert asked([0.0, *[total] * 5])[0] is enough
+
+
+def test_one_miss_is_forgiven_and_the_second_ends_it_at_once() -> None:
+    assert asked([9.0, 0.0, 9.0, 9.0, 9.0, 9.0]) == (True, [1, 2, 3, 4, 5])
+    assert asked([9.0, 0.0, 9.0, 0.0, 9.0, 9.0]) == (False, [1, 2, 3])
+
+
+def test_a_total_that_is_just_near_is_no_miss() -> None:
+    assert asked([9.0, 4.0, 4.0, 9.0, 9.0, 9.0]) == (True, [1, 2, 3, 4, 5])
+    assert asked([9.0, 3.99, 3.99, 9.0, 9.0, 9.0]) == (False, [1, 2])
+
+
+def test_a_failed_mission_is_a_miss_only_where_missions_must_pass() -> None:
+    goal = Goal((), 4.0, 5.0, 0.0)
+    assert goal.reached(Outcome(4.0, False), 0)
+    assert not Goal((), 4.0, 5.0, 0.0, passing=True).reached(Outcome(9.0, False), 0)
+    assert Goal((), 4.0, 5.0, 0.0, passing=True).reached(Outcome(4.0, True), 0)

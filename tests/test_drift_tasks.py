@@ -1,0 +1,92 @@
+"""The tasks of the drift benchmark have one form: answers that name what is in the node, and one drift."""
+
+from __future__ import annotations
+
+import ast
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+BENCHMARKS = Path(__file__).parent.parent / "benchmarks"
+JUDGING = ("drift_judging", "drift_judging_2")
+TASKS = sorted(
+    test.parent for folder in ("drift", *JUDGING) for test in BENCHMARKS.glob(f"{folder}/*/test_*.py")
+)
+WRITTEN_BY_HAND = [task for task in TASKS if task.parent.name in JUDGING]
+
+
+def answer(task: Path) -> dict[str, Any]:
+    """Return what is known of a task."""
+    found: dict[str, Any] = json.loads((task / "answer.json").read_text())
+    return found
+
+
+def marker(task: Path) -> dict[str, ast.expr]:
+    """Return the arguments of the test's marker."""
+    (test,) = task.glob("test_*.py")
+    calls = [node for node in ast.walk(ast.parse(test.read_text())) if isinstance(node, ast.Call)]
+    (found,) = (call for call in calls if ast.unparse(call.func) == "pytest.mark.tarl")
+    return {keyword.arg: keyword.value for keyword in found.keywords if keyword.arg}
+
+
+def test_there_are_tasks_in_every_folder() -> None:
+    assert {task.parent.name for task in TASKS} == {"drift", *JUDGING}
+    assert len(WRITTEN_BY_HAND) >= 20
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: f"{task.parent.name}/{task.name}")
+def test_a_task_has_one_drift_and_its_nodes(task: Path) -> None:
+    marked = marker(task)
+    assert isinstance(marked["drifts"], ast.Dict)
+    assert len(marked["drifts"].keys) == 1
+    for node in ast.literal_eval(marked["nodes"]):
+        compile((task / node).read_text(), node, "exec")
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: f"{task.parent.name}/{task.name}")
+def test_an_answer_names_sensors_and_statements_that_exist(task: Path) -> None:
+    known, marked = answer(task), marker(task)
+    assert isinstance(marked["sensors"], ast.List)
+    sensors = {
+        ast.literal_eval(call.args[0]) for call in marked["sensors"].elts if isinstance(call, ast.Call)
+    }
+    assert {condition["sensor"] for condition in known["where"]} <= sensors
+    nodes = [Path(name) for name in ast.literal_eval(marked["nodes"])]
+    statements = {
+        ast.unparse(one) for name in nodes for one in ast.walk(ast.parse((task / name).read_text()))
+    }
+    heads = {text.split("\n")[0] for text in statements}
+    for site in (site for sites in known["right"] for site in sites):
+        module, _, rest = site.partition(":")
+        assert module in {name.stem for name in nodes}
+        assert rest.partition(":")[2].partition(" #")[0] in heads, site
+    assert known["repairable"] == bool(known["right"])
+
+
+@pytest.mark.parametrize("task", WRITTEN_BY_HAND, ids=lambda task: f"{task.parent.name}/{task.name}")
+def test_a_repair_by_hand_fits_its_files(task: Path, tmp_path: Path) -> None:
+    known = answer(task)
+    assert known["repairable"] == bool(known["hand"])
+    assert bool(known["known"]) == (known["kind"] not in ("structure", "unrepairable"))
+    texts = {name: (task / name).read_text() for name, _, _ in known["hand"]}
+    for name, old, new in known["hand"]:
+        assert texts[name].count(old) == 1, (name, old)
+        texts[name] = texts[name].replace(old, new)
+    for name, text in texts.items():
+        if name.endswith(".py"):
+            compile(text, name, "exec")
+
+
+def test_the_second_half_has_every_kind() -> None:
+    kinds = [answer(task)["kind"] for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_2"]
+    assert {kind: kinds.count(kind) for kind in kinds} == {
+        "permanent": 2,
+        "structure": 1,
+        "range": 1,
+        "rare failures": 2,
+        "narrow window": 2,
+        "sparse reward": 1,
+        "unrepairable": 1,
+    }

@@ -1,0 +1,106 @@
+"""Draw a recording of the terminal from a true run of the tutorial: docs/images/terminal.svg.
+
+    python -m website.terminal
+
+`python -m website.tutorial --write` draws it, too, where it finds other output. Lines appear as they were printed. A
+command that takes longer than two seconds is shown as two seconds.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import NamedTuple
+
+from website.pages import ROOT
+from website.tutorial import TUTORIAL, Ran, run
+
+TARGET = ROOT / "docs" / "images" / "terminal.svg"
+SHOWN = ("tarl-lint", "pytest", "tarl apply", "git diff")  # what the commands that are shown begin with
+HIDDEN = ("tarl-lint --", "pytest -q\n")  # of those, the ones that are left out
+COLUMNS, ROWS, LINE, CHARACTER, EDGE = 92, 30, 17, 7.4, 14
+TYPED, PAUSE, LONGEST = 0.045, 1.2, 2.0  # s: for a character, after a command's output, for a command
+STYLE = """text{font:12.3px ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;fill:#e6e6e6;white-space:pre;\
+opacity:0;animation:show 1ms linear forwards}
+.c{fill:#ffffff;font-weight:700}.a{fill:#7ee2a8}.r{fill:#ff9d94}.v{fill:#ffd479}
+@keyframes show{to{opacity:1}}
+@media (prefers-reduced-motion:reduce){text,#s{animation-delay:0s!important;animation-duration:1ms!important}}"""
+
+
+class Line(NamedTuple):
+    """A line of the terminal, the class that colours it, and the second at which it appears."""
+
+    text: str
+    kind: str
+    second: float
+
+
+def kind(text: str) -> str:
+    """Return the class of a line of output: added, removed, a verdict, or none."""
+    if text.startswith(("+", "applied")) or "accepted: " in text:
+        return "a"
+    if text.startswith(("-", "FAILED")) and not text.startswith("--write"):
+        return "r"
+    return "v" if text.startswith(("degraded", "  verdict", "  where")) else ""
+
+
+def recorded(ran: Sequence[Ran]) -> list[Line]:
+    """Return the lines of the recording, in order of time."""
+    lines, second = [], 0.5
+    for one in ran:
+        line = one.command.line
+        if not line.startswith(SHOWN) or f"{line}\n".startswith(HIDDEN):
+            continue
+        lines.append(Line(f"$ {line}", "c", second))
+        second += TYPED * len(line) + min(one.seconds, LONGEST)
+        for text in one.printed.splitlines():
+            lines.append(Line(text, kind(text), second))
+            second += 0.03
+        second += PAUSE
+    return lines
+
+
+def drawn(lines: Sequence[Line]) -> str:
+    """Return the animated picture of a terminal that scrolls."""
+    height = ROWS * LINE + 2 * EDGE
+    width = round(COLUMNS * CHARACTER) + 2 * EDGE
+    end = lines[-1].second + 0.1
+    scrolls = [(line.second / end * 100, at + 1 - ROWS) for at, line in enumerate(lines) if at >= ROWS]
+    frames = "".join(f"{percent:.3f}%{{transform:translateY({-LINE * rows}px)}}" for percent, rows in scrolls)
+    last = -LINE * max(0, len(lines) - ROWS)
+    texts = [
+        f'<text x="{EDGE}" y="{EDGE + LINE * (at + 0.75):.1f}" class="{line.kind}" '
+        f'style="animation-delay:{line.second:.2f}s">{escape(line.text)}</text>'
+        for at, line in enumerate(lines)
+        if line.text
+    ]
+    return "\n".join(
+        [
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}">',
+            f"<style>{STYLE}\n#s{{animation:scroll {end:.1f}s step-end forwards}}",
+            f"@keyframes scroll{{0%{{transform:none}}{frames}100%{{transform:translateY({last}px)}}}}</style>",
+            f'<rect width="{width}" height="{height}" rx="8" fill="#1e1e24"/>',
+            f'<clipPath id="w"><rect y="{EDGE / 2}" width="{width}" height="{height - EDGE}"/></clipPath>',
+            '<g clip-path="url(#w)"><g id="s">',
+            *texts,
+            "</g></g></svg>\n",
+        ]
+    )
+
+
+def main() -> None:
+    """Run the tutorial and draw it."""
+    with tempfile.TemporaryDirectory() as folder:
+        draw(list(run(TUTORIAL.read_text("utf-8"), Path(folder).resolve())))
+    print(f"wrote {TARGET}")
+
+
+def draw(ran: Sequence[Ran]) -> None:
+    """Draw a run of the tutorial."""
+    TARGET.write_text(drawn(recorded(ran)), "utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,210 @@
+"""Run the commands of a page and compare, or renew, the output that it shows.
+
+    python -m website.tutorial [--write] [PAGE]
+
+A block with a title is a file, a block of `console` holds commands after `$ ` and their output. All run in one shell,
+from top to bottom, in an empty folder. A line `...` in the output stands for lines that are left out. What depends on
+the machine is not compared: seconds that a run took, and digests. After `<!-- nightly -->` a block runs only with
+TARL_SLOW=1, since it installs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import NamedTuple
+
+from website.pages import ROOT
+
+TUTORIAL = ROOT / "docs" / "tutorial.md"
+BLOCK = re.compile(
+    r"(<!-- nightly -->\n)?^```(\w+)(?: title=\"([^\"]+)\")?\n(.*?)^```$", re.MULTILINE | re.DOTALL
+)
+VARIES = re.compile(r"\bin \d+\.\d+s\b|\b[0-9a-f]{7,}\b")
+LEFT_OUT = re.compile(r"^\.\.\.\n", re.MULTILINE)
+END = "__end of output__"
+LIMIT = 300  # seconds that one command may take
+
+
+class Command(NamedTuple):
+    """A command of a page and the output that the page shows below it."""
+
+    line: str
+    output: str
+
+
+class Block(NamedTuple):
+    """A block of a page that is a file or a list of commands; where its text stands in the page."""
+
+    start: int
+    end: int
+    file: str | None
+    text: str
+    nightly: bool
+
+    def commands(self) -> list[Command]:
+        """Return the commands of a console block."""
+        parts = re.split(r"^\$ (.*)\n", self.text, flags=re.MULTILINE)[1:]
+        return [Command(line, output) for line, output in zip(parts[::2], parts[1::2], strict=True)]
+
+
+def blocks(page: str) -> list[Block]:
+    """Return the files and console blocks of a page, in order."""
+    return [
+        Block(found.start(4), found.end(4), found[3], found[4], bool(found[1]))
+        for found in BLOCK.finditer(page)
+        if found[3] or found[2] == "console"
+    ]
+
+
+def same(shown: str, printed: str) -> bool:
+    """Tell whether the output that a page shows is what was printed, apart from what varies and what is left out."""
+    parts = [re.escape(VARIES.sub("~", part)) for part in LEFT_OUT.split(shown)]
+    return re.fullmatch("(?:.*\n)*?".join(parts), VARIES.sub("~", printed)) is not None
+
+
+def shortened(shown: str, printed: str) -> str:
+    """Return what was printed with as many lines at either end as the page shows."""
+    head, *rest = LEFT_OUT.split(shown, maxsplit=1)
+    lines = printed.splitlines(keepends=True)
+    if not rest:
+        return printed
+    first, last = head.count("\n"), rest[0].count("\n")
+    return "".join([*lines[:first], "...\n", *lines[len(lines) - last :]])
+
+
+class Shell(AbstractContextManager["Shell"]):
+    """A shell that runs one command after the other in a folder, as a reader's does."""
+
+    def __init__(self, folder: Path) -> None:
+        self._shell = subprocess.Popen(
+            ["bash", "--noprofile", "--norc"],
+            cwd=folder,
+            env=_environment(folder),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+
+    def __exit__(self, *_: object) -> None:
+        """End the shell."""
+        self._shell.kill()
+        self._shell.communicate()
+
+    def run(self, line: str) -> str:
+        """Return what a command prints. Raises EOFError where it ends the shell."""
+        assert self._shell.stdin is not None
+        assert self._shell.stdout is not None
+        self._shell.stdin.write(
+            f"{line} < /dev/null\necho {END}\n" if "<<" not in line else f"{line}\necho {END}\n"
+        )
+        self._shell.stdin.flush()
+        printed = ""
+        for text in self._shell.stdout:
+            if text.rstrip("\n").endswith(END):
+                return printed + text.rstrip("\n").removesuffix(END)
+            printed += text
+        raise EOFError(f"the shell ended with `{line}`: {printed}")
+
+    def folder(self) -> Path:
+        """Return the folder that the shell is in."""
+        return Path(self.run("pwd").strip())
+
+
+def _environment(folder: Path) -> dict[str, str]:
+    """Return the surroundings of a new user: our commands on PATH, a git without settings, 80 columns."""
+    kept = {
+        name: value
+        for name, value in os.environ.items()
+        if not name.startswith(("PYTEST", "GIT_", "GITHUB_"))
+    }
+    who = {f"GIT_{role}_{what}": value for role in ("AUTHOR", "COMMITTER") for what, value in _WHO.items()}
+    return {
+        **kept,
+        **who,
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+        "HOME": str(folder),
+        "GIT_CONFIG_GLOBAL": os.devnull,
+        "GIT_CONFIG_NOSYSTEM": "1",
+        "GIT_PAGER": "cat",
+        "COLUMNS": "80",
+        "LC_ALL": "C.UTF-8",
+        "NO_COLOR": "1",
+        "PYTEST_ADDOPTS": "-p no:asyncio -p no:randomly -p no:rerunfailures",  # of our development environment
+    }
+
+
+_WHO = {"NAME": "Reader", "EMAIL": "reader@example.org", "DATE": "2026-01-05T09:00:00Z"}
+
+
+class Ran(NamedTuple):
+    """A command that was run: its block, what the page shows, what was printed, and the seconds that it took."""
+
+    block: Block
+    command: Command
+    printed: str
+    seconds: float
+
+
+def run(page: str, folder: Path, *, nightly: bool = False) -> Iterator[Ran]:
+    """Write the files of a page and run its commands in an empty folder, in order."""
+    with Shell(folder) as shell:
+        for block in blocks(page):
+            if block.file is not None:
+                (shell.folder() / block.file).write_text(block.text, "utf-8")
+            elif nightly or not block.nightly:
+                for command in block.commands():
+                    begun = time.perf_counter()
+                    printed = shell.run(command.line)
+                    yield Ran(block, command, printed, time.perf_counter() - begun)
+
+
+def renewed(page: str, ran: list[Ran]) -> str:
+    """Return a page with the output that its commands printed."""
+    texts: dict[Block, str] = {}
+    for one in ran:
+        output = one.command.output
+        if not same(output, one.printed):
+            output = shortened(output, one.printed)
+        texts[one.block] = texts.get(one.block, "") + f"$ {one.command.line}\n{output}"
+    for block, text in reversed(texts.items()):
+        page = page[: block.start] + text + page[block.end :]
+    return page
+
+
+def main() -> int:
+    """Run a page; return 1 where it shows something else than what is printed."""
+    parser = argparse.ArgumentParser(description="Run the commands of a page and compare their output.")
+    parser.add_argument("page", nargs="?", type=Path, default=TUTORIAL)
+    parser.add_argument("--write", action="store_true", help="put what is printed into the page")
+    arguments = parser.parse_args()
+    page = arguments.page.read_text("utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        ran = list(run(page, Path(folder).resolve()))
+    other = [one for one in ran if not same(one.command.output, one.printed)]
+    for one in other:
+        print(f"$ {one.command.line}\n{one.printed}", end="")
+    if arguments.write:
+        arguments.page.write_text(renewed(page, ran), "utf-8")
+        if other and arguments.page.resolve() == TUTORIAL:
+            from website.terminal import draw  # it needs what stands here
+
+            draw(ran)
+    print(
+        f"{shlex.quote(str(arguments.page))}: {len(ran)} commands, {len(other)} print something else than shown"
+    )
+    return int(bool(other) and not arguments.write)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
