@@ -104,6 +104,7 @@ def _unknown(name: str, names: Sequence[str], said: Said) -> str:
             f"from its source; declare this one in the marker, signals=[{first!r}]."
         )
     return (
-        f"{name!r}, which is no signal ({told}): it is no sensor and the test never observes it. Give its value by "
-        f"tarl.observe({first}=…), or read it from a message, signals=[Signal({first!r}, topic=…, field=…)]."
+        f"{name!r}, which is no signal ({told}): it is no sensor, and no tarl.observe in the test's own modules gives "
+        f"it. Give its value by tarl.observe({first}=…), or read it from a message, signals=[Signal({first!r}, "
+        f"topic=…, field=…)]; if a module from elsewhere observes it, declare it, signals=[{first!r}]."
     )

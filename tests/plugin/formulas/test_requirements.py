@@ -114,7 +114,7 @@ MISTAKES = {
     "an unknown signal": (
         'requires=["always (speed > 0)"]',
         OBSERVE,
-        "names 'speed', which is no signal (wet, gap): it is no sensor and the test never observes it. Give its value",
+        "names 'speed', which is no signal (wet, gap): it is no sensor, and no tarl.observe in the test's own",
     ),
     "a typing error in a name that is observed and not declared": (
         'requires=["always (gip > 0)"]',
@@ -129,7 +129,7 @@ MISTAKES = {
     "a name that only another test observes": (
         'requires=["always (ahead > 0)"]',
         OBSERVE + "\n\n\ndef test_other(tarl):\n    tarl.observe(ahead=1)",
-        "names 'ahead', which is no signal (wet, gap): it is no sensor and the test never observes it",
+        "names 'ahead', which is no signal (wet, gap): it is no sensor, and no tarl.observe in",
     ),
     "an observation without any formula": (
         "drifts={}",
