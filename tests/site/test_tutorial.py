@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -38,6 +39,15 @@ def test_the_tutorial_ends_with_a_merged_patch() -> None:
         "tarl apply .tarl/patches/*.patch",
         "git merge --quiet worn-tyres",
     ]
+
+
+@pytest.mark.parametrize(
+    "page", [TUTORIAL, *sorted((ROOT / "docs" / "howto").glob("*.md"))], ids=lambda page: page.stem
+)
+def test_what_is_installed_is_enough_without_ros(page: Path) -> None:
+    installed = re.findall(r'install [^\n]*"tarl\[([\w,]+)\]"', page.read_text("utf-8"))
+    assert all({"pytest", "ros", "report"} <= set(extras.split(",")) for extras in installed)
+    assert installed or page != TUTORIAL
 
 
 def test_output_is_compared_apart_from_digests_and_seconds() -> None:
