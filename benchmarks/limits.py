@@ -51,7 +51,7 @@ def messages(size: int) -> str:
 
 def megabytes(size: int) -> str:
     """Publish three messages of so many MB."""
-    return echo("UInt8MultiArray", [bytes(size * 1_000_000)] * 3)
+    return echo("UInt8MultiArray", [b"\1" * (size * 1_000_000)] * 3)
 
 
 def echo(kind: str, values: list[object]) -> str:
