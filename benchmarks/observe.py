@@ -97,6 +97,8 @@ def table(which: str, bare: Any, observed: Any) -> None:
 
 def block(cycles: int, *, observed: bool, realtime: bool) -> dict[str, Any]:
     """Run a block of cycles and return their times in µs."""
+    if realtime:  # as `chrt -f 10 tarl observe node.py`
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(10))
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "log"
         observer = (
@@ -105,10 +107,6 @@ def block(cycles: int, *, observed: bool, realtime: bool) -> dict[str, Any]:
         if observer is not None:
             observer.begin()
         cycle = node(Path(folder), None if observer is None else observer.stream)
-        if (
-            realtime
-        ):  # threads that are there keep their priority, and processes that are begun do not inherit it
-            os.sched_setscheduler(0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(10))
         try:
             due, executing = loop(cycle, observer, cycles)
         finally:

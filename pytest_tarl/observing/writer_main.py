@@ -32,6 +32,8 @@ def main() -> int:
     """Run; say on standard output that it is ready, or what is in the way."""
     for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(one, signal.SIG_IGN)  # the node decides when it is over
+    with contextlib.suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))  # whatever the node's own is
     with contextlib.suppress(OSError):
         os.nice(NICER)
     order: dict[str, Any] = json.loads(sys.argv[1])
