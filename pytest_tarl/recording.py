@@ -227,7 +227,7 @@ def _plain(value: object) -> object:
 def _unfinished(failing: str, failures: Sequence[str]) -> str:
     first = f" The first failure: {failures[0].rstrip('.')}." if failures else ""
     return (
-        f"{failing}, so this is not yet the software as designed and no utility was written.{first} Mend the node, or "
+        f"{failing}, so this is not yet the software as designed and no utility was written.{first} Fix the node, or "
         "lower min_success on the marker."
     )
 

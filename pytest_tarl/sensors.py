@@ -199,8 +199,8 @@ class Sensor:
         number = as_number(value)
         if number is None:
             raise SettingsError(
-                f"Sensor {self.name!r} got {value!r}, which is no number: mend its field, or give it categories for "
-                "texts."
+                f"Sensor {self.name!r} got {value!r}, which is no number: correct its field, or give it categories for "
+                "strings."
             )
         return number
 

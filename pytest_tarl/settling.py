@@ -49,17 +49,17 @@ class Settling:
             )
             ran = f"the first {self.episodes} episodes" if stopped else f"{self.episodes} episodes"
             share = self.passed / self.episodes
-            told = f"{failed} of {ran} fail off-line (success {share:.1%}, min_success {least:.1%}{stopped})"
+            told = f"{failed} of {ran} failed (success {share:.1%}, min_success {least:.1%}{stopped})"
             return told if failed > self._bearable else ""
         sure = f"{self.designation.confidence:.5g}"
         if self._refuted:
             return (
-                f"{failed} of {self.episodes} episodes fail off-line: at confidence={sure}, fewer than {least:.4g} of "
+                f"{failed} of {self.episodes} episodes failed: at confidence={sure}, fewer than {least:.4g} of "
                 "all succeed"
             )
         if not self._shown:
             return (
-                f"{self.passed} of {self.episodes} episodes succeed off-line, which is too near to min_success="
+                f"{self.passed} of {self.episodes} episodes succeeded, which is too near to min_success="
                 f"{least:.4g} to be told from it at confidence={sure}"
             )
         return ""

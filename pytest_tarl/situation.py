@@ -129,7 +129,7 @@ def _value(sensor: Sensor | Signal, message: Any) -> Any:
     except (AttributeError, IndexError, KeyError, TypeError) as problem:
         raise SettingsError(
             f"{type(sensor).__name__} {sensor.name!r}: a message on {sensor.topic} ({type(message).__name__}) has no "
-            f"field {sensor.field!r}. Mend the field in the marker."
+            f"field {sensor.field!r}. Correct the field in the marker."
         ) from problem
 
 
@@ -137,6 +137,7 @@ def _silence(sensor: Sensor) -> str:
     if sensor.topic is None:
         return f"Sensor {sensor.name!r} was never observed: call tarl.observe({sensor.name}=…) in each step."
     return (
-        f"Sensor {sensor.name!r} heard nothing on {sensor.topic}: publish it with tarl.bus.publish({sensor.topic!r}, "
-        f"…), or tell its message with tarl.message({sensor.topic!r}, message), or mend the topic in the marker."
+        f"Sensor {sensor.name!r} received no message on {sensor.topic}: publish it with "
+        f"tarl.bus.publish({sensor.topic!r}, …), report its delivery with tarl.message({sensor.topic!r}, message), "
+        "or correct the topic in the marker."
     )

@@ -162,7 +162,7 @@ class Replay:
         own = {place.name for place in ros.bus.topics() if place.publications}
         for topic in sorted(ros.subscribed - held - own - ALWAYS_THERE):
             self.notes.append(
-                f"{self.bag.path.name} lacks {topic}, which the node subscribes to: it heard nothing there."
+                f"{self.bag.path.name} lacks {topic}, which the node subscribes to: it received no message."
             )
         if not ros.published:
             self.notes.append(f"the node published nothing while {self.bag.path.name} was replayed.")

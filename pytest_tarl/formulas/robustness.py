@@ -52,7 +52,7 @@ def course(formula: Formula, signals: Mapping[str, Samples]) -> Course:
         return Course(formula, {id(atom): visitor.visit(atom) for atom in atoms(formula.tree)})
     except Exception as problem:  # rtamt raises plain ones
         raise SettingsError(
-            f"The formula {formula.text!r} has no value: {str(problem).rstrip('.')}. Mend the formula, or what is "
+            f"The formula {formula.text!r} has no value: {str(problem).rstrip('.')}. Correct the formula, or what is "
             "given for its signals."
         ) from problem
 

@@ -131,12 +131,12 @@ class Process:
 
     def _ended_in(self, error: BaseException) -> NodeError:
         what = (
-            f"exit status {error.code}"
+            f"exited with status {error.code}"
             if isinstance(error, SystemExit)
-            else f"{type(error).__name__}: {error}"
+            else f"raised {type(error).__name__}: {error}"
         )
         where = blame.describe(blame.of_traceback(error.__traceback__))
-        failure = NodeError(f"Node {self.label!r} ended in {what} ({where}).")
+        failure = NodeError(f"Node {self.label!r} {what} ({where}).")
         failure.__cause__ = error
         return failure
 

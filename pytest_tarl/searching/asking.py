@@ -222,7 +222,7 @@ class Asking:
         except (BudgetSpentError, SearchError, KeyboardInterrupt):
             raise
         except Exception as problem:
-            raise SearchError(f"--tarl-search={self.name}: {what} ended in {_told(problem)}.") from problem
+            raise SearchError(f"--tarl-search={self.name}: {what} raised {_told(problem)}.") from problem
 
 
 def _told(problem: BaseException) -> str:

@@ -125,7 +125,7 @@ def test_topics_that_only_the_node_listens_to_may_be_missing_or_of_another_type(
     told = online(deployed, bag)
     told.assert_outcomes(passed=1, deselected=1)
     text = said(told)
-    assert "mission.mcap lacks /mode, which the node subscribes to: it heard nothing there." in text
+    assert "mission.mcap lacks /mode, which the node subscribes to: it received no message." in text
     assert "/lamp was not replayed: the bag has std_msgs/msg/Bool there, the node subscribes to it as" in text
 
 

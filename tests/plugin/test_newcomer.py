@@ -83,7 +83,7 @@ def test_a_fixture_of_another_kind_is_named_without_advice_to_trust_it(tank: pyt
 
 def test_a_failure_that_ends_in_a_full_stop_keeps_one(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "flow = GAIN * missing", "flow = GAIN / 0 * missing")
-    tank.runpytest(*RECORD).stdout.fnmatch_lines(["*ZeroDivisionError*keeper.py, line*[!.]. Mend the node*"])
+    tank.runpytest(*RECORD).stdout.fnmatch_lines(["*ZeroDivisionError*keeper.py, line*[!.]. Fix the node*"])
 
 
 def test_an_interrupt_that_the_node_catches_ends_the_run_and_leaves_the_old_fixture(

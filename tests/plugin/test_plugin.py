@@ -152,7 +152,12 @@ def test_moved_lines_lose_nothing(recorded: pytest.Pytester) -> None:
     ("file", "old", "new", "words"),
     [
         ("test_tank", "        tarl.reward(-abs(1.0 - level))\n", "", "*never called tarl.reward*"),
-        ("test_tank", 'topic="/level", field', 'topic="/lvl", field', "*'level' heard nothing on /lvl*"),
+        (
+            "test_tank",
+            'topic="/level", field',
+            'topic="/lvl", field',
+            "*'level' received no message on /lvl*",
+        ),
         ("test_tank", 'field="data"', 'field="date"', "*no field 'date'*"),
         ("test_tank", 'nodes=["keeper.py"]', 'nodes=["keepr.py"]', "*no such file*"),
         ("test_tank", 'tarl.start("keeper.py")', 'tarl.start("keepr.py")', "*there is no file 'keepr.py'*"),
@@ -191,7 +196,7 @@ def test_episodes_that_fail_are_reported_as_unfinished_software(tank: pytest.Pyt
     result = tank.runpytest(*RECORD)
     result.assert_outcomes(failed=1, deselected=1)
     result.stdout.fnmatch_lines(
-        ["*5 of the first 5 episodes fail off-line*the other 11 were not run*tank not full*min_success*"]
+        ["*5 of the first 5 episodes failed*the other 11 were not run*tank not full*min_success*"]
     )
 
 

@@ -116,9 +116,10 @@ def test_whatever_a_node_ends_in_is_a_sentence_with_its_traceback_and_the_tests_
     told = tank.runpytest("test_tank.py")
     told.assert_outcomes(failed=1, passed=1)
     text = told.stdout.str()
+    verb = "exited with status" if ending.startswith("SystemExit") else "raised"
     told.stdout.fnmatch_lines(
         [
-            "Node '/keeper' ended in *(keeper.py, line *, in regulated).",
+            f"Node '/keeper' {verb} *(keeper.py, line *, in regulated).",
             "Traceback (most recent call last):",
             "*keeper.py*line*in main",
             "*flow = regulated(missing)",
@@ -130,7 +131,7 @@ def test_whatever_a_node_ends_in_is_a_sentence_with_its_traceback_and_the_tests_
     assert "scheduler.py" not in text
     assert "INTERNALERROR" not in text
     recorded = tank.runpytest(*RECORD)
-    recorded.stdout.fnmatch_lines(["*The first failure: Node '/keeper' ended in *"])
+    recorded.stdout.fnmatch_lines(["*The first failure: Node '/keeper' raised *"])
 
 
 def test_the_debugger_stops_in_the_node(tank: pytest.Pytester) -> None:

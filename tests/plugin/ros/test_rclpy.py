@@ -415,7 +415,7 @@ def test_time_and_duration_calculate_and_convert(start: Start) -> None:
 def test_exception_in_a_callback_ends_the_node_and_is_told(start: Start) -> None:
     ros = start(FOLLOWER.replace("self.error = msg.data - 0.5", "self.error = msg.dat - 0.5"))
     with pytest.raises(
-        NodeError, match=r"'/follower' ended in AttributeError.*node\.py, line \d+, in on_light"
+        NodeError, match=r"'/follower' raised AttributeError.*node\.py, line \d+, in on_light"
     ):
         ros.bus.publish("light", Float64(data=1.0))
 

@@ -141,7 +141,7 @@ def test_publish_takes_fields_by_position_by_keyword_and_messages(start: Start) 
 
 
 def test_publishing_what_does_not_fit_the_type_is_an_error_of_the_node(start: Start) -> None:
-    with pytest.raises(NodeError, match=r"'/talker' ended in ROSSerializationException.*node.py, line 5"):
+    with pytest.raises(NodeError, match=r"'/talker' raised ROSSerializationException.*node.py, line 5"):
         start("""
             import rospy
             from std_msgs.msg import Int32
@@ -428,7 +428,7 @@ def test_exception_of_a_node_names_node_exception_and_line(start: Start) -> None
         divide(0)
     """)
     with pytest.raises(
-        NodeError, match=r"'/faulty' ended in ZeroDivisionError.*node\.py, line 6, in divide"
+        NodeError, match=r"'/faulty' raised ZeroDivisionError.*node\.py, line 6, in divide"
     ) as caught:
         ros.step(2.0)
     assert isinstance(caught.value.__cause__, ZeroDivisionError)
@@ -449,7 +449,7 @@ def test_exception_in_a_callback_is_raised_where_the_test_publishes(start: Start
 
 def test_exit_status_of_a_node_is_told(start: Start) -> None:
     start("import sys; sys.exit(0)")
-    with pytest.raises(NodeError, match="exit status 3"):
+    with pytest.raises(NodeError, match="exited with status 3"):
         start("import sys; sys.exit(3)")
 
 

@@ -133,8 +133,8 @@ def test_a_spent_budget_ends_it_even_within_a_batch() -> None:
     [
         ([1.0], "a finite factor for each of the 3 constants"),
         ([1.0, 1.0, math.nan], "a finite factor for each of the 3 constants"),
-        (["one", 1.0, 1.0], r"ask\(\) ended in ValueError"),
-        (None, r"ask\(\) ended in TypeError"),
+        (["one", 1.0, 1.0], r"ask\(\) raised ValueError"),
+        (None, r"ask\(\) raised TypeError"),
     ],
 )
 def test_a_proposal_that_is_none_is_said(asked: Any, words: str) -> None:
@@ -152,7 +152,7 @@ def test_what_fails_in_the_plug_in_is_named_with_its_line() -> None:
             raise ZeroDivisionError("by nothing")
 
     with pytest.raises(
-        SearchError, match=r"tell\(\) ended in ZeroDivisionError: by nothing \(test_asking.py, line"
+        SearchError, match=r"tell\(\) raised ZeroDivisionError: by nothing \(test_asking.py, line"
     ):
         next(asking(Broken, Trials(run, 10)).candidates())
 
@@ -161,7 +161,7 @@ def test_what_fails_in_the_plug_in_is_named_with_its_line() -> None:
     ("make", "words"),
     [
         (lambda constants, seed: object(), "no method ask and no tell"),
-        (lambda constants: None, "its factory ended in TypeError"),
+        (lambda constants: None, "its factory raised TypeError"),
         (type("Odd", (Grid,), {"batch": 0}), "batch must be a whole number"),
     ],
 )
