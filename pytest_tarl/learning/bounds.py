@@ -99,7 +99,8 @@ def mean_of(
 ) -> Bound:
     """Return the one-sided bounds of a mean, each at the confidence; exact where the range is declared.
 
-    With `anytime` they hold after every episode at once. Raises ValueError where a total lies outside of the range.
+    With `anytime` they hold after every episode at once. A bet that was won early stays won, so a bound may pass the
+    mean of what was seen; there it ends. Raises ValueError where a total lies outside of the range.
     """
     values = np.asarray(totals, dtype=np.float64)
     if declared is None:
@@ -110,7 +111,10 @@ def mean_of(
     if share.size and not (share.min() >= 0.0 and share.max() <= 1.0):
         raise ValueError(f"a total lies outside of {declared.low:g} to {declared.high:g}")
     risk = 1.0 - confidence
-    low, high = (bet_low(one, risk, anytime=anytime) for one in (share, 1.0 - share))
+    low, high = (
+        min(bet_low(one, risk, anytime=anytime), float(one.mean())) if one.size else 0.0
+        for one in (share, 1.0 - share)
+    )
     return Bound(
         declared.low + width * low, declared.high - width * high, confidence, "betting", True, values.size
     )

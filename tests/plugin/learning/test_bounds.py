@@ -7,7 +7,7 @@ import math
 import hypothesis.strategies as st
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 
 from pytest_tarl.learning.binomial import BinomialTail
 from pytest_tarl.learning.bounds import (
@@ -111,6 +111,7 @@ def test_what_holds_at_any_time_is_wider_than_what_holds_once(
     CONFIDENCES,
     st.booleans(),
 )
+@example([0.0] * 3 + [1.0] * 3, 0.0, 1.0, 0.8, False)
 @settings(deadline=None)
 def test_bounds_of_a_mean_hold_it_and_move_with_its_unit(
     shares: list[float], low: float, width: float, confidence: float, anytime: bool
