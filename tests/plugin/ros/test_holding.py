@@ -131,7 +131,7 @@ def test_whatever_a_node_ends_in_is_a_sentence_with_its_traceback_and_the_tests_
     assert "scheduler.py" not in text
     assert "INTERNALERROR" not in text
     recorded = tank.runpytest(*RECORD)
-    recorded.stdout.fnmatch_lines(["*The first failure: Node '/keeper' raised *"])
+    recorded.stdout.fnmatch_lines([f"*The first failure: Node '/keeper' {verb} *"])
 
 
 def test_the_debugger_stops_in_the_node(tank: pytest.Pytester) -> None:
