@@ -10,7 +10,7 @@ MAX_CALLS = 24  # nested calls that are told apart; deeper ones are taken for li
 LOOKS = 20  # looks into objects, elements read and edges added that take as long as a statement
 MAX_FRAMES = 20_000  # activations of a program
 MAX_STATEMENTS = 10_000  # executed in one run of a root; then calls are taken for library calls
-MANY = 4_000  # statements in one run of a root, after which no function runs often
+MANY = 5_500  # statements in one run of a root, after which no function runs often
 OFTEN = 8  # runs of one function in one run of a root that is as long as that
 PATIENCE = (
     40_000  # statements of a program; then what did not run yet runs once, and at twice as many nothing more
