@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import builtins
 import pickle
+import sys
 import types
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,7 @@ def executed(tmp_path: Path, *, record: bool) -> types.ModuleType:
     plan = {file: sites} if record else {}
     with NodeImports(tmp_path, plan, recorder.hook, bind=recorder.bind) as imports:
         module = imports.run_script(file, "node")
+        del sys.modules["node"]  # a later test may import another one
     assert bool(recorder.finish().site.size) is record
     return module
 
