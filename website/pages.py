@@ -39,7 +39,7 @@ def written() -> dict[PurePosixPath, Path]:
     return {
         place: path
         for place, path in places.items()
-        if path.is_file() and not {"__pycache__", ".tarl"} & set(path.parts)
+        if path.is_file() and not any(part == "__pycache__" or part.startswith(".") for part in place.parts)
     }
 
 

@@ -126,7 +126,8 @@ def _environment(folder: Path) -> dict[str, str]:
     kept = {
         name: value
         for name, value in os.environ.items()
-        if not name.startswith(("PYTEST", "GIT_", "GITHUB_"))
+        if not name.startswith(("PYTEST", "GIT_", "GITHUB_", "COV_", "TARL_"))
+        and name not in ("CI", "BUILD_NUMBER")  # under which pytest shortens no line
     }
     who = {f"GIT_{role}_{what}": value for role in ("AUTHOR", "COMMITTER") for what, value in _WHO.items()}
     return {
