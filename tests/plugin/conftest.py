@@ -14,8 +14,8 @@ from tests.plugin.tank import NODE, TEST
 
 for package in (tarl_lint, pytest_tarl):
     for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
-        if module.name.startswith("pytest_tarl.formulas."):
-            with suppress(ModuleNotFoundError):  # rtamt does not run on every Python
+        if module.name.startswith(("pytest_tarl.formulas.", "pytest_tarl.editor.")):
+            with suppress(ModuleNotFoundError):  # rtamt is not for every Python, pygls is of the extra `lsp`
                 importlib.import_module(module.name)
         elif not module.name.endswith("__main__"):
             importlib.import_module(module.name)
