@@ -21,6 +21,11 @@ class Flag(NamedTuple):
         """Return the name used by `options.options`."""
         return self.name.removeprefix("--tarl-")
 
+    @property
+    def unset(self) -> Any:
+        """Return the value that applies if neither the command line nor the ini file has one."""
+        return False if self.metavar is None else self.default
+
     def declaration(self) -> dict[str, Any]:
         """Return the arguments for argparse."""
         if self.metavar is None:

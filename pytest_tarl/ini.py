@@ -65,7 +65,7 @@ def value_of(config: pytest.Config, key: str) -> Any:
     if typed not in (None, False):
         return typed
     found = _from_ini(config, flag)
-    return found if found is not None else (False if flag.metavar is None else flag.default)
+    return found if found is not None else flag.unset
 
 
 def values(config: pytest.Config) -> tuple[dict[str, Any], list[Flag]]:
@@ -77,8 +77,8 @@ def values(config: pytest.Config) -> tuple[dict[str, Any], list[Flag]]:
     chosen = [flag for flag in FLAGS if config.getoption(flag.name) in (None, False)]
     for flag in chosen:
         if flag.key in WITHIN and not any(found[mode] for mode in WITHIN[flag.key]):
-            found[flag.key] = False if flag.metavar is None else flag.default
-    return found, [flag for flag in chosen if found[flag.key] not in (None, False, flag.default)]
+            found[flag.key] = flag.unset
+    return found, [flag for flag in chosen if found[flag.key] not in (None, flag.unset)]
 
 
 def _from_ini(config: pytest.Config, flag: Flag) -> Any:
