@@ -32,15 +32,15 @@ class Workspace:
         texts = {path: text.encode("utf-8", "surrogatepass") for path, text in buffers.items()}
         return runner.run(self._options, config, buffers=texts, known=self._known)
 
-    def accept(self, fingerprint: str, buffers: Mapping[Path, str]) -> Path:
-        """Add the findings with this fingerprint to the baseline and return its path.
+    def accept(self, fingerprint: str, result: Result) -> Path:
+        """Add the findings of a result with this fingerprint to the baseline and return its path.
 
-        Raises LintError like `lint`, and if the file cannot be written.
+        Raises LintError for unusable settings, an unusable baseline, or if the file cannot be written.
         """
         config = resolve(self._options)
         path = config.baseline or (config.root or Path.cwd()) / BASELINE_NAME
         before = baseline.load(path).entries if path.exists() else ()
-        found = [one for one in self.lint(buffers).found if one.fingerprint.digest() == fingerprint]
+        found = [one for one in result.found if one.fingerprint.digest() == fingerprint]
         kept = [one for one in before if one.fingerprint.digest() != fingerprint]
         baseline.save(path, baseline.merged(found, kept))
         return path

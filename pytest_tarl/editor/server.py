@@ -19,10 +19,15 @@ from pytest_tarl.extras import missing_extra
 from tarl_lint.editing import Result, Workspace
 from tarl_lint.errors import LintError
 
-Apply = Callable[
-    [Path], Iterable[str]
-]  # raises TarlError with a sentence where a patch does not fit any more
+Apply = Callable[[Path], Iterable[str]]  # raises TarlError if the patch no longer fits
 PAUSE = 0.15  # seconds without a keystroke before the workspace is linted
+CHANGES = (
+    types.TEXT_DOCUMENT_DID_OPEN,
+    types.TEXT_DOCUMENT_DID_CHANGE,
+    types.TEXT_DOCUMENT_DID_SAVE,
+    types.TEXT_DOCUMENT_DID_CLOSE,
+    types.WORKSPACE_DID_CHANGE_WATCHED_FILES,
+)
 
 
 class Server(LanguageServer):
@@ -131,26 +136,11 @@ def server(apply: Apply) -> Server:
         ls.begin(_root(ls))
         await ls.lint()
 
-    @made.feature(types.TEXT_DOCUMENT_DID_OPEN)
-    def opened(ls: Server, _: types.DidOpenTextDocumentParams) -> None:
+    def changed(ls: Server, _: object) -> None:
         ls.changed()
 
-    @made.feature(types.TEXT_DOCUMENT_DID_CHANGE)
-    def edited(ls: Server, _: types.DidChangeTextDocumentParams) -> None:
-        ls.changed()
-
-    @made.feature(types.TEXT_DOCUMENT_DID_SAVE)
-    def saved(ls: Server, _: types.DidSaveTextDocumentParams) -> None:
-        ls.changed()
-
-    @made.feature(types.TEXT_DOCUMENT_DID_CLOSE)
-    def closed(ls: Server, _: types.DidCloseTextDocumentParams) -> None:
-        ls.changed()
-
-    @made.feature(types.WORKSPACE_DID_CHANGE_WATCHED_FILES)
-    def watched(ls: Server, _: types.DidChangeWatchedFilesParams) -> None:
-        ls.changed()
-
+    for event in CHANGES:
+        made.feature(event)(changed)
     _answers(made)
     _commands(made)
     return made
@@ -213,10 +203,10 @@ def _touches(first: types.Range, second: types.Range) -> bool:
 def _commands(made: Server) -> None:
     @made.command(fixes.ACCEPT)
     async def accept(ls: Server, fingerprint: str) -> None:
-        if ls.linted is None:
+        if ls.linted is None or ls.result is None:
             return
         try:
-            path = ls.linted.accept(fingerprint, ls.buffers())
+            path = ls.linted.accept(fingerprint, ls.result)
         except LintError as error:
             ls.say(str(error))
             return
