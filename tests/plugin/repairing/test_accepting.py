@@ -173,6 +173,22 @@ class Window(Field):
         return Outcome(DESIGNED if good else DRIFTED, passed=good)
 
 
+def accepted_factor(field: Any, factors: Sequence[float]) -> float:
+    """Examine candidates that multiply the constant by these factors; return the factor of the accepted one."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(
+            "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
+        )
+        examiner = Examiner(field, (ALWAYS,))
+        (first,) = field.candidates
+        moved = first.mutations[0].operand
+        tried = [Candidate((field.mutate(moved, factor),), ALWAYS) for factor in factors]
+        trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
+        accepted = examiner.first(iter(tried), trials)
+    assert isinstance(accepted, Accepted)
+    return float(accepted.candidate.mutations[0].value) / float(moved.value or 1)
+
+
 @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(1.2, 3.5), st.floats(0.0, 1.0), st.floats(1.2, 2.0))
 def test_between_too_little_and_what_breaks_the_designed_world_lies_a_repair(
@@ -181,19 +197,7 @@ def test_between_too_little_and_what_breaks_the_designed_world_lies_a_repair(
     """Windows of 30 % and wider, entered from beyond; a candidate beyond that is not even run."""
     high = low * (1.3 + share)
     field: Any = Window(low, high)
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(
-            "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
-        )
-        examiner = Examiner(field, (ALWAYS,))
-        (first,) = field.candidates
-        moved = first.mutations[0].operand
-        beyond = [Candidate((field.mutate(moved, high * by),), ALWAYS) for by in (1.2, 1.2 * further * 1.1)]
-        trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
-        accepted = examiner.first(iter(beyond), trials)
-    assert isinstance(accepted, Accepted)
-    value = float(accepted.candidate.mutations[0].value) / float(moved.value or 1)
-    assert low <= value <= high
+    assert low <= accepted_factor(field, (high * 1.2, high * 1.2 * further * 1.1)) <= high
     designed = [factor for factor, drift in field.runs if drift is None]
     assert max(designed) <= high * 1.2 + 1e-3
 
@@ -205,21 +209,7 @@ def test_a_narrow_window_between_two_refused_values_is_bisected(
 ) -> None:
     """The bisection begins at the value that is known to gain too little, not at the original."""
     field: Any = Window(low, low * width)
-    with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(
-            "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
-        )
-        examiner = Examiner(field, (ALWAYS,))
-        (first,) = field.candidates
-        moved = first.mutations[0].operand
-        tried = [
-            Candidate((field.mutate(moved, factor),), ALWAYS) for factor in (low * weak, low * width * strong)
-        ]
-        trials = Trials(lambda candidate, seed: field.run(candidate, seed, "mud"), 300)
-        accepted = examiner.first(iter(tried), trials)
-    assert isinstance(accepted, Accepted)
-    value = float(accepted.candidate.mutations[0].value) / float(moved.value or 1)
-    assert low <= value <= low * width
+    assert low <= accepted_factor(field, (low * weak, low * width * strong)) <= low * width
 
 
 def test_missions_that_a_refused_candidate_lost_are_asked_of_the_next_ones_before_their_test(
