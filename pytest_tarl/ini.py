@@ -21,7 +21,7 @@ SWITCHES = {
     "0": False,
 }
 MODES = ("record", "online", "repair")
-# What only makes sense in some modes: an ini file may hold it, and a run in another mode does without it
+# Options for some modes only: runs in other modes ignore them in the ini file
 WITHIN: Mapping[str, tuple[str, ...]] = {
     "drift": ("record", "online"),
     "search": ("repair",),

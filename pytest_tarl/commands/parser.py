@@ -1,4 +1,4 @@
-"""Reading the command line of `tarl`: a mistake shows the help of the command, and the closest word that is known."""
+"""Parse the command line of `tarl`. A mistake shows the help of its command and suggests the closest command."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"\n{self.prog}: {sentence(message)}\n")
 
     def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
-        """Read the words; those that are left over are a mistake in the command, not in `tarl`."""
+        """Parse the arguments. An unknown argument is an error of its command, not of `tarl`."""
         found, extra = self.parse_known_args(args)
         if extra:
             command: Parser = getattr(found, "parser", self)

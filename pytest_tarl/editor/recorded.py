@@ -27,7 +27,7 @@ class Figures:
 
     @property
     def difference(self) -> float:
-        """Return by how much the statement's utility changed."""
+        """Return the change of the statement's utility."""
         return self.online - self.offline
 
 
@@ -100,6 +100,6 @@ def hover(figures: tuple[Figures, ...]) -> str:
 
 
 def hint(figures: tuple[Figures, ...]) -> str:
-    """Return what stands behind a ranked line, "" for one that no comparison ranks."""
+    """Return the inlay hint of a statement, "" if no comparison ranks it."""
     ranked = [one for one in figures if one.rank is not None]
     return ", ".join(f"#{one.rank} {one.drift} {one.difference:+.3g}" for one in ranked)
