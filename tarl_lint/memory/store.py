@@ -180,13 +180,6 @@ class Store:
         reads = self.reads
         if key not in reads.written:
             reads.keys.add(key)
-        value = self.now.get(key)
-        if value is not None:
-            if self.waited and key not in self.root.heeds and not private(key):
-                self._heed(key, value)
-            return None if value is ABSENT else value
-        if key in self.found:
-            return self.found[key]
         return self.peek(key)
 
     def peek(self, key: Key) -> Value | None:
