@@ -19,7 +19,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from tarl_lint import engine
-from tarl_lint.config import Config
 from tarl_lint.flows.reachability import Tracer
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.interpret.interpreter import Interpreter
@@ -27,7 +26,8 @@ from tarl_lint.ir.nodes import Expr, Pos, Stmt
 from tarl_lint.memory import reachable_data
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import Value
-from tarl_lint.source import Module, parse
+from tarl_lint.read.source import Module, parse
+from tarl_lint.settings.config import Config
 
 TESTS = Path("python/ql/test/library-tests/dataflow")
 QUERY = "NormalDataflowTest.ql"

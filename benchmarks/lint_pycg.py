@@ -18,7 +18,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from tarl_lint.config import Config
 from tarl_lint.interpret import call_contexts, calls, worklist
 from tarl_lint.interpret.call_contexts import ROOT_CALL
 from tarl_lint.interpret.fixpoint import Linker
@@ -26,7 +25,8 @@ from tarl_lint.memory import heap
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import Root
 from tarl_lint.memory.values import Obj, pointer
-from tarl_lint.source import Module, parse
+from tarl_lint.read.source import Module, parse
+from tarl_lint.settings.config import Config
 
 SNIPPETS = Path("micro-benchmark/snippets")
 

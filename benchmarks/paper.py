@@ -38,8 +38,8 @@ from pytest_tarl.model import Region
 from pytest_tarl.options import Options
 from pytest_tarl.recording import Recorded, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.repairing.mutants import Mutants
-from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.repair import repair
+from pytest_tarl.repairing.request import Order
 from pytest_tarl.repeating import Instruments, ItemRollout, designated, finish
 from pytest_tarl.rollout import EpisodePlan
 from pytest_tarl.searching import candidates

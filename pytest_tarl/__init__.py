@@ -7,15 +7,15 @@ if TYPE_CHECKING:
     from pytest_tarl.drifts import Drift
     from pytest_tarl.episode import Tarl
     from pytest_tarl.formulas.signals import Signal
-    from pytest_tarl.searching.asking import Constant, Optimiser
+    from pytest_tarl.searching.ask_tell import Constant, Optimiser
     from pytest_tarl.sensors import Sensor
 
 __all__ = ["Constant", "Drift", "Optimiser", "Sensor", "Signal", "Tarl"]
 
 _HOMES = {
-    "Constant": "pytest_tarl.searching.asking",
+    "Constant": "pytest_tarl.searching.ask_tell",
     "Drift": "pytest_tarl.drifts",
-    "Optimiser": "pytest_tarl.searching.asking",
+    "Optimiser": "pytest_tarl.searching.ask_tell",
     "Sensor": "pytest_tarl.sensors",
     "Signal": "pytest_tarl.formulas.signals",
     "Tarl": "pytest_tarl.episode",

@@ -17,12 +17,12 @@ from pytest_tarl.learning import judgements, localize, parts
 from pytest_tarl.learning.bounds import Range
 from pytest_tarl.learning.drift import Difference, compare, paper_region
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.learning.looks import Look, certain, concluded, planned
 from pytest_tarl.learning.marginal import lent
 from pytest_tarl.learning.merging import aligned, merge
 from pytest_tarl.learning.packing import represented
 from pytest_tarl.learning.permutation import permutations_for
 from pytest_tarl.learning.sarsa import LEARNERS
+from pytest_tarl.learning.sequential import Look, certain, concluded, planned
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled, tiled_batch
 from pytest_tarl.logged import read_log

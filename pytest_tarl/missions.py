@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from pytest_tarl.comparing import Online, run_online
-from pytest_tarl.correcting import corrected
+from pytest_tarl.corrected_verdicts import corrected
 from pytest_tarl.design import AS_WRITTEN, fixture_path, replaced
 from pytest_tarl.designation import Designation
 from pytest_tarl.errors import AnalysisError, FixtureError, SettingsError
@@ -21,17 +21,17 @@ from pytest_tarl.learning.binning import learned_edges
 from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.model import Comparison, Repair
-from pytest_tarl.named import silent_files
+from pytest_tarl.modules_of_tests import Digests, digests, remark
 from pytest_tarl.options import Options
 from pytest_tarl.recording import Progress, Tell, read_values, record
-from pytest_tarl.repairing.order import Neighbour, Order
 from pytest_tarl.repairing.repair import repair
+from pytest_tarl.repairing.request import Neighbour, Order
 from pytest_tarl.repeating import Instruments
 from pytest_tarl.report import ci, guarantees, table, terminal, words
 from pytest_tarl.report.table import Row
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.sensors import Sensor, declared, with_edges
-from pytest_tarl.testside import Digests, digests, remark
+from pytest_tarl.unrecorded_nodes import silent_files
 from tarl_lint.api import Analysis, analyse
 
 RolloutWith = Callable[[Instruments, tuple[Sensor, ...]], Rollout]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from pytest_tarl import holding, ini
+from pytest_tarl import held_interpreter, ini
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.extras import missing_extra, missing_packages
 from pytest_tarl.flags import FLAGS, Flag
@@ -34,7 +34,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Register the marker, and the session object when a mode is asked for."""
     config.addinivalue_line("markers", MARKER)
-    holding.prepare()
+    held_interpreter.prepare()
     if _asked(config):
         sentence = missing_extra("A run with TARL's flags")
         if sentence is not None:
@@ -147,7 +147,7 @@ def _look_for_plugged(config: pytest.Config, options: Options) -> None:
     """Look for searches of the user's own now, not after all the episodes of a comparison. Raises SettingsError."""
     named = [name for name in options.searches if ":" in name and options.mode == "repair"]
     if named:
-        from pytest_tarl.searching.asking import factory
+        from pytest_tarl.searching.ask_tell import factory
 
         for name in named:
             factory(name, (config.invocation_params.dir, config.rootpath))

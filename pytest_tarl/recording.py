@@ -24,12 +24,12 @@ from pytest_tarl.learning.sequences import event_sequences
 from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Floats, Sample
 from pytest_tarl.model import Guarantee
+from pytest_tarl.modules_of_tests import Digests
 from pytest_tarl.options import Options
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import stored
 from pytest_tarl.settling import Settling, guarantee
-from pytest_tarl.testside import Digests
 
 Progress = Callable[[int, int, str], None]
 Tell = Callable[[str], None]

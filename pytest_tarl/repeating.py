@@ -21,9 +21,9 @@ from _pytest.runner import runtestprotocol
 from pytest_tarl import ini
 from pytest_tarl.designation import Designation, designation
 from pytest_tarl.errors import NodeError, RequirementError, SettingsError, StuckNodeError, TarlError
+from pytest_tarl.formula_calls import said
 from pytest_tarl.printable import printable
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
-from pytest_tarl.sayings import said
 from pytest_tarl.scenarios import without_drift
 from pytest_tarl.seeds import episode_seed
 

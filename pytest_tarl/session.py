@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from _pytest.terminal import TerminalReporter
 
     from pytest_tarl.missions import Account, Compared, Other
-    from pytest_tarl.repairing.joining import Joined
+    from pytest_tarl.repairing.merge_patches import Joined
     from pytest_tarl.rollout import Rollout
 
 PLAIN_WIDTH = 80  # columns where there is no terminal to ask, as under `-p no:terminal`
@@ -160,7 +160,7 @@ class TarlSession:
 
     def _joined(self) -> Joined:
         """Return what the patches of the run make together."""
-        from pytest_tarl.repairing.joining import joined
+        from pytest_tarl.repairing.merge_patches import joined
 
         patches = tuple(map(Path, self._summary.patches))
         return joined(patches, self.config.invocation_params.dir)
@@ -192,14 +192,14 @@ class TarlSession:
             others=self._others(item),
         )
         try:
-            with ExitStack() as crews:
+            with ExitStack() as executors:
 
                 def rollout_with(instruments: Instruments, sensors: tuple[Sensor, ...]) -> Rollout:
                     if self.options.workers == 1 and self.options.cluster is None:
                         return ItemRollout(item, replace(marked, sensors=sensors), instruments)
-                    from pytest_tarl.working.crew import opened
+                    from pytest_tarl.workers.executor import opened
 
-                    return crews.enter_context(opened(item, instruments, sensors, self.options))
+                    return executors.enter_context(opened(item, instruments, sensors, self.options))
 
                 outcome = mission.run(rollout_with)
                 return outcome if isinstance(outcome, Account) or self.options.holm else outcome.told()

@@ -7,13 +7,14 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
-from tarl_lint import discover, engine
-from tarl_lint.config import Config
-from tarl_lint.discover import SourceFile
+from tarl_lint import engine
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.model import Flow, Operand, SiteId, Step
 from tarl_lint.queries.probe import Prober
-from tarl_lint.source import Module, SourceError, parse
+from tarl_lint.read import discover
+from tarl_lint.read.discover import SourceFile
+from tarl_lint.read.source import Module, SourceError, parse
+from tarl_lint.settings.config import Config
 
 
 @dataclass(frozen=True, eq=False)

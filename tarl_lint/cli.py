@@ -12,15 +12,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-from tarl_lint import baseline, report, runner
-from tarl_lint.config import Config, Options, resolve
+from tarl_lint import baseline, report
 from tarl_lint.errors import LintError, OutputError
 from tarl_lint.files import shown, write_whole
-from tarl_lint.keys import BASELINE_NAME
 from tarl_lint.options import options, parser
 from tarl_lint.report import paint, summary
 from tarl_lint.report.line import Line, View, plain
-from tarl_lint.runner import Result
+from tarl_lint.run import runner
+from tarl_lint.run.runner import Result
+from tarl_lint.settings.config import Config, Options, resolve
+from tarl_lint.settings.schema import BASELINE_NAME
 
 FOUND: Final = 1
 UNUSABLE: Final = 2
@@ -53,7 +54,7 @@ def _guarded(arguments: Sequence[str] | None) -> int:
         return UNUSABLE
     except KeyboardInterrupt:
         if arguments is None:
-            from tarl_lint.interrupts import over
+            from tarl_lint.run.interrupts import over
 
             over()
         print("tarl-lint: interrupted.", file=sys.stderr)
@@ -90,7 +91,7 @@ def _lint(chosen: Options, config: Config) -> Result:
     """Run the linter; show the progress of a long run on a terminal."""
     if not sys.stderr.isatty():
         return runner.run(chosen, config)
-    from tarl_lint.progress import Progress
+    from tarl_lint.run.progress import Progress
 
     with Progress(sys.stderr) as progress:
         return runner.run(chosen, config, progress.tell)
@@ -112,7 +113,7 @@ def _check(config: Config) -> None:
             origin = dict(config.origins)[key]
             check_codes(codes, f"--{key}" if origin == "command line" else f"{origin}: {key!r}")
     if config.wrappers:
-        from tarl_lint.wrapping import facts
+        from tarl_lint.settings.wrappers import facts
 
         facts(config.wrappers)
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from tarl_lint import baseline, cache, runner
-from tarl_lint.cache import Cache, Report
-from tarl_lint.config import Options, resolve
-from tarl_lint.keys import BASELINE_NAME
-from tarl_lint.runner import Result
+from tarl_lint import baseline
+from tarl_lint.run import cache, runner
+from tarl_lint.run.cache import Cache, Report
+from tarl_lint.run.runner import Result
+from tarl_lint.settings.config import Options, resolve
+from tarl_lint.settings.schema import BASELINE_NAME
 
 __all__ = ["Result", "Workspace"]
 

@@ -6,18 +6,18 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import Final, cast
 
-from tarl_lint.config import Config
-from tarl_lint.deep_stack import with_deep_stack
 from tarl_lint.evidence import Evidence
 from tarl_lint.flows.reachability import Tracer
-from tarl_lint.gc_paused import without_collection
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.model import RULES, Cut, Finding, Flow
 from tarl_lint.node_names import node_name
 from tarl_lint.prefilter.by_words import groups, relevant
 from tarl_lint.prefilter.one_sided import Rule, one_sided
+from tarl_lint.read.source import Module
 from tarl_lint.rules import tarl101, tarl102, tarl103
-from tarl_lint.source import Module
+from tarl_lint.run.deep_stack import with_deep_stack
+from tarl_lint.run.gc_paused import without_collection
+from tarl_lint.settings.config import Config
 
 HAZARDS: Final = tuple(
     cast("Rule", import_module(f"tarl_lint.rules.{code.lower()}"))

@@ -12,9 +12,9 @@ from types import ModuleType
 from typing import Final
 
 from tarl_lint import rules
-from tarl_lint.config import suggestion
 from tarl_lint.errors import UsageError
 from tarl_lint.report.line import Line
+from tarl_lint.settings.config import suggestion
 
 ALIKE: Final = 0.8  # similarity of codes, which all have the prefix TARL
 _HEADINGS: Final = (("INVALID", "Reported"), ("VALID", "Not reported"))

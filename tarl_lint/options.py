@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Final, NoReturn, TypeVar
 
 from tarl_lint import __version__
-from tarl_lint.config import Options, Stdin, suggestion
 from tarl_lint.errors import UsageError
-from tarl_lint.keys import BASELINE_NAME, FAIL_ON, check_pattern
+from tarl_lint.read.source import LARGEST
 from tarl_lint.report import FORMATS
-from tarl_lint.source import LARGEST
+from tarl_lint.settings.config import Options, Stdin, suggestion
+from tarl_lint.settings.schema import BASELINE_NAME, FAIL_ON, check_pattern
 
 T = TypeVar("T")
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.flags import FLAGS
-from tarl_lint.keys import KEYS
+from tarl_lint.settings.schema import KEYS
 from website.pages import schemas
 
 COMMANDS = (
@@ -34,8 +34,8 @@ PUBLIC = {
     ),
     "For worlds": ("pytest_tarl.ros.message_type", "pytest_tarl.ros.Bus"),
     "For searches of your own": (
-        "pytest_tarl.searching.asking.Constant",
-        "pytest_tarl.searching.asking.Optimiser",
+        "pytest_tarl.searching.ask_tell.Constant",
+        "pytest_tarl.searching.ask_tell.Optimiser",
     ),
     "For programs that lint": ("tarl_lint.api",),
 }

@@ -16,8 +16,8 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.options import Options
 from pytest_tarl.recording import mean_flows, run_episodes, sarsa_tables, sound
 from pytest_tarl.repairing.mutants import Mutants
-from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.repair import repair
+from pytest_tarl.repairing.request import Order
 from pytest_tarl.rollout import EpisodePlan
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.seeds import episode_seeds

@@ -20,7 +20,7 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard
 from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.mutants import Mutants
-from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials, confirmed
 

@@ -20,8 +20,8 @@ from ours import prepared
 from stage import HERE, visit
 
 from pytest_tarl.model import Comparison
-from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.repair import repair
+from pytest_tarl.repairing.request import Order
 from pytest_tarl.report.words import verdict_sentence
 
 TARGET = HERE.parent.parent / "docs" / "images" / "repair.svg"

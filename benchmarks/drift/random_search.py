@@ -6,7 +6,7 @@ import math
 import random
 from collections.abc import Sequence
 
-from pytest_tarl.searching.asking import Constant
+from pytest_tarl.searching.ask_tell import Constant
 
 MOVED = 0.5  # share of the constants that a draw moves
 REACH = math.log(10.0)  # by which the logarithm of a factor differs from 0 at most

@@ -12,7 +12,7 @@ from pytest_tarl.commands.targets import Target, shown
 from pytest_tarl.commands.targets import targets as found_targets
 from pytest_tarl.errors import RefusedError, RepairError
 from pytest_tarl.patching.changes import FilePatch, MisfitError, identical
-from pytest_tarl.patching.combining import combined, conflicts, separated
+from pytest_tarl.patching.merge import combined, conflicts, separated
 from pytest_tarl.patching.reading import Patch, read
 
 

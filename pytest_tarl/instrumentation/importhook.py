@@ -30,7 +30,7 @@ from pytest_tarl.instrumentation.launching import (
 )
 from pytest_tarl.instrumentation.nodecode import NodeCode
 from pytest_tarl.instrumentation.sites import Position, Positions
-from pytest_tarl.stale import holders, of_tests, outlived
+from pytest_tarl.stale_modules import holders, of_tests, outlived
 
 Bind = Callable[[CodeType], CodeType]
 _INSTALLED = frozenset({"site-packages", "dist-packages"})

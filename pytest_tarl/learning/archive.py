@@ -12,7 +12,7 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from pytest_tarl.memory import available
+from pytest_tarl.free_memory import available
 
 FREE = 256_000_000  # bytes that any file may unpack to
 RATIO = 100  # bytes more for each byte of the file; recordings take 2 to 20

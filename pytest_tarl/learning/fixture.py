@@ -63,7 +63,7 @@ class Fixture:
     stated: Guarantee | None = None
     world: Mapping[str, Mapping[str, str]] = field(
         default_factory=dict
-    )  # file → definition → digest, see testside.py
+    )  # file → definition → digest, see modules_of_tests.py
 
 
 def save(fixture: Fixture, path: Path) -> None:

@@ -13,8 +13,8 @@ from pytest_tarl.errors import AnalysisError, LogError
 from pytest_tarl.instrumentation.importhook import NodeImports
 from pytest_tarl.instrumentation.sites import Plan, plan
 from pytest_tarl.learning.fixture import Fixture, load
+from pytest_tarl.observing.listeners import Topics, watched
 from pytest_tarl.observing.observer import Observer
-from pytest_tarl.observing.watching import Topics, watched
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.realros.choice import libraries
 from pytest_tarl.ros.argv import command_line

@@ -12,9 +12,9 @@ from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.between import WEAK, Between, further
 from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
-from pytest_tarl.repairing.neighbours import NOTHING_BESIDE, Beside, beside
 from pytest_tarl.repairing.placing import Placing
 from pytest_tarl.repairing.ranges import Ranged, over_the_range
+from pytest_tarl.repairing.regression_tests import NOTHING_BESIDE, Beside, beside
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import SEEDS, TOO_LITTLE, Acceptance, Outcome, World, accept, risk_of
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials

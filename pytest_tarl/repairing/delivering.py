@@ -14,8 +14,8 @@ from pytest_tarl.errors import RepairError
 from pytest_tarl.files import write_atomically
 from pytest_tarl.model import Attempt, Comparison, Edit, Guarantee, Partial, Repair
 from pytest_tarl.patching import patch
-from pytest_tarl.patching.combining import CONSTANT
 from pytest_tarl.patching.dependencies import undeclared
+from pytest_tarl.patching.merge import CONSTANT
 from pytest_tarl.patching.mutate import Mutation, guard_text
 from pytest_tarl.patching.reading import read
 from pytest_tarl.patching.suggesting import sarif
@@ -23,8 +23,8 @@ from pytest_tarl.patching.verify import nothing_lost
 from pytest_tarl.repairing.accepting import Accepted
 from pytest_tarl.repairing.ledger import Refused, Tried
 from pytest_tarl.repairing.mutants import Mutants
-from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.partial import Best
+from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.structural import form_words
 from pytest_tarl.report import guarantees, words
 from pytest_tarl.searching.plainness import edges

@@ -9,7 +9,7 @@ from pytest_tarl.errors import RepairError, StaleTextError, TarlError
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.mutate import Mutation, is_integral, mutations, rewrite
 from pytest_tarl.recording import sound
-from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.request import Order
 from pytest_tarl.rollout import Ahead, EpisodePlan, EpisodeRun, Rollout
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate, Wanted

@@ -10,7 +10,7 @@ from statistics import fmean
 from pytest_tarl import seeds
 from pytest_tarl.drifts import sizes
 from pytest_tarl.model import Band, Sizes
-from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.accept import TOO_LITTLE, Acceptance, Outcome
 
 LEAST_NEAR = 2  # episodes that a candidate holds in before it is said to fit a part of the range

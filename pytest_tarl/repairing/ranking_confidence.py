@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from pytest_tarl.model import OperandEffect
 from pytest_tarl.repairing.accepting import Accepted
-from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.request import Order
 from pytest_tarl.report import words
 from pytest_tarl.searching.race import CONFIDENCE
 from pytest_tarl.searching.ranking import Ranking

@@ -11,19 +11,19 @@ from pytest_tarl.learning.judgements import with_worlds
 from pytest_tarl.model import Comparison, FormulaRow, Guarantee, Guard, OperandEffect, SearchTrace, SitePlace
 from pytest_tarl.repairing import strategies
 from pytest_tarl.repairing.accepting import Accepted, Examiner
+from pytest_tarl.repairing.budget import Purse
 from pytest_tarl.repairing.delivering import attempts, delivered, partial, remarks, withheld
 from pytest_tarl.repairing.enriching import enriched
 from pytest_tarl.repairing.guaranteeing import guaranteed
+from pytest_tarl.repairing.incumbent import Watch
 from pytest_tarl.repairing.ledger import Refused
 from pytest_tarl.repairing.mutants import Mutants
-from pytest_tarl.repairing.order import Order
 from pytest_tarl.repairing.partial import best
-from pytest_tarl.repairing.purse import Purse
 from pytest_tarl.repairing.ranges import Ranged, bands_in_words, fits_a_part, repaired_sizes
 from pytest_tarl.repairing.ranking_confidence import ranking_confidence
+from pytest_tarl.repairing.request import Order
 from pytest_tarl.repairing.structural import Structures
-from pytest_tarl.repairing.unnamed import unnamed_modules
-from pytest_tarl.repairing.watching import Watch
+from pytest_tarl.repairing.unsearched_modules import unnamed_modules
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import BudgetSpentError, Strategy, label

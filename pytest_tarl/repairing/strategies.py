@@ -8,9 +8,9 @@ from pathlib import Path
 from pytest_tarl import seeds
 from pytest_tarl.model import Guard
 from pytest_tarl.repairing.mutants import Mutants
-from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching import candidates
-from pytest_tarl.searching.asking import Asking, factory
+from pytest_tarl.searching.ask_tell import Asking, factory
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
 from pytest_tarl.searching.halving import Halving
 from pytest_tarl.searching.ranking import Ranking

@@ -18,7 +18,7 @@ from pytest_tarl.patching.document import Document, document
 from pytest_tarl.patching.mutate import Mutation, form_values
 from pytest_tarl.patching.structures import Form, described
 from pytest_tarl.patching.templates import Template, templates
-from pytest_tarl.repairing.order import Order
+from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 from pytest_tarl.searching.sweep import Sweep
 from tarl_lint.model import Operand, SiteId, Span

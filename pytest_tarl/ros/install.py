@@ -17,7 +17,7 @@ from pytest_tarl.ros.messages.installed import installed_kind
 from pytest_tarl.ros.messages.packages import PARTS, could_be_package, is_package, package_module
 from pytest_tarl.ros.missing import unsupported
 from pytest_tarl.ros.threads import threads_as_tasks
-from pytest_tarl.stale import holders
+from pytest_tarl.stale_modules import holders
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.episode import Ros

@@ -8,7 +8,7 @@ import threading
 import time
 from collections.abc import Callable
 
-from pytest_tarl.holding import allow
+from pytest_tarl.held_interpreter import allow
 
 DEFAULT_LIMIT = 10.0  # seconds of computing in which virtual time stands still
 _PATIENCE = 12  # how many times as long a node may hang in something that is neither computing nor ROS

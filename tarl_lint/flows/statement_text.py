@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from tarl_lint.ir.nodes import Pos
 from tarl_lint.model import SiteId, Span
-from tarl_lint.source import Module
+from tarl_lint.read.source import Module
 from tarl_lint.trees import children
 
 COMPOUND = (ast.If, ast.For, ast.AsyncFor, ast.While, ast.With, ast.AsyncWith, ast.Try, ast.Match)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 
-from tarl_lint.interpret import displays, nullness, replay
+from tarl_lint.interpret import literals, nullness, replay
 from tarl_lint.interpret.budget import ALL_LEISURE, LEISURE, MANY, MAX_CALLS, MAX_FRAMES, OFTEN
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
@@ -164,7 +164,7 @@ def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: 
             continue
         node = ctx.node(caller, ("argument", call.slot, number), "call")
         if 0 <= number - shift < len(call.arguments):
-            displays.mark(ctx, node, call.arguments[number - shift], value, caller)
+            literals.mark(ctx, node, call.arguments[number - shift], value, caller)
         passed.append(ctx.carry(value, node))
     keywords = dict(call.keywords)
     renamed: dict[str, Value] = {}
@@ -174,7 +174,7 @@ def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: 
             continue
         node = ctx.node(caller, ("argument", call.slot, name), "call")
         if name in keywords:
-            displays.mark(ctx, node, keywords[name], value, caller)
+            literals.mark(ctx, node, keywords[name], value, caller)
         renamed[name] = ctx.carry(value, node)
     return passed, renamed
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from tarl_lint.catalog import fact
-from tarl_lint.interpret import displays, dunder_methods, operators
+from tarl_lint.interpret import dunder_methods, literals, operators
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, recency
@@ -259,7 +259,7 @@ def default_value(ctx: Interpreter, parameter: ir.Parameter, closure: Obj, frame
     assert parameter.default is not None  # noqa: S101 - asked before
     value = evaluate(ctx, parameter.default, frame)
     node = ctx.node(frame, ("default", closure.key, parameter.name), "assign")
-    displays.mark(ctx, node, parameter.default, value, frame)
+    literals.mark(ctx, node, parameter.default, value, frame)
     return ctx.carry(value, node)
 
 
@@ -279,9 +279,9 @@ EVALUATE: Mapping[type, Callable[[Any, Any, Frame], Value]] = {
     ir.Call: lambda ctx, expr, frame: ctx.ops.call(ctx, expr, frame),
     ir.Operation: operators.operation,
     ir.Choice: _choice,
-    ir.SequenceDisplay: displays.sequence_display,
-    ir.MappingDisplay: displays.mapping_display,
-    ir.Comprehension: displays.comprehension,
+    ir.SequenceDisplay: literals.sequence_display,
+    ir.MappingDisplay: literals.mapping_display,
+    ir.Comprehension: literals.comprehension,
     ir.Starred: _starred,
     ir.Walrus: _walrus,
     ir.Yield: _yield,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from tarl_lint.config import Config
 from tarl_lint.interpret import entry_points, statements, wiring
 from tarl_lint.interpret.budget import HASTE, LARGE, LEISURE, MAX_ROUNDS, MAX_STATEMENTS, PATIENCE
 from tarl_lint.interpret.interpreter import Interpreter
@@ -15,7 +14,8 @@ from tarl_lint.memory.store import Root, Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value
 from tarl_lint.prefilter.by_words import mentioning
-from tarl_lint.source import Module
+from tarl_lint.read.source import Module
+from tarl_lint.settings.config import Config
 
 
 class Linker(Interpreter):

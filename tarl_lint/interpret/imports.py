@@ -7,7 +7,7 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, pointer
 from tarl_lint.models import library
-from tarl_lint.source import Module
+from tarl_lint.read.source import Module
 
 
 def imported(ctx: Interpreter, module: str, member: str | None, importer: object) -> Value:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Hashable, Iterable, Sequence
 
-from tarl_lint.config import Config
 from tarl_lint.interpret.budget import LOOKS, MAX_STATEMENTS, PATIENCE
 from tarl_lint.interpret.operations import Operations
 from tarl_lint.ir import nodes as ir
@@ -20,8 +19,9 @@ from tarl_lint.memory.store import Root, Shared, Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES, Graph, Place
 from tarl_lint.memory.values import NONE, Branches, Key, Nodes, Obj, Value
 from tarl_lint.models.ros.endpoints import SinkRecord, SourceRecord
-from tarl_lint.names import Index
-from tarl_lint.source import Module
+from tarl_lint.read.module_names import Index
+from tarl_lint.read.source import Module
+from tarl_lint.settings.config import Config
 
 NONE_ONLY = frozenset([None])
 

@@ -8,10 +8,10 @@ from tarl_lint.interpret import (
     branches,
     calls,
     definitions,
-    displays,
     dunder_methods,
     exceptions,
     expressions,
+    literals,
     nullness,
 )
 from tarl_lint.interpret.budget import LOOKS
@@ -79,7 +79,7 @@ def bind_target(
         target = target.value
     nullness.note_absence(ctx, target, source, value, frame)
     node = ctx.node(frame, ("target", slot), "assign")
-    displays.mark(ctx, node, source, value, frame)
+    literals.mark(ctx, node, source, value, frame)
     assign(ctx, target, ctx.carry(value, node), frame)
 
 
@@ -179,7 +179,7 @@ def _returned(ctx: Interpreter, s: ir.Return, frame: Frame) -> bool:
     frame.statement = s
     if s.value is not None:
         node = ctx.node(frame, ("return",), "return")
-        displays.mark(ctx, node, s.value, value, frame)
+        literals.mark(ctx, node, s.value, value, frame)
         nullness.note_passed(ctx, (frame, RETURNED), s.value, value, frame)
         value = ctx.carry(value, node)
         if isinstance(frame.answer, Publisher):

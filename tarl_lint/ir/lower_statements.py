@@ -10,7 +10,7 @@ from tarl_lint.ir.effect_free import OWN_PRINT, only_tells
 from tarl_lint.ir.lower_expressions import OPERATORS, Expressions, position
 from tarl_lint.ir.match_patterns import captures, conditions
 from tarl_lint.ir.scopes import Scope, collect, plain
-from tarl_lint.source import Module
+from tarl_lint.read.source import Module
 
 MADE = (ir.Call, ir.SequenceDisplay, ir.Walrus, ir.Yield)  # subjects of `match` that are evaluated once
 NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # no fields of a dataclass

@@ -44,7 +44,7 @@ from tarl_lint.models.futures import READERS
 from tarl_lint.models.ros.endpoints import Publisher
 from tarl_lint.models.smach import LATER
 from tarl_lint.models.strings import TEXT_METHODS
-from tarl_lint.wrapping import facts
+from tarl_lint.settings.wrappers import facts
 
 SIGNALLING = frozenset(["connect", "emit"])
 

@@ -8,8 +8,8 @@ from functools import lru_cache
 from typing import Final, TypeVar
 
 from tarl_lint import catalog
-from tarl_lint.config import Config
-from tarl_lint.names import Index, Named
+from tarl_lint.read.module_names import Index, Named
+from tarl_lint.settings.config import Config
 
 M = TypeVar("M", bound=Named)
 

@@ -13,12 +13,12 @@ from dataclasses import dataclass
 from typing import Final, Protocol
 
 from tarl_lint import catalog
-from tarl_lint.config import Config
 from tarl_lint.evidence import Evidence
 from tarl_lint.model import Finding
-from tarl_lint.names import KNOWN
 from tarl_lint.prefilter.by_words import code, whole
-from tarl_lint.source import Module
+from tarl_lint.read.module_names import KNOWN
+from tarl_lint.read.source import Module
+from tarl_lint.settings.config import Config
 
 HEARS: Final = re.compile("|".join(whole(w) for w in (*catalog.SOURCE_WORDS, *sorted(catalog.LOOKUPS))))
 ANSWERS: Final = re.compile(r"Service\(|create_service|ActionServer")  # sources that are sinks too

@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import Final, cast
 
 from tarl_lint.report.line import Line, View, unbroken
-from tarl_lint.runner import Result
+from tarl_lint.run.runner import Result
 
 FORMATS: Final[Mapping[str, str]] = {
     "text": "tarl_lint.report.text:report",

@@ -10,7 +10,7 @@ from tarl_lint.report import summary
 from tarl_lint.report.flows import describe, publish_calls, subscription
 from tarl_lint.report.grading import Level, level
 from tarl_lint.report.line import Line, View
-from tarl_lint.runner import UNREADABLE, Result
+from tarl_lint.run.runner import UNREADABLE, Result
 
 _COMMANDS: Final[Mapping[Level, str]] = {"note": "notice", "warning": "warning", "error": "error"}
 _GRAVEST: Final[Sequence[Level]] = ("note", "warning", "error")

@@ -10,7 +10,7 @@ from tarl_lint.fingerprints import digest
 from tarl_lint.model import Cut, Span
 from tarl_lint.report.grading import Level, level, of_error, told_apart
 from tarl_lint.report.line import Line, View
-from tarl_lint.runner import UNREADABLE, Result
+from tarl_lint.run.runner import UNREADABLE, Result
 
 _SEVERITIES: Final[Mapping[Level, str]] = {"note": "info", "warning": "minor", "error": "major"}
 

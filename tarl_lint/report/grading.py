@@ -8,8 +8,8 @@ from typing import Literal
 
 from tarl_lint.fingerprints import digest
 from tarl_lint.model import Finding
-from tarl_lint.runner import Result
-from tarl_lint.source import SourceError
+from tarl_lint.read.source import SourceError
+from tarl_lint.run.runner import Result
 
 Level = Literal["note", "warning", "error"]
 

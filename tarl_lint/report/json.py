@@ -9,7 +9,7 @@ from tarl_lint import __version__
 from tarl_lint.model import Finding, Flow, Sink, Source, Span, Step
 from tarl_lint.report.indented import Written, dumped
 from tarl_lint.report.line import Line, View
-from tarl_lint.runner import Result
+from tarl_lint.run.runner import Result
 
 FORMAT_VERSION: Final = 1  # 1: first format
 STEP_LEVEL: Final = 5  # containers around a step: document, diagnostics, diagnostic, flow, steps

@@ -11,7 +11,7 @@ from tarl_lint.model import Finding, Flow, Sink, Source, Span, Step
 from tarl_lint.report import summary
 from tarl_lint.report.json import incomplete
 from tarl_lint.report.line import Line, View, plain
-from tarl_lint.runner import Result
+from tarl_lint.run.runner import Result
 
 FORMAT_VERSION: Final = 2  # 2: numbered statements, sources and sinks, packages, shortest chains
 

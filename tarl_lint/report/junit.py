@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 from tarl_lint.model import Finding
 from tarl_lint.report.flows import taint_list
 from tarl_lint.report.line import ASCII, Line, View, location, plain, unbroken
-from tarl_lint.runner import UNREADABLE, Result
+from tarl_lint.run.runner import UNREADABLE, Result
 
 _ILLEGAL: Final = r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"  # in XML 1.0
 _ENTITIES: Final = {

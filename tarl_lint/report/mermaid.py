@@ -7,7 +7,7 @@ from typing import Final
 
 from tarl_lint.report.line import Line, View
 from tarl_lint.report.topics import Part, Picture, picture
-from tarl_lint.runner import Result
+from tarl_lint.run.runner import Result
 
 _CLASSES: Final = (
     "  classDef topic fill:#dbeafe,stroke:#3b82f6,color:#111",

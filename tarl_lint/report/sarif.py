@@ -11,12 +11,12 @@ from urllib.parse import quote
 from tarl_lint import __version__, explain
 from tarl_lint.files import shown
 from tarl_lint.model import OFF_BY_DEFAULT, Dependence, Finding, Flow, Sink, Source, Span, Step
+from tarl_lint.read.source import SourceError
 from tarl_lint.report import summary
 from tarl_lint.report.grading import level, of_error, own_level, told_apart
 from tarl_lint.report.line import Line, View, plain
 from tarl_lint.report.upload_limits import EVERYTHING, Cut, cuts, taken
-from tarl_lint.runner import UNREADABLE, Result
-from tarl_lint.source import SourceError
+from tarl_lint.run.runner import UNREADABLE, Result
 
 SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 ROOT: Final = "%SRCROOT%"  # known to GitHub as the top of the repository

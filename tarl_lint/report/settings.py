@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from tarl_lint.config import Config
 from tarl_lint.files import shown
-from tarl_lint.keys import Wrapper
 from tarl_lint.report.line import Line
+from tarl_lint.settings.config import Config
+from tarl_lint.settings.schema import Wrapper
 
 
 def settings(config: Config) -> Iterator[Line]:

@@ -11,7 +11,7 @@ from tarl_lint.files import shown
 from tarl_lint.fingerprints import OfFlow, OfHazard, topic_text
 from tarl_lint.model import Cut, Finding, Flow
 from tarl_lint.report.line import Line, View, one_line
-from tarl_lint.runner import UNREADABLE, Result
+from tarl_lint.run.runner import UNREADABLE, Result
 from tarl_lint.suppress import Suppression
 
 _CLASSES: Final = 5  # classes outside the files that are named individually

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from tarl_lint.model import Finding
 from tarl_lint.report import summary
 from tarl_lint.report.line import Line, Style, View, location, one_line
-from tarl_lint.runner import UNREADABLE, Result
+from tarl_lint.run.runner import UNREADABLE, Result
 
 
 def report(result: Result, view: View) -> Iterator[Line]:

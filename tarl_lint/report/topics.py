@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 from tarl_lint.fingerprints import UNKNOWN
 from tarl_lint.model import Finding, Flow, Kind, Sink, Source
-from tarl_lint.runner import Result
+from tarl_lint.run.runner import Result
 
 _NAMED: Final = 3  # functions named in one box
 

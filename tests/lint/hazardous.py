@@ -3,8 +3,8 @@
 from textwrap import dedent
 
 from tarl_lint import engine
-from tarl_lint.config import Config
-from tarl_lint.source import Module, parse
+from tarl_lint.read.source import Module, parse
+from tarl_lint.settings.config import Config
 
 
 def lines(code: str, *texts: str) -> list[int]:

@@ -3,12 +3,12 @@
 from dataclasses import replace
 from pathlib import Path
 
-from tarl_lint.discover import Notes
 from tarl_lint.model import Finding
+from tarl_lint.read.discover import Notes
+from tarl_lint.read.source import SourceError
 from tarl_lint.report import render
 from tarl_lint.report.line import View, plain
-from tarl_lint.runner import Result, Statistics
-from tarl_lint.source import SourceError
+from tarl_lint.run.runner import Result, Statistics
 from tarl_lint.suppress import Suppression
 
 

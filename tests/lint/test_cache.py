@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from tarl_lint import batch, cache
 from tarl_lint.cli import main
+from tarl_lint.run import cache, groups
 
 PLACE = Path(".tarl/cache/lint")
 
@@ -24,13 +24,13 @@ def node(example, in_directory) -> Path:
 def analysed(monkeypatch) -> list[str]:
     """The files that were analysed rather than remembered."""
     seen: list[str] = []
-    perform = batch.perform
+    perform = groups.perform
 
     def noted(task, config):
         seen.extend(script.path for script in task.scripts)
         return perform(task, config)
 
-    monkeypatch.setattr(batch, "perform", noted)
+    monkeypatch.setattr(groups, "perform", noted)
     return seen
 
 

@@ -7,9 +7,10 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from tarl_lint import __version__, runner
+from tarl_lint import __version__
 from tarl_lint.cli import main
 from tarl_lint.report import FORMATS, paint
+from tarl_lint.run import runner
 
 
 @pytest.fixture
@@ -219,7 +220,7 @@ def test_a_reader_that_goes_away_is_no_error(node):
 
 def test_ctrl_c_ends_a_real_run_with_one_line(node):
     program = (
-        "import os, signal, sys, tarl_lint.runner as r\n"
+        "import os, signal, sys, tarl_lint.run.runner as r\n"
         "from tarl_lint.cli import main\n"
         "r.run = lambda *a: os.kill(os.getpid(), signal.SIGINT) or signal.pause()\n"
         "sys.exit(main([]))"
@@ -292,7 +293,7 @@ def test_statistics_count_what_each_topic_reaches(node, capsys):
 
 def test_progress_is_told_on_terminals_only(node, capsys, monkeypatch):
     told = []
-    monkeypatch.setattr("tarl_lint.progress.Progress.tell", lambda self, text: told.append(text))
+    monkeypatch.setattr("tarl_lint.run.progress.Progress.tell", lambda self, text: told.append(text))
     lint(capsys)
     assert told == []
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)

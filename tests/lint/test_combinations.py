@@ -6,8 +6,8 @@ from collections.abc import Iterator
 import pytest
 
 from tarl_lint import engine
-from tarl_lint.config import Config
-from tarl_lint.source import Module, parse
+from tarl_lint.read.source import Module, parse
+from tarl_lint.settings.config import Config
 from tests.lint.combining import AXES, node
 
 Parts = tuple[str, ...]

@@ -3,10 +3,10 @@ from pathlib import Path
 import pytest
 
 from tarl_lint.baseline import load
-from tarl_lint.config import Config, Options, resolve
 from tarl_lint.errors import BaselineError, ConfigError
-from tarl_lint.keys import Wrapper
-from tarl_lint.wrapping import facts
+from tarl_lint.settings.config import Config, Options, resolve
+from tarl_lint.settings.schema import Wrapper
+from tarl_lint.settings.wrappers import facts
 
 
 def test_the_default_configuration_wants_every_rule_and_excludes_nothing():

@@ -53,7 +53,7 @@ def test_inheritance_is_shallow():
 
 
 def test_what_the_cache_looks_at_are_all_packages_that_decide_what_is_found():
-    from tarl_lint.cache import PACKAGES
+    from tarl_lint.run.cache import PACKAGES
 
     packages = {m.name for m in pkgutil.walk_packages(tarl_lint.__path__, "tarl_lint.") if m.ispkg}
     shown = {f"tarl_lint.{p.replace('/', '.')}" for p in PACKAGES}

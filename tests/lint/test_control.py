@@ -6,7 +6,7 @@ import pytest
 
 from tarl_lint.ir.control_dependence import NEAR, control_dependence
 from tarl_lint.ir.lower_statements import lower_module
-from tarl_lint.source import Module
+from tarl_lint.read.source import Module
 from tests.lint.analysing import analysed, steps
 
 

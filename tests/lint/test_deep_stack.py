@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from tarl_lint.deep_stack import HALF_A_CHUNK, MAX_RECURSION, with_deep_stack
+from tarl_lint.run.deep_stack import HALF_A_CHUNK, MAX_RECURSION, with_deep_stack
 
 
 def depth(left: int) -> int:

@@ -3,9 +3,9 @@ from pathlib import Path
 
 import pytest
 
-from tarl_lint.config import Config
-from tarl_lint.discover import find
 from tarl_lint.errors import UsageError
+from tarl_lint.read.discover import find
+from tarl_lint.settings.config import Config
 
 
 def paths(*where: str, config: Config = Config()) -> list[str]:  # noqa: B008 - frozen

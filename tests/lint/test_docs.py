@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from tarl_lint.cli import main
-from tarl_lint.config import Options, resolve
-from tarl_lint.keys import KEYS
 from tarl_lint.options import parser
 from tarl_lint.report import FORMATS
-from tarl_lint.wrapping import facts
+from tarl_lint.settings.config import Options, resolve
+from tarl_lint.settings.schema import KEYS
+from tarl_lint.settings.wrappers import facts
 
 ROOT = Path(__file__).parents[2]
 PICTURED = ("examples/line_follower/line_follower.py", "examples/shuttle/traveller.py")

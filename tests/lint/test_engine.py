@@ -1,10 +1,10 @@
 from textwrap import dedent
 
-from tarl_lint.config import Config
 from tarl_lint.engine import analyse
-from tarl_lint.keys import Wrapper
 from tarl_lint.prefilter.by_words import relevant
-from tarl_lint.source import Module, parse
+from tarl_lint.read.source import Module, parse
+from tarl_lint.settings.config import Config
+from tarl_lint.settings.schema import Wrapper
 
 
 def module(name, text, path=None):

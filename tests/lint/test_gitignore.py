@@ -6,7 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tarl_lint.gitignore import ignored, parse
+from tarl_lint.read.gitignore import ignored, parse
 
 CASES = [
     ("*.pyc", "a/b.pyc", True),

@@ -9,15 +9,15 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tarl_lint.config import Config
-from tarl_lint.deep_stack import with_deep_stack
 from tarl_lint.interpret.budget import MAX_STATEMENTS
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.model import Cut
 from tarl_lint.node_names import node_name
+from tarl_lint.read.source import Module
 from tarl_lint.report import FORMATS
-from tarl_lint.runner import Result
-from tarl_lint.source import Module
+from tarl_lint.run.deep_stack import with_deep_stack
+from tarl_lint.run.runner import Result
+from tarl_lint.settings.config import Config
 from tests.lint.reports import everything, text_of
 
 CUT = Cut("src/pilot.py", "pilot")

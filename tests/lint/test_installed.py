@@ -4,12 +4,12 @@ from textwrap import dedent
 
 import pytest
 
-from tarl_lint.config import Options, resolve
 from tarl_lint.errors import ConfigError
-from tarl_lint.installed import search_path
+from tarl_lint.read.installed import search_path
 from tarl_lint.report import render
 from tarl_lint.report.line import View, plain
-from tarl_lint.runner import run
+from tarl_lint.run.runner import run
+from tarl_lint.settings.config import Options, resolve
 
 NODE = """
     from rclpy.node import Node

@@ -23,7 +23,8 @@ def test_ctrl_c_reaches_all_processes_and_one_of_them_says_so(in_directory, read
 SLOW = f"""
 import os, signal, sys, time
 from pathlib import Path
-from tarl_lint import batch, runner
+from tarl_lint.run import groups
+from tarl_lint.run import runner
 from tarl_lint.cli import main
 
 def perform(task, config):
@@ -31,7 +32,7 @@ def perform(task, config):
         os.killpg(0, signal.{signal.SIGINT.name})
     time.sleep(60)
 
-batch.perform = perform
+groups.perform = perform
 
 def interrupted(text):
     if text == sys.argv[1]:

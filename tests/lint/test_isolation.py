@@ -10,8 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from tarl_lint import import_path, workers
-from tarl_lint.progress import silent
+from tarl_lint import import_path
+from tarl_lint.run import workers
+from tarl_lint.run.progress import silent
 from tests.lint.conftest import NODE
 
 pytestmark = pytest.mark.skipif(

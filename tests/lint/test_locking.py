@@ -4,8 +4,8 @@ from textwrap import dedent
 
 import pytest
 
-from tarl_lint.config import Config, Options
-from tarl_lint.runner import run
+from tarl_lint.run.runner import run
+from tarl_lint.settings.config import Config, Options
 from tests.lint.hazardous import inside, lines
 
 ROSPY = """

@@ -6,7 +6,6 @@ import ast
 
 import pytest
 
-from tarl_lint.config import Config
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import heap, joins, reachable_data, recency, updates
@@ -14,7 +13,8 @@ from tarl_lint.memory.abstract_gc import lasting
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.store import BORN, Root, Store
 from tarl_lint.memory.values import BOTTOM, MAX_CONSTS, Value, const, join, pointer
-from tarl_lint.source import Module
+from tarl_lint.read.source import Module
+from tarl_lint.settings.config import Config
 
 DATA = frozenset([1])
 OTHER = frozenset([2])

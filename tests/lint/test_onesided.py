@@ -7,14 +7,14 @@ from textwrap import dedent
 import pytest
 
 import tarl_lint
-from tarl_lint.config import Config
-from tarl_lint.deep_stack import with_deep_stack
 from tarl_lint.engine import HAZARDS, findings, hazards
 from tarl_lint.flows.reachability import Tracer
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.prefilter.one_sided import one_sided
+from tarl_lint.read.source import Module, parse
 from tarl_lint.rules import tarl101, tarl102
-from tarl_lint.source import Module, parse
+from tarl_lint.run.deep_stack import with_deep_stack
+from tarl_lint.settings.config import Config
 
 CASES = Path(__file__).parents[1] / "cases"
 EXAMPLES = {

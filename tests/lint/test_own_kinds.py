@@ -4,8 +4,8 @@ from pathlib import Path
 
 from tarl_lint import engine
 from tarl_lint.catalog import on_topic
-from tarl_lint.config import Config
-from tarl_lint.source import Module, parse
+from tarl_lint.read.source import Module, parse
+from tarl_lint.settings.config import Config
 
 CASES = Path(__file__).parent.parent / "cases"
 

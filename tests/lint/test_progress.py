@@ -1,7 +1,7 @@
 import io
 import threading
 
-from tarl_lint.progress import Progress
+from tarl_lint.run.progress import Progress
 
 
 class Terminal(io.StringIO):

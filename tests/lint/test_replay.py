@@ -9,8 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from tarl_lint.config import Config
-from tarl_lint.deep_stack import with_deep_stack
 from tarl_lint.flows.reachability import Tracer
 from tarl_lint.interpret import replay
 from tarl_lint.interpret.fixpoint import Linker
@@ -20,7 +18,9 @@ from tarl_lint.memory.store import Delta, Root, Store
 from tarl_lint.memory.value_flow_graph import MANY, MANY_CARRIERS
 from tarl_lint.memory.values import Value, pointer
 from tarl_lint.model import Flow
-from tarl_lint.source import Module
+from tarl_lint.read.source import Module
+from tarl_lint.run.deep_stack import with_deep_stack
+from tarl_lint.settings.config import Config
 from tests.lint.combining import AXES, node
 
 CASES = Path(__file__).parents[1] / "cases"

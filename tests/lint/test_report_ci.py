@@ -5,7 +5,7 @@ from dataclasses import replace
 from xml.etree import ElementTree
 
 from tarl_lint.report.gitlab import document
-from tarl_lint.runner import Result
+from tarl_lint.run.runner import Result
 from tests.lint.reports import everything, text_of
 
 

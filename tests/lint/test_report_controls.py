@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tarl_lint import report
-from tarl_lint.config import Config, Options
 from tarl_lint.report import FORMATS, paint
 from tarl_lint.report.line import View
-from tarl_lint.runner import run
+from tarl_lint.run.runner import run
+from tarl_lint.settings.config import Config, Options
 
 NODE = """
 import rospy

@@ -7,11 +7,11 @@ import pytest
 
 from tarl_lint import __version__
 from tarl_lint.model import Finding
+from tarl_lint.read.source import SourceError
 from tarl_lint.report import render
 from tarl_lint.report.json import document
 from tarl_lint.report.line import View, plain
-from tarl_lint.runner import Result, Statistics
-from tarl_lint.source import SourceError
+from tarl_lint.run.runner import Result, Statistics
 
 SCHEMA = json.loads(resources.files("tarl_lint.report").joinpath("findings.schema.json").read_text("utf-8"))
 

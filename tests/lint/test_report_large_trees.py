@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from tarl_lint.model import Finding
 from tarl_lint.report import packages, render, sarif, upload_limits
 from tarl_lint.report.line import View, plain
-from tarl_lint.runner import Result, Statistics
+from tarl_lint.run.runner import Result, Statistics
 from tests.lint.reports import everything, text_of
 
 SCHEMA = json.loads((Path(packages.__file__).parent / "findings2.schema.json").read_text("utf-8"))

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tarl_lint.report.topics import picture, short_names
-from tarl_lint.runner import Result
+from tarl_lint.run.runner import Result
 from tests.lint.reports import everything, text_of
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from tarl_lint.model import SiteId, Span
 from tarl_lint.report.sarif import document
-from tarl_lint.runner import Result
+from tarl_lint.run.runner import Result
 from tests.lint.reports import everything, text_of
 
 

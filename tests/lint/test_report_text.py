@@ -4,13 +4,13 @@ from pathlib import Path
 import pytest
 
 from tarl_lint.baseline import Accepted
-from tarl_lint.discover import Notes
 from tarl_lint.fingerprints import of_flow as fingerprint
 from tarl_lint.model import Finding, Span
+from tarl_lint.read.discover import Notes
+from tarl_lint.read.source import SourceError
 from tarl_lint.report import render
 from tarl_lint.report.line import ASCII, View, plain
-from tarl_lint.runner import Result, Statistics
-from tarl_lint.source import SourceError
+from tarl_lint.run.runner import Result, Statistics
 from tarl_lint.suppress import Suppression
 
 ONE_FLOW = """\

@@ -12,11 +12,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tarl_lint.batch import Task, perform
 from tarl_lint.cli import main
-from tarl_lint.config import Config, Options, resolve
-from tarl_lint.runner import Result, run
-from tarl_lint.source import LARGEST, Script, read
+from tarl_lint.read.source import LARGEST, Script, read
+from tarl_lint.run.groups import Task, perform
+from tarl_lint.run.runner import Result, run
+from tarl_lint.settings.config import Config, Options, resolve
 
 SLOW = os.environ.get("TARL_SLOW") == "1"
 NODE = """\

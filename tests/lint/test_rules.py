@@ -3,9 +3,9 @@
 import pytest
 
 from tarl_lint import engine
-from tarl_lint.config import Config
 from tarl_lint.explain import known_rules
-from tarl_lint.source import Module, SourceError, parse
+from tarl_lint.read.source import Module, SourceError, parse
+from tarl_lint.settings.config import Config
 
 SNIPPETS = [
     pytest.param(code, name, text, id=f"{code} {name} {number}")

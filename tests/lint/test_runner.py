@@ -7,10 +7,11 @@ from pathlib import Path
 import pytest
 
 import tarl_lint
-from tarl_lint import baseline, batch
-from tarl_lint.config import Options, resolve
+from tarl_lint import baseline
 from tarl_lint.errors import AnalysisBug, UsageError
-from tarl_lint.runner import Result, exceeds, run
+from tarl_lint.run import groups
+from tarl_lint.run.runner import Result, exceeds, run
+from tarl_lint.settings.config import Options, resolve
 
 
 @pytest.fixture
@@ -68,8 +69,8 @@ def test_a_file_on_which_the_parser_crashes_is_an_error(example, in_directory, l
             raise AssertionError("boom")
         return original(script)
 
-    original = batch.parsed
-    monkeypatch.setattr(batch, "parsed", parsed)
+    original = groups.parsed
+    monkeypatch.setattr(groups, "parsed", parsed)
     in_directory({"node.py": example.text, "odd.py": ""})
     result = lint()
     (message,) = (error.message for error in result.errors)

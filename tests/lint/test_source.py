@@ -2,7 +2,7 @@ import codecs
 
 import pytest
 
-from tarl_lint.source import Module, SourceError, parse
+from tarl_lint.read.source import Module, SourceError, parse
 
 
 def parsed(data):

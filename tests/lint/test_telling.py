@@ -4,10 +4,10 @@ import ast
 
 import pytest
 
-from tarl_lint.config import Config
 from tarl_lint.engine import analyse
 from tarl_lint.ir.effect_free import only_tells
-from tarl_lint.source import parse
+from tarl_lint.read.source import parse
+from tarl_lint.settings.config import Config
 
 NODE = """
 import rospy

@@ -3,8 +3,8 @@
 import pytest
 
 from tarl_lint import engine
-from tarl_lint.config import Config
-from tarl_lint.source import Module, parse
+from tarl_lint.read.source import Module, parse
+from tarl_lint.settings.config import Config
 
 NODE = """
 import os

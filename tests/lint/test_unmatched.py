@@ -5,10 +5,10 @@ import sys
 
 import pytest
 
-from tarl_lint.config import Config
 from tarl_lint.report import FORMATS
-from tarl_lint.unmatched import unmatched
-from tarl_lint.wrapping import Wrapper
+from tarl_lint.settings.config import Config
+from tarl_lint.settings.unmatched import unmatched
+from tarl_lint.settings.wrappers import Wrapper
 
 SAID = "pyproject.toml: 'sources' names 'robot.nothing', which no file mentions: check the name."
 

@@ -9,14 +9,14 @@ import pytest
 
 from tarl_lint import engine
 from tarl_lint.cli import main
-from tarl_lint.config import Config
-from tarl_lint.deep_stack import with_deep_stack
 from tarl_lint.flows.reachability import Tracer
 from tarl_lint.interpret.budget import LEISURE, MAX_GENERATIONS, PATIENCE
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import Obj
-from tarl_lint.source import Module
+from tarl_lint.read.source import Module
+from tarl_lint.run.deep_stack import with_deep_stack
+from tarl_lint.settings.config import Config
 
 MOST = 2.5 * PATIENCE  # statements that any program may take
 

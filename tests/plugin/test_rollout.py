@@ -15,19 +15,19 @@ from pytest_tarl.rollout import AHEAD, KEPT, Ahead, EpisodePlan
 class Answer:
     """An episode whose result is its seed."""
 
-    crew: Crew
+    executor: FakeExecutor
     seed: int
 
     def result(self) -> Any:
         return self.seed
 
     def cancel(self) -> bool:
-        self.crew.cancelled.append(self.seed)
+        self.executor.cancelled.append(self.seed)
         return True
 
 
 @dataclass
-class Crew:
+class FakeExecutor:
     """A rollout that keeps what was begun and what was cancelled."""
 
     workers: int
@@ -48,7 +48,7 @@ def plans(*seeds: int) -> Iterator[tuple[int, EpisodePlan]]:
 
 @pytest.mark.parametrize("workers", [1, 2, 5])
 def test_who_asks_gets_the_same_whatever_was_foreseen(workers: int) -> None:
-    ahead: Any = Ahead(Crew(workers))
+    ahead: Any = Ahead(FakeExecutor(workers))
     got = []
     for seed in (3, 1, 4, 1, 5):
         ahead.foresee(plans(9, seed, 2, 6))
@@ -57,33 +57,33 @@ def test_who_asks_gets_the_same_whatever_was_foreseen(workers: int) -> None:
 
 
 def test_one_at_a_time_nothing_is_begun_before_it_is_asked_for() -> None:
-    crew = Crew(1)
-    ahead: Any = Ahead(crew)
+    executor = FakeExecutor(1)
+    ahead: Any = Ahead(executor)
     ahead.foresee(plans(1, 2, 3))
-    assert crew.begun == []
+    assert executor.begun == []
     ahead(2, EpisodePlan(2))
-    assert crew.begun == [2]
+    assert executor.begun == [2]
 
 
 def test_as_many_are_begun_as_keep_the_workers_busy_and_each_once() -> None:
-    crew = Crew(2)
-    ahead: Any = Ahead(crew)
+    executor = FakeExecutor(2)
+    ahead: Any = Ahead(executor)
     ahead.foresee(plans(*range(20)))
-    assert crew.begun == list(range(AHEAD * 2))
+    assert executor.begun == list(range(AHEAD * 2))
     for seed in range(3):
         ahead(seed, EpisodePlan(seed))
-    assert crew.begun == list(range(AHEAD * 2 + 3))
+    assert executor.begun == list(range(AHEAD * 2 + 3))
 
 
 def test_what_was_begun_is_kept_for_later_and_what_nobody_asks_for_is_cancelled_at_last() -> None:
-    crew = Crew(2)
-    ahead: Any = Ahead(crew)
+    executor = FakeExecutor(2)
+    ahead: Any = Ahead(executor)
     ahead.foresee(plans(1, 2, 3))
     ahead.foresee(plans(11, 12))
     ahead(11, EpisodePlan(11))
     ahead(1, EpisodePlan(1))
-    assert crew.begun.count(1) == 1
+    assert executor.begun.count(1) == 1
     for start in range(100, 400, 10):
         ahead.foresee(plans(*range(start, start + 4)))
-    assert {2, 3, 12} <= set(crew.cancelled)
-    assert len(crew.begun) - len(crew.cancelled) <= KEPT * 2 + 2
+    assert {2, 3, 12} <= set(executor.cancelled)
+    assert len(executor.begun) - len(executor.cancelled) <= KEPT * 2 + 2

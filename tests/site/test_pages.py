@@ -86,7 +86,7 @@ def test_every_page_is_in_the_menu(staged: Path) -> None:
 
 def test_reference_pages_hold_every_option_setting_and_schema() -> None:
     from pytest_tarl.flags import FLAGS
-    from tarl_lint.keys import KEYS
+    from tarl_lint.settings.schema import KEYS
 
     assert all(f"`{flag.name}" in reference.options() for flag in FLAGS)
     assert all(f"| `{key}` |" in reference.settings() for key in KEYS)

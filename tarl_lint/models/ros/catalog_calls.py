@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Mapping
 from functools import partial
 
-from tarl_lint.interpret import displays
+from tarl_lint.interpret import literals
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.ir import nodes as ir
@@ -92,7 +92,7 @@ def _default_of(
     node = ctx.node(frame, slot, "assign")
     ctx.graph.parameters.add(node)
     if expr is not None:
-        displays.mark(ctx, node, expr, default, frame)
+        literals.mark(ctx, node, expr, default, frame)
     ctx.graph.flow(default.deps, node)
     return Value(ctx.kept(node))
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from pytest_tarl.formula_calls import said
 from pytest_tarl.formulas.said import NOTHING_SAID
-from pytest_tarl.sayings import said
 
 TEST = """\
 import helpers

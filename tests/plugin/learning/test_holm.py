@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pytest_tarl.learning.holm import holm
+from pytest_tarl.learning.multiple_testing import holm
 
 P_VALUES = st.lists(st.floats(0.0, 1.0), max_size=8)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from pytest_tarl.learning.drift import Difference, judged
-from pytest_tarl.learning.looks import Look, certain, concluded, planned
+from pytest_tarl.learning.sequential import Look, certain, concluded, planned
 from pytest_tarl.model import Region, Verdict
 from pytest_tarl.seeds import generator
 

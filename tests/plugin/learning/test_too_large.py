@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from pytest_tarl import memory
+from pytest_tarl import free_memory
 from pytest_tarl.errors import FixtureError
 from pytest_tarl.learning import archive
 from pytest_tarl.learning.fixture import load, save
@@ -30,9 +30,9 @@ def test_a_recording_is_read_only_where_there_is_the_memory(
 
 def test_free_memory_is_what_the_system_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     meminfo = tmp_path / "meminfo"
-    monkeypatch.setattr(memory, "_MEMINFO", meminfo)
-    assert memory.available() is None
+    monkeypatch.setattr(free_memory, "_MEMINFO", meminfo)
+    assert free_memory.available() is None
     meminfo.write_text("MemTotal:       100 kB\nMemAvailable:     77 kB\nBuffers:    3 kB\n")
-    assert memory.available() == 77 * 1024
+    assert free_memory.available() == 77 * 1024
     meminfo.write_text("nothing of it\n")
-    assert memory.available() is None
+    assert free_memory.available() is None

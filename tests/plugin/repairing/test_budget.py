@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.mutate import Mutation
-from pytest_tarl.repairing.purse import Purse
+from pytest_tarl.repairing.budget import Purse
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import BudgetSpentError, Candidate
 from tests.plugin.searching.test_search import GAIN

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from pytest_tarl import Sensor
-from pytest_tarl.repairing.neighbours import EPISODES, MOST, beside
+from pytest_tarl.repairing.regression_tests import EPISODES, MOST, beside
 from pytest_tarl.searching.accept import Outcome
 
 X = Sensor("x", topic="/x", field="x", low=0, high=10, bins=10)

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from pytest_tarl.drifts import Drift, sizes
 from pytest_tarl.model import Sizes
-from pytest_tarl.repairing.order import spread
 from pytest_tarl.repairing.ranges import STRATA, spread_seeds
+from pytest_tarl.repairing.request import spread
 from tests.plugin.tank import ONLINE, RECORD, changed, result
 
 REPAIR = (*ONLINE, "--tarl-repair")

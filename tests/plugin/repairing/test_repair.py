@@ -68,7 +68,7 @@ def test_a_search_that_is_out_of_time_says_that_the_clock_is_not_in_the_seed(
     tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clock = count()
-    monkeypatch.setattr("pytest_tarl.repairing.purse.monotonic", lambda: float(next(clock)))
+    monkeypatch.setattr("pytest_tarl.repairing.budget.monotonic", lambda: float(next(clock)))
     changed(tank, "test_tank", "0.1 * pump * (", "0.1 * (0.0 if tarl_drift else 1.0) * pump * (")
     tank.runpytest(*RECORD)
     done = tank.runpytest(*REPAIR, "--tarl-budget=5s")

@@ -10,9 +10,9 @@ import time
 
 import pytest
 
-from pytest_tarl import holding
-from pytest_tarl.working import pool
-from pytest_tarl.working.pool import place_held
+from pytest_tarl import held_interpreter
+from pytest_tarl.workers import pool
+from pytest_tarl.workers.pool import place_held
 from tests.plugin.tank import RECORD, changed
 
 BRIEF = """
@@ -23,7 +23,9 @@ HOLDS = "            flow = GAIN * missing\n            sum(iter(int, 1))"
 SLOW_REGEX = (
     "            import re\n            flow = GAIN * missing\n            re.match('(a+)+b', 'a' * 64)"
 )
-posix = pytest.mark.skipif(holding.SIGNAL is None, reason="there is no timer of CPU time on this system")
+posix = pytest.mark.skipif(
+    held_interpreter.SIGNAL is None, reason="there is no timer of CPU time on this system"
+)
 
 
 @posix

@@ -39,7 +39,7 @@ def ranking(trials: Trials) -> None:
 
 
 @dataclass
-class Crew:
+class FakeExecutor:
     """Workers that run an episode at once and hand it out when it is asked for."""
 
     workers: int
@@ -60,9 +60,9 @@ class Crew:
         return SimpleNamespace(result=result, cancel=result)
 
 
-def history(search: Callable[[Trials], None], workers: int) -> tuple[list[float], list[str], Crew]:
-    crew = Crew(workers)
-    ahead: Any = Ahead(crew)  # type: ignore[arg-type]
+def history(search: Callable[[Trials], None], workers: int) -> tuple[list[float], list[str], FakeExecutor]:
+    executor = FakeExecutor(workers)
+    ahead: Any = Ahead(executor)  # type: ignore[arg-type]
 
     def plan(candidate: Candidate, seed: int) -> Any:
         return (candidate, seed), SimpleNamespace(candidate=candidate, seed=seed)
@@ -73,7 +73,7 @@ def history(search: Callable[[Trials], None], workers: int) -> tuple[list[float]
         foresee=lambda wanted: ahead.foresee(plan(*one) for one in wanted),
     )
     search(trials)
-    return trials.totals, trials.labels, crew
+    return trials.totals, trials.labels, executor
 
 
 @pytest.mark.parametrize("search", [sweep, screening, halving, ranking])
@@ -82,6 +82,6 @@ def test_the_history_is_the_same_whatever_the_number_of_workers(search: Callable
     assert len(alone.begun) == len(totals)
     assert alone.most == 1
     for workers in (2, 7):
-        again, named, crew = history(search, workers)
+        again, named, executor = history(search, workers)
         assert (again, named) == (totals, labels)
-        assert crew.most > workers  # one is looked at, as many as there are workers can run
+        assert executor.most > workers  # one is looked at, as many as there are workers can run

@@ -12,7 +12,7 @@ import pytest
 from pytest_tarl.errors import SearchError, SettingsError
 from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.searching.accept import Outcome
-from pytest_tarl.searching.asking import Asking, Constant, factory
+from pytest_tarl.searching.ask_tell import Asking, Constant, factory
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 from tests.plugin.searching.test_search import GAIN, GOAL, NEEDED, OPERANDS, reward, run

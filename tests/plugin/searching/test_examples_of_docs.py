@@ -10,7 +10,7 @@ import pytest
 
 from pytest_tarl.patching.mutate import mutations
 from pytest_tarl.searching.accept import Outcome
-from pytest_tarl.searching.asking import Asking, factory
+from pytest_tarl.searching.ask_tell import Asking, factory
 from pytest_tarl.searching.candidates import ALWAYS
 from pytest_tarl.searching.search import Candidate, Trials
 from tests.plugin.searching.test_search import BIAS, GAIN, GOAL, LIMIT, reward

@@ -1,0 +1,123 @@
+"""Several patches of one file, all made for the same text: one patch, or the lines that they disagree on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.changes import Replacement
+from pytest_tarl.patching.patch import BASE, SEAL, bytes_diff, split_lines
+from pytest_tarl.patching.reading import Patch
+from pytest_tarl.patching.same_lines import agreed
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """Two patches that want different things of the same lines; `line` counts from 1."""
+
+    file: str
+    line: int
+    first: Patch
+    second: Patch
+
+    def __str__(self) -> str:
+        """Say which lines of which patches."""
+        return (
+            f"{self.file}:{self.line} is changed in two ways, by {self.first.name} and by {self.second.name}"
+        )
+
+
+CONSTANT = "constant"  # the fact of the header that names what a repair changes, where that is defined
+
+
+def constants(patch: Patch) -> list[str]:
+    """Return the constants that a patch changes, as `file:line name`."""
+    return list(dict.fromkeys(patch.told(CONSTANT)))
+
+
+def conflicts(patches: Sequence[Patch]) -> list[Conflict]:
+    """Return where patches that were made for the same text do not go together."""
+    found: list[Conflict] = []
+    for at, first in enumerate(patches):
+        for second in patches[at + 1 :]:
+            theirs = {(file.name, file.before): file.replacements for file in second.files}
+            for file in first.files:
+                others = theirs.get((file.name, file.before), ())
+                clashing = [
+                    (mine, other) for mine in file.replacements for other in others if _clash(mine, other)
+                ]
+                lines = dict.fromkeys(max(mine.start, other.start) + 1 for mine, other in clashing)
+                found += [Conflict(file.name, line, first, second) for line in lines]
+            if not any({one.first, one.second} == {first, second} for one in found):
+                found += _of_one_constant(first, second)
+    return found
+
+
+def combined(content: bytes, wanted: Sequence[Replacement]) -> bytes:
+    """Return a text with all replacements in it; what is put at the same place stands in the given order."""
+    lines, result, at = split_lines(content), list[bytes](), 0
+    for one in _in_order(wanted):
+        if tuple(lines[one.start : one.end]) != one.old or one.start < at:
+            raise RepairError(f"Line {one.start + 1} is not what it was, so the patches cannot be combined.")
+        result += [*lines[at : one.start], *one.new]
+        at = one.end
+    return b"".join((*result, *lines[at:]))
+
+
+def separated(content: bytes, wanted: Sequence[Replacement]) -> bytes | None:
+    """Return the text that `combined` made a content of; None where it does not hold all replacements."""
+    lines, result, at, shift = split_lines(content), list[bytes](), 0, 0
+    for one in _in_order(wanted):
+        start = one.start + shift
+        end = start + len(one.new)
+        if tuple(lines[start:end]) != one.new or start < at:
+            return None
+        result += [*lines[at:start], *one.old]
+        at, shift = end, shift + len(one.new) - len(one.old)
+    return b"".join((*result, *lines[at:]))
+
+
+def combined_diff(patches: Sequence[Patch], originals: Mapping[str, bytes]) -> str:
+    """Return one diff in place of several; `originals` are the texts that they were made for, by name."""
+    texts = {}
+    for name, original in originals.items():
+        files = [file for patch in patches for file in patch.files if file.name == name]
+        texts[name] = (original, combined(original, [one for file in files for one in file.replacements]))
+    header = [f"{patches[0].title.partition(':')[0]}: {len(patches)} repairs in one, each accepted by itself"]
+    for patch in patches:
+        header.append(f"part {patch.name}")
+        header += [f"  {key}: {value}" for key, value in patch.facts if key not in (BASE, SEAL)]
+    return bytes_diff(texts, patches[0].base, header)
+
+
+def same_change(first: Patch, second: Patch) -> bool:
+    """Tell whether two patches do the same."""
+    return first.files == second.files
+
+
+def _of_one_constant(first: Patch, second: Patch) -> Iterator[Conflict]:
+    """Yield the constants that both change, one at its use under a condition and one where it is defined, say."""
+    for told in constants(first):
+        file, _, line = told.partition(" ")[0].rpartition(":")
+        if told in constants(second) and line.isdecimal() and first.base == second.base:
+            yield Conflict(file, int(line), first, second)
+
+
+def _in_order(wanted: Sequence[Replacement]) -> list[Replacement]:
+    """Return each replacement once, from the top of the file down; those that agree are one."""
+    ordered: list[Replacement] = []
+    for one in sorted(dict.fromkeys(wanted), key=lambda one: (one.start, one.end)):
+        joined = agreed(ordered[-1], one) if ordered else None
+        if joined is None:
+            ordered.append(one)
+        else:
+            ordered[-1] = joined
+    return ordered
+
+
+def _clash(one: Replacement, other: Replacement) -> bool:
+    """Tell whether two replacements overlap; what is only put in does not take the place of anything."""
+    if one == other or agreed(one, other) is not None:
+        return False
+    return one.start < other.end and other.start < one.end

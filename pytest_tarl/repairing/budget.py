@@ -1,0 +1,49 @@
+"""What the search of one repair may spend: episodes, or seconds. No phase of it gets more than is left."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from time import monotonic
+
+from pytest_tarl.repairing.incumbent import Watch
+from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
+
+
+@dataclass
+class Purse:
+    """A budget that phases draw on, one after the other.
+
+    `late` tells that the time was up; a phase is over when `share` of what was left at its begin is spent.
+    """
+
+    episodes: int
+    seconds: float | None = None
+    spent: int = 0
+    late: bool = False
+    begun: float = field(default_factory=lambda: monotonic())  # looked up late, as tests replace it
+
+    def phase(self, mutants: Mutants, method: str, watch: Watch, share: float = 1.0) -> Trials:
+        """Return the trials of a phase; `settle` has to be told of them when it is over."""
+        order, passed = mutants.order, monotonic() - self.begun
+        until = None if self.seconds is None else passed + share * (self.seconds - passed)
+
+        def run(candidate: Candidate, seed: int) -> Outcome:
+            now = monotonic() - self.begun
+            if until is not None and now > until:
+                self.late = True
+                raise BudgetSpentError
+            done, total = (trials.spent, trials.budget) if until is None else (int(now), int(until))
+            order.progress(done, total, watch.progress(method))
+            outcome = mutants.run(candidate, seed, order.drift)
+            watch.saw(candidate, seed, outcome)
+            return outcome
+
+        budget = round(share * (self.episodes - self.spent))
+        trials = Trials(run, budget, foresee=lambda wanted: mutants.foresee(wanted, order.drift))
+        return trials
+
+    def settle(self, trials: Trials) -> None:
+        """Take what a phase has spent."""
+        self.spent += trials.spent

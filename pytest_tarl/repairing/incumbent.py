@@ -1,0 +1,65 @@
+"""What is seen of all candidates while a search runs: which one is best so far, which ones were dropped and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from statistics import fmean
+
+from pytest_tarl.repairing.ledger import Refused, Tried
+from pytest_tarl.repairing.request import Order
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.search import Candidate
+
+LEAST = 2  # episodes after the first, in which a candidate was given the chance to be confirmed
+
+
+class Watch:
+    """Keeps the outcomes of the candidates that searches run in the drifted world."""
+
+    def __init__(self, order: Order) -> None:
+        self.order = order
+        self.without = {pair.seed: pair.total for pair in order.goal.pairs}
+        self.seen: dict[Candidate, dict[int, Outcome]] = {}
+        self.best: Candidate | None = None
+
+    def saw(self, candidate: Candidate, seed: int, outcome: Outcome) -> None:
+        """Keep one episode."""
+        self.seen.setdefault(candidate, {})[seed] = outcome
+        if self.best is None or self._worth(candidate) > self._worth(self.best):
+            self.best = candidate
+
+    def gain(self, candidate: Candidate) -> float:
+        """Return what a candidate gained per episode over the unmutated runs of the same seeds."""
+        usual = self.order.goal.online
+        return fmean(run.total - self.without.get(seed, usual) for seed, run in self.seen[candidate].items())
+
+    def best_so_far(self, refused: Refused) -> Refused:
+        """Return the best with its figures, where none was refused on fresh seeds."""
+        if refused.candidate is not None or self.best is None:
+            return refused
+        totals = [run.total for run in self.seen[self.best].values()]
+        return Refused(self.best, refused.reason, fmean(totals), len(totals))
+
+    def unconfirmed(self, tried: Iterable[Tried]) -> list[Tried]:
+        """Return the candidates that came near once and did not on further seeds, in the order they were found."""
+        examined = {one.candidate.changes for one in tried}
+        dropped = []
+        for candidate, runs in self.seen.items():
+            first = next(iter(runs))
+            near = self.order.goal.reached(runs[first], first) and len(runs) > LEAST
+            if near and candidate.changes not in examined:
+                totals = tuple(run.total for run in runs.values())
+                dropped.append(Tried(candidate, "not confirmed", totals, fresh=False))
+        return dropped
+
+    def progress(self, method: str) -> str:
+        """Name the search and what its best candidate gains so far."""
+        if self.best is None:
+            return method
+        wanted = self.order.goal.wanted
+        return f"{method} (best so far {self.gain(self.best):+.3g} of {wanted:.3g})"
+
+    def _worth(self, candidate: Candidate) -> float:
+        """Return the gain, drawn towards none where it was seen once only."""
+        runs = len(self.seen[candidate])
+        return self.gain(candidate) * runs / (runs + 1)

@@ -1,0 +1,100 @@
+"""At the end of a run: do the patches of several tests go together? One combined patch, or the lines in conflict."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.patching.merge import combined_diff, conflicts, constants
+from pytest_tarl.patching.patch import apply_command, write
+from pytest_tarl.patching.reading import Patch, read
+
+
+@dataclass(frozen=True)
+class Joined:
+    """Sentences about patches that touch the same files, and the commands that apply what was found."""
+
+    lines: tuple[str, ...] = ()
+    commands: tuple[str, ...] = ()
+
+
+def joined(paths: Sequence[Path], cwd: Path) -> Joined:
+    """Look at all patches of a run; those that share a file are combined where they can be."""
+    lines: list[str] = []
+    commands: list[str] = []
+    for group in _groups([read(path) for path in paths]):
+        different = [
+            one for at, one in enumerate(group) if one.files not in [each.files for each in group[:at]]
+        ]
+        for one in group:
+            if one not in different:
+                twin = next(each for each in different if each.files == one.files)
+                lines.append(f"{one.name} makes the same change as {twin.name}: one of them is enough")
+        told, kept = _as_one(different)
+        lines += told
+        commands += [apply_command(path, cwd) for path in kept]
+    return Joined(tuple(lines), tuple(commands))
+
+
+def _as_one(patches: Sequence[Patch]) -> tuple[list[str], list[Path]]:
+    """Return what to tell of different patches of the same files, and the patches to apply."""
+    paths = [one.path for one in patches]
+    if len(patches) < 2:
+        return [], paths
+    clashes = conflicts(patches)
+    if clashes:
+        what = "; ".join(dict.fromkeys(map(str, clashes)))
+        return [f"{what}: apply one of them, then record and search the other repair again"], paths
+    try:
+        combined = _combined(patches)
+    except RepairError as problem:
+        return [f"{' and '.join(one.name for one in patches)} are not combined: {problem}"], paths
+    names = " and ".join(one.name for one in patches)
+    shown = Path(os.path.relpath(combined, patches[0].root or combined.parent)).as_posix()
+    return [
+        f"{names} go together: {shown} holds both changes; each was accepted by itself, so compare again"
+    ], [combined]
+
+
+def _combined(patches: Sequence[Patch]) -> Path:
+    """Write one patch in place of several. Raises RepairError where the texts are not what they were."""
+    root = patches[0].root
+    if root is None or len({one.base for one in patches}) > 1:
+        raise RepairError("they belong to different repositories.")
+    names = sorted({file.name for one in patches for file in one.files})
+    originals = {name: (root / patches[0].base / name).read_bytes() for name in names}
+    diff = combined_diff(patches, originals)
+    path = write(diff, patches[0].path.parent, "combined", names[0])
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            for file in read(path).files:
+                compile(file.applied(originals[file.name]), file.name, "exec", dont_inherit=True)
+    except (SyntaxError, ValueError) as problem:
+        path.unlink()
+        raise RepairError(f"what they make together would not compile ({problem}).") from problem
+    return path
+
+
+def _groups(patches: Sequence[Patch]) -> Iterator[list[Patch]]:
+    """Yield the patches that share files or constants, directly or through others, in the order of their first ones."""
+    left = list(patches)
+    while left:
+        group, files = [left.pop(0)], set[tuple[str, str]]()
+        grew = True
+        while grew:
+            files |= {place for one in group for place in _touched(one)}
+            more = [one for one in left if files & _touched(one)]
+            left = [one for one in left if one not in more]
+            group += more
+            grew = bool(more)
+        yield group
+
+
+def _touched(patch: Patch) -> set[tuple[str, str]]:
+    """Return the files and the constants that a patch changes."""
+    return {(patch.base, name) for name in (*(file.name for file in patch.files), *constants(patch))}

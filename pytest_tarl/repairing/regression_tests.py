@@ -1,0 +1,108 @@
+"""Other recorded tests of the node that a candidate changes: their missions in the designed world must not lose."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence, Set
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import fmean
+
+from pytest_tarl.instrumentation.datafiles import is_data
+from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.repairing.request import Neighbour
+from pytest_tarl.searching import candidates
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.search import Candidate
+
+MOST = 5  # tests that are run
+EPISODES = 8  # of each of them, those first in which the guard holds
+
+
+@dataclass(frozen=True)
+class Beside:
+    """What came of the other tests: sentences about those that held and about those that lost; episodes run."""
+
+    held: tuple[str, ...] = ()
+    lost: tuple[str, ...] = ()
+    episodes: int = 0
+
+
+NOTHING_BESIDE = Beside()
+
+
+def beside(mutants: Mutants, candidate: Candidate) -> Beside:
+    """Run the recorded missions of other tests of the changed files, until one of them loses."""
+    changed = {path.resolve() for path in mutants.source(candidate)}
+    concerned = [one for one in mutants.order.neighbours() if _uses(one, changed, mutants.order.root)]
+    held: list[str] = []
+    episodes = 0
+    for neighbour in concerned[:MOST]:
+        chosen = _chosen(neighbour, candidate)
+        lost, told = _compared(mutants, neighbour, candidate, chosen)
+        episodes += len(chosen)
+        if lost:
+            return Beside(tuple(held), (told,), episodes)
+        held.append(told)
+    if len(concerned) > MOST:
+        held.append(f"{len(concerned) - MOST} more of the node were not run")
+    return Beside(tuple(held), (), episodes)
+
+
+def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
+    """Tell whether a test's nodes are among the changed files, or they or the test name one of them."""
+    if changed & set(neighbour.nodes):
+        return True
+    texts = [root / neighbour.test.partition("::")[0], *neighbour.nodes]
+    names = re.compile(
+        "|".join(rf"\b{re.escape(path.name if is_data(path) else path.stem)}\b" for path in changed)
+    )
+    return any(path.is_file() and names.search(path.read_text("utf-8", "replace")) for path in texts)
+
+
+def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:
+    """Return the recorded episodes (by index) to run: those in which the guard holds, where the recording knows."""
+    fixture = neighbour.fixture
+    if any(conjunct.sensor not in fixture.sensors for conjunct in candidate.guard.conjuncts):
+        return range(min(EPISODES, fixture.sample.episodes))
+    firing = candidates.firing_episodes(candidate.guard, fixture.sample, fixture.sensors)
+    place = {seed: at for at, seed in enumerate(fixture.sample.seeds)}
+    return [place[seed] for seed in firing[:EPISODES]]
+
+
+def _compared(
+    mutants: Mutants, neighbour: Neighbour, candidate: Candidate, chosen: Sequence[int]
+) -> tuple[bool, str]:
+    """Tell whether missions lose under a candidate, each against its own recording, and say so in words."""
+    if not chosen:
+        return False, f"{neighbour.test}: as recorded, since the condition never holds there"
+    sample = neighbour.fixture.sample
+    outcomes = _run(mutants, neighbour, candidate, chosen)
+    if neighbour.drift is not None:
+        before, what = (
+            _run(mutants, neighbour, None, chosen),
+            "it earns without the repair under the same drift",
+        )
+    else:
+        before = [Outcome(float(sample.total[at]), bool(sample.passed[at])) for at in chosen]
+        what = "was recorded"
+    failed = sum(not outcome.passed and usual.passed for outcome, usual in zip(outcomes, before, strict=True))
+    now, usually = (fmean(outcome.total for outcome in world) for world in (outcomes, before))
+    told = f"{neighbour.test}: {now:.4g} an episode where {usually:.4g} {what}, {len(chosen)} episodes"
+    if failed:
+        told += f", {failed} of them fail now"
+    if mutants.order.permanent and neighbour.drift is None:
+        return False, f"{told}; it does not declare the drift, so this is its old world, which is not asked"
+    return failed > 0 or now < usually - neighbour.margin, told
+
+
+def _run(
+    mutants: Mutants, neighbour: Neighbour, candidate: Candidate | None, chosen: Sequence[int]
+) -> list[Outcome]:
+    """Run some of the recorded episodes of another test again."""
+    sample = neighbour.fixture.sample
+    worst = float(sample.total.min())
+    return [
+        mutants.run_at(neighbour.rollout, worst, candidate, sample.seeds[at], neighbour.drift)
+        for at in chosen
+    ]

@@ -1,0 +1,57 @@
+"""Workers on a Dask cluster; each of its threads keeps one process that runs episodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager, suppress
+
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.workers.pool import Pool, Post
+
+REACHED = 10  # seconds in which the scheduler has to answer
+RETRIES = 2  # times that an episode goes to another machine when its own is lost
+
+_pools: list[Pool] = []  # of this process, a worker of the cluster
+
+
+def serve_here(post: Post, request: bytes) -> bytes:
+    """Let a process on this machine answer."""
+    if not _pools:
+        _pools.append(Pool())
+    return _pools[0].serve(post, request)
+
+
+def leave() -> None:
+    """End the processes on this machine."""
+    while _pools:
+        _pools.pop().close()
+
+
+@contextmanager
+def joined(address: str) -> Iterator[tuple[Executor, int]]:
+    """Join a cluster and return its executor and how many episodes it runs at a time. Raises SettingsError."""
+    try:
+        from distributed import Client
+    except ImportError:
+        raise SettingsError("--tarl-cluster needs Dask: pip install 'tarl[cluster]'.") from None
+    try:
+        client = Client(address, timeout=REACHED, set_as_default=False)
+    except (OSError, ValueError) as problem:
+        raise SettingsError(
+            f"--tarl-cluster: no Dask scheduler answers at {address} ({problem}). Start one with `dask scheduler` "
+            "and give its address, such as tcp://192.0.2.1:8786."
+        ) from None
+    with client:
+        workers = sum(client.nthreads().values())
+        if not workers:
+            raise SettingsError(
+                f"--tarl-cluster: the scheduler at {address} has no workers; start some: dask worker {address}."
+            )
+        executor = client.get_executor(retries=RETRIES)
+        try:
+            yield executor, workers
+        finally:
+            with suppress(OSError, TimeoutError):
+                executor.shutdown(wait=False)
+                client.run(leave)

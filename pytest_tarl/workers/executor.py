@@ -1,0 +1,158 @@
+"""Run the episodes of a test on workers: processes here, by concurrent.futures, or on a Dask cluster."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pytest_tarl.errors import RecordingError
+from pytest_tarl.options import Options
+from pytest_tarl.repeating import Instruments
+from pytest_tarl.rollout import EpisodePlan, EpisodeRun
+from pytest_tarl.sensors import Sensor
+from pytest_tarl.workers import protocol
+from pytest_tarl.workers.pool import TRIES, Pool, Post, WorkerDiedError, WorkerHeldError
+
+Serve = Callable[[Post, bytes], bytes]
+
+# What a worker must not do, or not share with others: reports, caches of results, debuggers, workers of its own.
+OFF: Mapping[str, Any] = {
+    "cacheclear": False,
+    "collectonly": False,
+    "dist": "no",
+    "failedfirst": False,
+    "htmlpath": None,
+    "json_report": False,
+    "lf": False,
+    "newfirst": False,
+    "no_cov": True,
+    "numprocesses": None,
+    "report_log": None,
+    "stepwise": False,
+    "tarl_cluster": None,
+    "tarl_search": None,
+    "tarl_workers": "1",
+    "trace": False,
+    "tx": [],
+    "usepdb": False,
+    "xmlpath": None,
+}
+
+
+@dataclass(frozen=True)
+class EpisodeExecutor:
+    """A rollout whose episodes run elsewhere."""
+
+    executor: Executor
+    serve: Serve
+    post: Post
+    workers: int
+
+    def __call__(self, plan: EpisodePlan) -> EpisodeRun:
+        """Run one episode. Raises TarlError where the test cannot be run as asked, pytest's Exit and Skipped."""
+        return self.begin(plan).result()
+
+    def begin(self, plan: EpisodePlan) -> Answer:
+        """Ask for an episode."""
+        return Answer(plan, self.executor.submit(self.serve, self.post, protocol.plan_message(plan)))
+
+
+@dataclass(frozen=True)
+class Answer:
+    """An episode that was asked for."""
+
+    plan: EpisodePlan
+    future: Future[bytes]
+
+    def result(self) -> EpisodeRun:
+        """Wait for it. Raises TarlError where it could not be run, pytest's Exit and Skipped."""
+        try:
+            return protocol.answered(self.plan, self.future.result())
+        except WorkerDiedError as died:
+            raise RecordingError(
+                f"The worker process of the episode with seed {self.plan.seed} {died}, {TRIES} times in {TRIES}: run "
+                "it without --tarl-workers to see what its node does, or use fewer workers if memory is short."
+            ) from None
+        except WorkerHeldError as held:
+            raise RecordingError(
+                f"Stopped at an episode (seed {self.plan.seed}) that came to no end: a node held the interpreter, at "
+                f"{held}, in one call that never returns (a loop in C, a runaway regular expression). Its worker was "
+                "ended and replaced. Bound that call."
+            ) from None
+        except protocol.SkippedError as skipped:
+            pytest.skip(str(skipped))
+        except protocol.EndedError as ended:
+            pytest.exit(str(ended))
+        except CancelledError:
+            raise RecordingError("The cluster took back an episode: look at its scheduler's log.") from None
+
+    def cancel(self) -> bool:
+        """Do without it, if no worker has begun it."""
+        return self.future.cancel()
+
+
+@contextmanager
+def opened(
+    item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor], options: Options
+) -> Iterator[EpisodeExecutor]:
+    """Open an executor for a test and end all its workers afterwards, whatever happens meanwhile."""
+    post = posted(item, instruments, sensors)
+    if options.cluster is not None:
+        from pytest_tarl.workers.cluster import joined, serve_here
+
+        with joined(options.cluster) as (executor, workers):
+            yield EpisodeExecutor(executor, serve_here, post, workers)
+        return
+    pool = Pool()
+    executor = ThreadPoolExecutor(options.workers, "tarl")
+    try:
+        yield EpisodeExecutor(executor, pool.serve, post, options.workers)
+    finally:
+        executor.shutdown(wait=False, cancel_futures=True)
+        pool.close()
+        executor.shutdown()
+
+
+def posted(item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor]) -> Post:
+    """Say what a worker needs in order to hold the item ready."""
+    config = item.config
+    plain = {name: value for name, value in vars(config.option).items() if _plain(value)}
+    rooted = {"rootdir": str(config.rootpath)}
+    if config.inipath is not None:
+        rooted["inifilename"] = str(config.inipath)
+    plugins = [*config.option.plugins, "no:terminal"]
+    folder = str(config.invocation_params.dir)
+    start = {
+        "path": [str(Path(folder, entry)) for entry in sys.path],  # an absolute entry stays what it is
+        "options": plain | dict(OFF) | rooted | {"plugins": plugins, "basetemp": None},
+        "target": f"{item.path}::{item.nodeid.partition('::')[2]}",
+    }
+    first = {
+        "nodeid": item.nodeid,
+        "edges": {sensor.name: sensor.edges for sensor in sensors if sensor.learned},
+        "instruments": {
+            "positions": {
+                str(path): [[line, column, number] for (line, column), number in places.items()]
+                for path, places in instruments.positions.items()
+            },
+            "publishes": sorted(instruments.publishes),
+        },
+    }
+    loud = config.option.capture == "no"
+    return Post(folder, json.dumps(start), json.dumps(first).encode(), loud)
+
+
+def _plain(value: object) -> bool:
+    try:
+        json.dumps(value)
+    except (TypeError, ValueError):
+        return False
+    return True

@@ -1,0 +1,208 @@
+"""Worker processes and how they are spoken to; a worker that dies costs its episode another try, not the run."""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import sys
+import threading
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryFile
+from typing import BinaryIO
+
+from pytest_tarl.errors import TarlError
+from pytest_tarl.held_interpreter import SIGNAL
+from pytest_tarl.ros.blame import describe_first
+from pytest_tarl.workers import protocol
+
+TRIES = 3  # times that an episode is run whose worker dies
+PATIENCE = 5.0  # seconds in which a worker may finish its fixtures before it is ended
+SILENCE = 180  # looks, one a second, without a sign of life; one that is stopped does not look
+_FRAME = re.compile(r'^ *File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
+WORKER_MAIN = Path(__file__).with_name("worker_main.py")
+
+
+class WorkerDiedError(TarlError):
+    """A worker process ended in the middle of an episode."""
+
+
+class WorkerHeldError(TarlError):
+    """A node held the interpreter of a worker, which was ended; doing it again would take as long again."""
+
+
+@dataclass(frozen=True)
+class Post:
+    """What a worker is there for: where it is started, what pytest is set up with, and its first message."""
+
+    folder: str
+    start: str
+    first: bytes
+    loud: bool = False  # whether what nodes print is shown
+
+
+class Worker:
+    """One process that runs episodes of one test."""
+
+    def __init__(self, post: Post) -> None:
+        self._log = TemporaryFile()  # noqa: SIM115 - as long as the process
+        self._process = subprocess.Popen(
+            [sys.executable, str(WORKER_MAIN), post.start],
+            cwd=post.folder,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=None if post.loud else self._log,
+        )
+        self._post = post
+        self._asked = False
+        self._silent = 0
+        self._held = False
+        self._over = threading.Event()
+
+    def greet(self) -> None:
+        """Wait until it holds its test ready. Raises TarlError where it cannot, WorkerDiedError."""
+        greeting = self.ask(self._post.first)
+        if greeting != protocol.READY:
+            protocol.refused(greeting)
+        threading.Thread(target=self._listen, name="tarl-listener", daemon=True).start()
+
+    def ask(self, request: bytes) -> bytes:
+        """Send a request and return the answer. Raises WorkerDiedError and WorkerHeldError."""
+        asked, told = self._pipes()
+        self._silent, self._asked = 0, True
+        try:
+            protocol.write(asked, request)
+            while (answer := protocol.read(told)) == protocol.ALIVE:
+                self._silent = 0
+        except (OSError, ValueError):  # the latter of a pipe that `end` has closed
+            answer = None
+        finally:
+            self._asked = False
+        if answer is None:
+            said = self._last_words()
+            if self._held or self._process.returncode == -(SIGNAL or 0):
+                raise WorkerHeldError(place_held(self._log_text()))
+            raise WorkerDiedError(said)
+        return answer
+
+    def _listen(self) -> None:
+        """End it when it gives no sign of life: a worker that cannot end itself must not hold up the run."""
+        while not self._over.wait(1.0):
+            self._silent += self._asked
+            if self._silent > SILENCE:
+                self._held = True
+                with suppress(OSError, subprocess.TimeoutExpired):
+                    self._process.send_signal(signal.SIGABRT)  # for which pytest has faulthandler say where
+                    self._process.wait(PATIENCE)
+                self._process.kill()
+                return
+
+    def _last_words(self) -> str:
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(PATIENCE)
+        said = self._log_text().strip().splitlines()
+        return f"ended with status {self._process.returncode}" + (f": {said[-1]}" if said else "")
+
+    def _log_text(self) -> str:
+        with suppress(OSError, ValueError):
+            self._log.seek(0)
+            return self._log.read().decode(errors="replace")
+        return ""
+
+    def dismiss(self) -> None:
+        """Let it tear down its fixtures and go; end it when that takes too long."""
+        with suppress(OSError, ValueError):
+            protocol.write(self._pipes()[0], b"")
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(PATIENCE)
+        self.end()
+
+    def end(self) -> None:
+        """End it now, whatever it does."""
+        self._over.set()
+        self._process.kill()
+        self._process.wait()
+        for pipe in (*self._pipes(), self._log):
+            with suppress(OSError):
+                pipe.close()
+
+    def _pipes(self) -> tuple[BinaryIO, BinaryIO]:
+        process = self._process
+        assert process.stdin is not None  # noqa: S101 - told to the type checker: both were asked for
+        assert process.stdout is not None  # noqa: S101
+        return process.stdin, process.stdout  # type: ignore[return-value]
+
+
+def place_held(log: str) -> str:
+    """Return the user's innermost line that faulthandler wrote down; empty where there is none."""
+    ours = str(WORKER_MAIN.parent.parent)
+    frames = [
+        (file, int(line), function)
+        for file, line, function in _FRAME.findall(log)
+        if not file.startswith(ours)
+    ]
+    return describe_first(frames)
+
+
+class Pool:
+    """The workers of this process, by what they are there for; started as they are needed."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._idle: dict[Post, list[Worker]] = {}
+        self._busy: list[Worker] = []
+        self._closed = False
+
+    def serve(self, post: Post, request: bytes) -> bytes:
+        """Let a free worker answer. Raises WorkerDiedError when as many as `TRIES` died of it."""
+        for _ in range(TRIES - 1):
+            with suppress(WorkerDiedError):
+                return self._once(post, request)
+        return self._once(post, request)
+
+    def close(self) -> None:
+        """Dismiss the idle workers and end the others."""
+        with self._lock:
+            self._closed = True
+            busy, idle = self._busy[:], [worker for all_of in self._idle.values() for worker in all_of]
+            self._idle.clear()
+        for worker in busy:
+            worker.end()
+        leaving = [threading.Thread(target=worker.dismiss) for worker in idle]
+        for one in leaving:
+            one.start()
+        for one in leaving:
+            one.join()
+
+    def _once(self, post: Post, request: bytes) -> bytes:
+        worker = self._idle_one(post)
+        known = worker is not None
+        worker = worker or Worker(post)
+        with self._lock:
+            self._busy.append(worker)
+        try:
+            if self._closed:
+                raise WorkerDiedError("not needed any more: the run is over")
+            if not known:
+                worker.greet()
+            answer = worker.ask(request)
+        except BaseException:
+            worker.end()
+            self._move(worker, None)
+            raise
+        self._move(worker, post)
+        return answer
+
+    def _idle_one(self, post: Post) -> Worker | None:
+        with self._lock:
+            waiting = self._idle.get(post)
+            return waiting.pop() if waiting else None
+
+    def _move(self, worker: Worker, post: Post | None) -> None:
+        """Take a worker from its work, to wait for more where a post is given."""
+        with self._lock:
+            self._busy.remove(worker)
+            if post is not None:
+                self._idle.setdefault(post, []).append(worker)

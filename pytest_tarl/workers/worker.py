@@ -1,0 +1,153 @@
+"""What a worker process does: hold one test ready and run an episode of it whenever it is asked to."""
+
+from __future__ import annotations
+
+import _thread
+import json
+import os
+import sys
+import threading
+import traceback
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import pytest
+from _pytest.config import Config
+
+from pytest_tarl.errors import TarlError
+from pytest_tarl.repeating import Instruments, ItemRollout, designated, finish
+from pytest_tarl.rollout import Rollout
+from pytest_tarl.sensors import with_edges
+from pytest_tarl.workers import protocol
+
+MEMORIES = ("lfplugin", "nfplugin", "stepwiseplugin")
+BEAT = 1.0  # seconds between two signs of life
+ENDED = 70  # exit status of a worker whose run is gone
+
+
+def serve(requests: int, answers: int, config: Config | None, problem: str) -> None:
+    """Serve the process that started this one until it says that there is no more, or is gone.
+
+    The arguments are the descriptors of the pipes, and pytest's configuration or why there is none.
+    """
+    alive, told = os.pipe()
+    _thread.start_new_thread(_forwarded, (requests, told))
+    with os.fdopen(alive, "rb") as asked, os.fdopen(answers, "wb") as said:
+        first = protocol.read(asked)
+        if not first:
+            return
+        if config is None:
+            protocol.write(said, protocol.error_message(TarlError(problem)))
+            return
+        post: dict[str, Any] = json.loads(first)
+        server = Server(post, asked, said)
+        config.pluginmanager.register(server, "tarl-worker")
+        config.hook.pytest_cmdline_main(config=config)
+        server.refuse("no test was run")
+
+
+class Server:
+    """The pytest plugin of a worker: in place of running tests it answers requests."""
+
+    def __init__(self, post: dict[str, Any], requests: BinaryIO, answers: BinaryIO) -> None:
+        self.post = post
+        self.requests = requests
+        self.answers = answers
+        self.problems: list[str] = []
+        self.serving = False
+        self.turn = threading.Lock()
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        """Keep why a test could not be collected."""
+        if report.failed:
+            self.problems.append(report.longreprtext)
+
+    def pytest_internalerror(self, excrepr: object) -> None:
+        """Keep what pytest or a plugin of it stumbled over."""
+        self.problems.append(str(excrepr))
+
+    def pytest_sessionstart(self, session: pytest.Session) -> None:
+        """Leave pytest's memory of what failed last to the run."""
+        for name in MEMORIES:
+            session.config.pluginmanager.unregister(name=name)
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        """Run episodes as they are asked for."""
+        wanted = [item for item in session.items if item.nodeid == self.post["nodeid"]]
+        if not wanted or not isinstance(wanted[0], pytest.Function):
+            self.refuse(f"{self.post['nodeid']} was not collected")
+            return True
+        item = wanted[0]
+        marked = designated(item)
+        if marked is None:
+            self.refuse(f"{item.nodeid} has no marker")
+            return True
+        self.serving = True
+        edges = {name: tuple(ends) for name, ends in self.post["edges"].items()}
+        told = replace(marked, sensors=with_edges(marked.sensors, edges))
+        rollout = ItemRollout(item, told, instruments(self.post["instruments"]))
+        self._say(protocol.READY)
+        _thread.start_new_thread(self._beat, ())
+        while request := protocol.read(self.requests):  # an empty one says that there are no more
+            self._say(answer(rollout, request))
+        finish(item, None)
+        return True
+
+    def _say(self, message: bytes) -> None:
+        with self.turn:
+            protocol.write(self.answers, message)
+
+    def _beat(self) -> None:
+        """Tell again and again that threads run here; the process that asks gives up on one that falls silent."""
+        pause = threading.Event()
+        with suppress(OSError, ValueError):  # the run is gone
+            while not pause.wait(BEAT):
+                self._say(protocol.ALIVE)
+
+    def refuse(self, problem: str) -> None:
+        """Say why there is nothing to serve."""
+        if not self.serving:
+            protocol.write(
+                self.answers, protocol.error_message(TarlError("\n".join([problem, *self.problems])))
+            )
+            self.serving = True
+
+
+def answer(rollout: Rollout, request: bytes) -> bytes:
+    """Run the episode that is asked for; what goes wrong is an answer too."""
+    try:
+        return protocol.run_message(rollout(protocol.planned(request)))
+    except TarlError as problem:
+        return protocol.error_message(problem)
+    except pytest.skip.Exception as skipped:
+        return protocol.error_message(protocol.SkippedError(str(skipped)))
+    except pytest.exit.Exception as ended:
+        return protocol.error_message(protocol.EndedError(str(ended)))
+    except Exception:
+        return protocol.error_message(
+            TarlError(f"An episode broke in a worker process:\n{traceback.format_exc()}")
+        )
+
+
+def instruments(given: dict[str, Any]) -> Instruments:
+    """Read what is recorded of the nodes."""
+    positions = {
+        Path(path): {(line, column): number for line, column, number in places}
+        for path, places in given["positions"].items()
+    }
+    return Instruments(positions, frozenset(given["publishes"]))
+
+
+def _forwarded(requests: int, told: int) -> None:
+    """Hand requests on; when the run is gone, end this process in the middle of whatever its node does.
+
+    A plain thread that `threading` does not know of: a recorder looks there for the threads of nodes.
+    """
+    while chunk := os.read(requests, 1 << 16):
+        while chunk:
+            chunk = chunk[os.write(told, chunk) :]
+    sys.stderr.flush()
+    os._exit(ENDED)

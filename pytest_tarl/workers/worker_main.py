@@ -1,0 +1,41 @@
+"""The first thing that a worker process runs, as a script: pytest wants to be there before anything of ours is."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+
+
+def main() -> None:
+    """Take the pipes before a conftest can write to them, set pytest up, then serve."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the run; it ends its workers itself
+    pipes = _pipes()
+    start = json.loads(sys.argv[1])
+    sys.path[:] = start["path"]
+    from _pytest.config import Config
+
+    problem = ""
+    config = None
+    try:
+        config = Config.fromdictargs(start["options"], [start["target"]])
+    except (Exception, SystemExit) as refused:
+        problem = f"{type(refused).__name__}: {refused}"
+    from pytest_tarl.workers.worker import serve
+
+    serve(*pipes, config, problem)
+
+
+def _pipes() -> tuple[int, int]:
+    """Take stdin and stdout for the messages, so that no node can read or write there."""
+    requests, answers = os.dup(0), os.dup(1)
+    nowhere = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nowhere, 0)
+    os.dup2(2, 1)
+    os.close(nowhere)
+    return requests, answers
+
+
+if __name__ == "__main__":
+    main()

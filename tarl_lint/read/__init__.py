@@ -1,0 +1,1 @@
+"""Find files, read and parse them, and name their modules and packages."""

@@ -1,0 +1,1 @@
+"""Run the analysis: groups of files, worker processes, the cache, progress."""

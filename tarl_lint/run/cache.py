@@ -1,0 +1,187 @@
+"""Cache of results by content, settings and version. A problem with it never fails a run.
+
+One file contains the entries of the last run on the same paths with the same settings. Its first line is the digest
+of the rest, so a damaged file is not read. The file is written under another name and renamed, so concurrent runs
+only replace each other's file.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, Final, TypeVar
+
+from tarl_lint import __version__
+from tarl_lint.files import write_whole
+from tarl_lint.model import Cut, Finding, Flow, Sink, SiteId, Source, Span, Step
+from tarl_lint.read.source import SourceError
+from tarl_lint.settings.config import Config
+
+try:
+    from _blake2 import blake2b  # hashlib would import OpenSSL, which is slower than linting a small file
+except ImportError:
+    from hashlib import blake2b
+
+T = TypeVar("T")
+
+FORMAT: Final = 1 + 4
+PLACE: Final = (".tarl", "cache", "lint")
+PACKAGES: Final = (
+    "flows", "interpret", "ir", "memory", "models", "models/ros", "prefilter", "read", "rules", "rules/limits",
+    "rules/races", "run", "settings",
+)  # fmt: skip
+AFTERWARDS: Final = frozenset(
+    ["root", "exclude", "baseline", "fail_on", "per_file_ignores", "file", "origins"]
+)  # settings that do not influence the findings in given files
+
+
+@dataclass(frozen=True)
+class Report:
+    """The results for a group of files: findings without fingerprints, and files that could not be analysed.
+
+    `cut` are the programs that exhausted their budget, `ended` the classes outside the files at which flows ended.
+    """
+
+    findings: tuple[Finding, ...] = ()
+    errors: tuple[SourceError, ...] = ()
+    cut: tuple[Cut, ...] = ()
+    ended: tuple[str, ...] = ()
+
+
+class Cache:
+    """Reports by key, and plans: the keys of a whole run. Without a file, nothing is stored."""
+
+    def __init__(self, file: Path | None) -> None:
+        self._file = file
+        self._reports: dict[str, Any] = {}
+        self._plans: dict[str, list[str]] = {}
+        self._used: dict[str, Any] = {}
+        self._plan: tuple[str, list[str]] | None = None
+        if file is not None:
+            self._load(file)
+
+    def report(self, key: str) -> Report | None:
+        """Return the report stored under a key, None if there is none."""
+        packed = self._reports.get(key)
+        if packed is None:
+            return None
+        self._used[key] = packed
+        findings, errors, cut, ended = packed
+        found = tuple(_unpacked(Finding, f) for f in findings)
+        return Report(
+            found, tuple(SourceError(*e) for e in errors), tuple(Cut(*c) for c in cut), tuple(ended)
+        )
+
+    def put(self, key: str, report: Report) -> None:
+        """Store a report, unless it contains an internal error, which the next version may not have."""
+        if self._file is not None and not any(error.bug for error in report.errors):
+            self._used[key] = [
+                _packed(report.findings),
+                _packed(report.errors),
+                _packed(report.cut),
+                list(report.ended),
+            ]
+
+    def plan(self, key: str) -> Sequence[str]:
+        """Return the keys of the reports of a whole run, empty if one is missing."""
+        keys = self._plans.get(key, [])
+        return keys if all(k in self._reports for k in keys) else []
+
+    def put_plan(self, key: str, keys: Sequence[str]) -> None:
+        """Store the keys of the reports of a whole run."""
+        self._plan = (key, list(keys))
+
+    def save(self) -> None:
+        """Write the entries used in this run, if they differ from the file."""
+        if self._file is None or (self._plan is None and self._used.keys() == self._reports.keys()):
+            return
+        plans = dict([self._plan]) if self._plan is not None else self._plans
+        text = json.dumps([self._used, plans], ensure_ascii=True, separators=(",", ":"))
+        try:
+            self._file.parent.mkdir(parents=True, exist_ok=True)
+            ignore = self._file.parent / ".gitignore"
+            if not ignore.exists():
+                write_whole(ignore, "*\n")
+            write_whole(self._file, f"{digest([text])}\n{text}")
+        except OSError:
+            self._file = None  # not writable: the next run is as slow as this one
+
+    def _load(self, file: Path) -> None:
+        try:
+            stated, _, text = file.read_text("utf-8").partition("\n")
+            kept = json.loads(text) if stated == digest([text]) else None
+        except (OSError, ValueError, RecursionError):
+            return  # missing or damaged: start empty
+        if isinstance(kept, list) and [type(part) for part in kept] == [dict, dict]:
+            self._reports, self._plans = kept
+
+
+def opened(paths: Sequence[Path], config: Config) -> Cache:
+    """Return the cache of runs on these paths with these settings."""
+    settings = [f"{f.name}={getattr(config, f.name)!r}" for f in fields(config) if f.name not in AFTERWARDS]
+    places = [os.path.abspath(p) for p in paths]  # noqa: PTH100 - as text, also for what does not exist
+    here = os.getcwd()  # noqa: PTH109
+    name = digest([str(FORMAT), __version__, sys.version, *_ourselves(), *settings, here, *places])
+    return Cache((config.root or Path.cwd()).joinpath(*PLACE, f"{name}.json"))
+
+
+def digest(texts: Iterable[str]) -> str:
+    """Return a digest of a sequence of texts."""
+    made = blake2b(digest_size=16)
+    for text in texts:
+        data = text.encode("utf-8", "surrogatepass")
+        made.update(len(data).to_bytes(8, "big"))
+        made.update(data)
+    return made.hexdigest()
+
+
+def _ourselves() -> list[str]:
+    """Return the identity of this copy of the linter, which changes with its source during development."""
+    home = Path(__file__).parent.parent
+    found = []
+    for place in (home, *(home / name for name in PACKAGES)):
+        with os.scandir(place) as entries:
+            files = [(e.name, e.stat()) for e in entries if e.name.endswith(".py")]
+        found += [f"{name} {stat.st_mtime_ns} {stat.st_size}" for name, stat in sorted(files)]
+    return found
+
+
+def _packed(value: object) -> object:
+    """Return dataclasses as lists of their fields."""
+    if isinstance(value, tuple):
+        return [_packed(item) for item in value]
+    names = getattr(value, "__dataclass_fields__", None)
+    return [_packed(getattr(value, name)) for name in names] if names is not None else value
+
+
+def _unpacked(kind: type[T], values: Sequence[Any]) -> T:
+    """Return a dataclass from its packed fields."""
+    names = getattr(kind, "__dataclass_fields__", {})
+    made = (PARTS.get(name, _same)(value) for name, value in zip(names, values, strict=True))
+    return kind(*made)
+
+
+def _same(value: Any) -> Any:
+    return value
+
+
+def _spans(packed: Any) -> tuple[Span, ...]:
+    return tuple(Span(*span) for span in packed)
+
+
+PARTS: Final[Mapping[str, Callable[[Any], Any]]] = {
+    "span": lambda packed: Span(*packed),
+    "site": lambda packed: SiteId(*packed),
+    "topics": tuple,
+    "chain": tuple,
+    "registered": _spans,
+    "via": _spans,
+    "source": lambda packed: _unpacked(Source, packed),
+    "sink": lambda packed: _unpacked(Sink, packed),
+    "steps": lambda packed: tuple(Step(SiteId(*site), Span(*span), *rest) for site, span, *rest in packed),
+    "flow": lambda packed: None if packed is None else _unpacked(Flow, packed),
+}  # by field name

@@ -1,0 +1,153 @@
+"""Analysis of all files of a run, group by group; results of an earlier run are reused."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Final
+
+from tarl_lint.prefilter.by_words import groups
+from tarl_lint.read.source import TOO_DEEP, Module, Script, SourceError, parsed
+from tarl_lint.run.cache import Cache, Report, digest
+from tarl_lint.run.gc_paused import without_collection
+from tarl_lint.run.progress import Tell, silent
+from tarl_lint.settings.config import Config
+
+MANY_LINES: Final = 30_000  # lines to analyse; below this, starting processes takes longer than it saves
+
+
+@dataclass(frozen=True)
+class Task:
+    """Files to be analysed together, or one that only needs to be parsed."""
+
+    scripts: tuple[Script, ...]
+    analyse: bool
+
+    @property
+    def lines(self) -> int:
+        """Return the number of lines to analyse."""
+        return sum(s.text.count("\n") for s in self.scripts) if self.analyse else 0
+
+
+def examine(
+    scripts: Sequence[Script], config: Config, cache: Cache, jobs: int | None = 1, tell: Tell = silent
+) -> Report:
+    """Return the findings in the files, independent of the number of processes (None: chosen by the size)."""
+    digests = {
+        s.path: digest([s.path, s.name, str((s.is_package, s.installed)), *s.started, s.text])
+        for s in scripts
+    }
+    whole = digest(digests.values())
+    known = cache.plan(whole)
+    if known:
+        reports = [report for key in known if (report := cache.report(key)) is not None]
+    else:
+        tasks = _tasks(scripts, config)
+        keys = [digest([str(task.analyse), *(digests[s.path] for s in task.scripts)]) for task in tasks]
+        reports = _reports(tasks, keys, config, cache, jobs, tell)
+        cache.put_plan(whole, keys)
+    cache.save()
+    errors = sorted((e for r in reports for e in r.errors), key=lambda e: (e.path, e.line, e.message))
+    findings = tuple(f for r in reports for f in r.findings)
+    return Report(
+        findings,
+        tuple(errors),
+        tuple(sorted({c for r in reports for c in r.cut})),
+        _every(r.ended for r in reports),
+    )
+
+
+def _every(names: Iterable[Iterable[str]]) -> tuple[str, ...]:
+    return tuple(sorted({name for some in names for name in some}))
+
+
+def _tasks(scripts: Sequence[Script], config: Config) -> list[Task]:
+    found = (group for group in groups(scripts, config) if not all(s.installed for s in group))
+    grouped = [Task(group, analyse=True) for group in found]
+    inside = {s.path for task in grouped for s in task.scripts}
+    alone = (s for s in scripts if s.path not in inside and not s.installed)
+    return [*grouped, *(Task((s,), analyse=False) for s in alone)]
+
+
+def _reports(
+    tasks: Sequence[Task], keys: Sequence[str], config: Config, cache: Cache, jobs: int | None, tell: Tell
+) -> list[Report]:
+    found = [cache.report(key) for key in keys]
+    missing = [number for number, report in enumerate(found) if report is None]
+    work = [tasks[number] for number in missing]
+    for number, report in zip(missing, _made(work, config, _workers(work, jobs), tell), strict=True):
+        found[number] = report
+        cache.put(keys[number], report)
+    return [report for report in found if report is not None]
+
+
+def _workers(tasks: Sequence[Task], jobs: int | None) -> int:
+    """Return the number of processes: limited by the number of groups and by the size of the largest."""
+    wanted = sum(task.analyse for task in tasks)
+    if jobs is None:
+        lines = [task.lines for task in tasks]
+        jobs = min(_processors(), sum(lines) // max(lines)) if sum(lines) >= MANY_LINES else 1
+    return max(1, min(jobs, wanted))
+
+
+def _processors() -> int:
+    allowed = getattr(os, "sched_getaffinity", None)
+    return len(allowed(0)) if allowed is not None else os.cpu_count() or 1
+
+
+def _made(tasks: Sequence[Task], config: Config, workers: int, tell: Tell) -> Iterator[Report]:
+    if workers > 1:
+        from tarl_lint.run.workers import in_processes
+
+        tell(f"Analysing in {workers} processes")
+        sizes = [task.lines for task in tasks]
+        reports = in_processes(partial(perform, config=config), tasks, sizes, workers, tell)
+        if reports is not None:
+            yield from reports
+            return
+    with without_collection():
+        for number, task in enumerate(tasks, 1):
+            tell(f"Analysing {task.scripts[0].path} ({number} of {len(tasks)})")
+            yield perform(task, config)
+
+
+def perform(task: Task, config: Config) -> Report:
+    """Parse and analyse the files of a task. A file on which the analysis crashes becomes an error entry."""
+    with without_collection():
+        results = [_parsed(script) for script in task.scripts]
+        errors = tuple(r for r in results if isinstance(r, SourceError))
+        modules = [r for r in results if isinstance(r, Module)]
+        if not task.analyse or not modules:
+            return Report((), errors)
+        from tarl_lint import engine  # slow to import, compared with checking a file
+
+        findings, failures, cut, ended = engine.examine(modules, config, isolate=not debugging())
+    mistakes = (failure(path, error) for path, error in failures.items())
+    return Report(findings, (*errors, *mistakes), cut, ended)
+
+
+def _parsed(script: Script) -> Module | SourceError:
+    try:
+        return parsed(script)
+    except Exception as error:
+        if debugging():
+            raise
+        return failure(script.path, error)
+
+
+def failure(path: str, error: Exception) -> SourceError:
+    """Return the error entry of a file on which the analysis crashed."""
+    if isinstance(error, RecursionError):
+        return SourceError(path, 1, TOO_DEEP.format("analysed"))
+    what = f"{type(error).__name__}: {error}".rstrip(": ")
+    advice = "Please report it with the traceback from TARL_DEBUG=1; --exclude skips the file."
+    return SourceError(
+        path, 1, f"tarl-lint failed on this file ({what}), which is a bug in tarl-lint. {advice}", bug=True
+    )
+
+
+def debugging() -> bool:
+    """Return whether to show tracebacks of internal errors."""
+    return os.environ.get("TARL_DEBUG", "") not in ("", "0")

@@ -1,0 +1,84 @@
+"""Worker processes. They cannot import linted files, and Ctrl-C ends them silently.
+
+Workers are forked if possible: a copy of this process has its modules and its `sys.path`, so it imports nothing. A
+spawned worker starts with the working directory on its path, before any code of tarl-lint runs; on Windows, which
+cannot fork, `PYTHONSAFEPATH` prevents this (Python 3.11). Forking is safe only with a single thread; if the calling
+program has more, no workers are used.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, TypeVar
+
+from tarl_lint.run.interrupts import end_silently, uninterrupted
+from tarl_lint.run.progress import Tell, paused
+
+if TYPE_CHECKING:
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing.context import BaseContext
+
+Work = TypeVar("Work")
+Answer = TypeVar("Answer")
+
+
+def in_processes(
+    perform: Callable[[Work], Answer], work: Sequence[Work], sizes: Sequence[int], workers: int, tell: Tell
+) -> list[Answer] | None:
+    """Return the answers in the order of the work, or None if no process can be started safely.
+
+    The largest tasks start first, so that no large one runs alone at the end.
+    """
+    order = sorted(range(len(work)), key=lambda number: -sizes[number])
+    with paused(tell):
+        pool = _pool(workers)
+        if pool is None:
+            return None
+        with uninterrupted(), _safe_path():
+            chunk = 1 + len(work) // (workers * 16)
+            done = pool.map(perform, [work[number] for number in order], chunksize=chunk)
+    with pool:
+        try:
+            answers = dict(zip(order, done, strict=True))
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return [answers[number] for number in range(len(work))]
+
+
+def _pool(workers: int) -> ProcessPoolExecutor | None:
+    from concurrent.futures import ProcessPoolExecutor
+
+    context = _context()
+    if context is None:
+        return None
+    try:
+        return ProcessPoolExecutor(workers, context, end_silently)
+    except (ImportError, NotImplementedError, OSError):  # the system has no semaphores
+        return None
+
+
+def _context() -> BaseContext | None:
+    import multiprocessing
+    import threading
+
+    if "fork" in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("fork") if threading.active_count() == 1 else None
+    return multiprocessing.get_context("spawn") if sys.version_info >= (3, 11) else None
+
+
+@contextmanager
+def _safe_path() -> Iterator[None]:
+    """Make Python processes started meanwhile omit the working directory from their path."""
+    before = os.environ.get("PYTHONSAFEPATH")
+    os.environ["PYTHONSAFEPATH"] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["PYTHONSAFEPATH"]
+        else:
+            os.environ["PYTHONSAFEPATH"] = before
