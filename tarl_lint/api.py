@@ -44,6 +44,11 @@ class Analysis:
         """Return the prober, which runs the analysis again to observe single statements."""
         return Prober(self.machine, self.flows)
 
+    @property
+    def timing(self) -> tuple[Step, ...]:
+        """Return the statements beside the flows that wait, or say how often something runs, sorted by place."""
+        return tuple(sorted(self.prober.timing.values(), key=lambda s: s.span))
+
     def operands(self, site: SiteId) -> tuple[Operand, ...]:
         """Return the constants that a site uses, in source order."""
         return self.prober.operands(site)

@@ -147,6 +147,7 @@ class Operand:
     `span` is the expression that uses it, on the site's own lines; `code` its text (`5`, `self.kp`).
     `value` is the constant, or None if it is known only at run time (a parameter without default).
     `definition` is the place where the constant is defined, equal to `span` for a literal.
+    `setting` is the key of a value that is loaded from a file.
     """
 
     site: SiteId
@@ -154,8 +155,9 @@ class Operand:
     code: str
     value: bool | int | float | None
     definition: Span | None = None
+    setting: str = ""
 
     @property
     def literal(self) -> bool:
         """Return whether the constant is a literal at its use."""
-        return self.definition == self.span
+        return self.value is not None and self.definition == self.span

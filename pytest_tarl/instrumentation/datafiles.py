@@ -13,7 +13,7 @@ from typing import Any
 from unittest.mock import patch
 
 Open = Callable[..., Any]
-_SUFFIXES = (".yaml", ".yml", ".xml", ".launch", ".cfg", ".launch.py", "_launch.py")
+_SUFFIXES = (".yaml", ".yml", ".json", ".toml", ".xml", ".launch", ".cfg", ".launch.py", "_launch.py")
 
 
 def is_data(path: Path) -> bool:

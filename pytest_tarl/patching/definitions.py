@@ -40,21 +40,25 @@ class Place:
 def defined(analysis: Analysis, operand: Operand) -> Place | None:
     """Return where the operand's constant is written, away from its use; None where that is no single number."""
     span = operand.definition
-    if span is None or operand.literal or operand.value is None or span.path not in analysis.sources:
+    if span is None or operand.literal or span.path not in analysis.sources:
         return None
     source = document(span.path, analysis.sources[span.path])
     node = source.at(span)
-    if not isinstance(node, ast.Constant) or node.value != operand.value:
+    value = _number(node)
+    if node is None or value is None or operand.value not in (None, value):
         return None
     name = parameter(analysis, operand) or _name(source, node) or operand.code
-    return Place(span.path, source.start(node), source.end(node), node.lineno, name, operand.value)
+    return Place(span.path, source.start(node), source.end(node), node.lineno, name, value)
 
 
 def parameter(analysis: Analysis, operand: Operand) -> str:
-    """Return the ROS parameter that an operand's value is a default of, or is read from; empty where it is neither."""
+    """Return the ROS parameter that an operand's value is a default of or is read from, or its key in a loaded file.
+
+    Empty where it is neither.
+    """
     span = operand.definition
-    if span is None or span.path not in analysis.sources:
-        return ""
+    if operand.setting or span is None or span.path not in analysis.sources:
+        return operand.setting
     source = document(span.path, analysis.sources[span.path])
     node = source.at(span)
     around = [node, *source.ancestors(node)] if node is not None else []
@@ -120,6 +124,16 @@ def edits(places: Mapping[Place, bool | int | float], text: str) -> list[Edit]:
     return found
 
 
+def _number(node: ast.expr | None) -> bool | int | float | None:
+    """Return the number that an expression writes, a sign included; None where it is none."""
+    sign = 1
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        node, sign = node.operand, -1
+    if not isinstance(node, ast.Constant) or not isinstance(node.value, int | float):
+        return None
+    return node.value if sign == 1 else -node.value
+
+
 def _same(old: str, value: float) -> bool:
     try:
         return float(old) == float(value)
@@ -183,8 +197,10 @@ def _key(source: Document, table: ast.Dict | ast.List | ast.Tuple, entry: ast.ex
 
 
 def _kind(path: Path) -> str:
-    if path.suffix in (".yaml", ".yml"):
+    if path.suffix in (".yaml", ".yml", ".json"):
         return "yaml"
+    if path.suffix == ".toml":
+        return "toml"
     if path.suffix in (".launch", ".xml") and (path.suffix == ".launch" or path.name.endswith(".launch.xml")):
         return "launch"
     if path.name.endswith((".launch.py", "_launch.py")):
@@ -198,6 +214,10 @@ def _matches(kind: str, key: str, text: str) -> Iterator[tuple[int, int]]:
         yield from _added(key, text)
         return
     word = re.escape(key)
+    if kind == "toml":
+        for match in re.finditer(rf"(?m)^[ \t]*{word}[ \t]*=[ \t]*{_NUMBER}(?=[ \t]*(?:\#|\r?\n|$))", text):
+            yield match.span("number")
+        return
     patterns = [rf"""(?<![\w.-])["']?{word}["']?[ \t]*:[ \t]*{_NUMBER}(?=[ \t]*(?:\#|,|\}}|\)|<|\r?\n|$))"""]
     if kind == "launch":
         named = rf"""name[ \t]*=[ \t]*["'][^"']*(?<![\w-]){word}["'][^<>]*?"""

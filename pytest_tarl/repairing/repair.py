@@ -194,7 +194,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         order.comparison,
         formulas=_formulas(order, accepted),
         culprits=localize.culprits(
-            _ranked(order),
+            _ranked(order, found.effects or {}),
             found.effects or {},
             [str(mutation.operand.site) for mutation in chosen.mutations] if chosen else [],
             order.comparison.verdict.loss,
@@ -274,11 +274,12 @@ def _of_the_range(order: Order, examiner: Examiner, watch: Watch) -> Iterator[st
             yield f"{label(candidate)}: {told}"
 
 
-def _ranked(order: Order) -> list[tuple[SitePlace, float]]:
-    """Return the sites as the slices rank them, then those that the recording did not know."""
+def _ranked(order: Order, effects: Mapping[str, Sequence[OperandEffect]]) -> list[tuple[SitePlace, float]]:
+    """Return the sites as the slices rank them, then those that the recording did not know or that were tried late."""
     ranked = [(culprit.site, culprit.score) for culprit in order.comparison.culprits]
     known = {site.id for site, _ in ranked}
-    for step in order.analysis.sites:
+    late = [step for step in order.analysis.timing if str(step.site) in effects]
+    for step in (*order.analysis.sites, *late):
         if str(step.site) not in known:
             span = step.span
             place = SitePlace(str(step.site), span.path, span.line, step.code, step.dependence, step.role)

@@ -26,7 +26,15 @@ def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Tri
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
     if method == "sweep":
-        return Sweep(operands(order), mutants.mutate, guards, trials, order.goal, generator)
+        return Sweep(
+            operands(order),
+            mutants.mutate,
+            guards,
+            trials,
+            order.goal,
+            generator,
+            late=timing_operands(order),
+        )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)
     if method == "epsilon-greedy":
@@ -55,6 +63,14 @@ def operands(order: Order) -> tuple[Operand, ...]:
     rank = {culprit.site.id: i for i, culprit in enumerate(order.comparison.culprits)}
     steps = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
     return tuple(dict.fromkeys(o for step in steps for o in order.analysis.operands(step.site)))
+
+
+def timing_operands(order: Order) -> tuple[Operand, ...]:
+    """Return the operands that say when the nodes act: they are in no flow, so no slice ranks them."""
+    analysis = order.analysis
+    known = set(operands(order))
+    found = (o for step in analysis.timing for o in analysis.operands(step.site))
+    return tuple(dict.fromkeys(one for one in found if one not in known))
 
 
 def evidence(order: Order) -> candidates.Evidence:

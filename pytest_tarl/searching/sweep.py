@@ -56,8 +56,10 @@ class Sweep:
         goal: Goal,
         generator: np.random.Generator | None = None,
         proposed: bool = False,
+        late: Sequence[Operand] = (),
     ) -> None:
         self.units = units(operands)
+        self.late = units(late)
         self.mutate = mutate
         self.guards = guards
         self.trials = trials
@@ -93,6 +95,7 @@ class Sweep:
         yield from self._finely(chief)
         if not gained:
             yield from self._together()
+        yield from self._late_ones(chief)
         for factor in (*BETWEEN, *LAST, *NEAR, *(factor for factor, _ in FURTHER), FLIP):
             for guard in self.guards:
                 yield from self._all(factor, guard, self.units)
@@ -120,6 +123,12 @@ class Sweep:
             for unit in self._leading(factor, guard, self.slack)[:FLIPPED]:
                 yield from self._try(unit, guard, FLIP, pair)
         yield from self._refine(pair)
+
+    def _late_ones(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
+        """Move what takes part in no flow, such as the period of a timer, since nothing that does suffices."""
+        self.units = (*self.units, *self.late)
+        for guard in guards:
+            yield from self._near_ones(self.late, guard)
 
     def _narrow(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try smaller steps of what lost both ways: it matters, and the right value lies close to the original."""

@@ -103,6 +103,8 @@ def _invoke(
     run = replay.run(ctx, frame, passed, lambda: _execute(ctx, frame, closure, passed))
     result = run.result
     nullness.note_result(ctx, call, run.returned, frame)
+    if ctx.thorough:
+        ctx.unchanged.add(call)
     if run.escapes:
         ctx.ops.escaped(ctx, frame, caller)
     if run.noted:

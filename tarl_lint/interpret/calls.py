@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tarl_lint.interpret import call_contexts, expressions, operators
+from tarl_lint.interpret import call_contexts, displays, expressions, operators
 from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
@@ -44,8 +44,17 @@ def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Arguments:
         if name is None:
             named["**"] = join(named.get("**", BOTTOM), value)
         else:
-            named[name] = value
+            named[name] = _noted(ctx, expr, name, argument, value, frame)
     return plain, named
+
+
+def _noted(
+    ctx: Interpreter, expr: ir.Call, name: str, argument: ir.Expr, value: Value, frame: Frame
+) -> Value:
+    """Give a number that a keyword passes a node of its own, so that it is found again in what the call makes."""
+    if not ctx.thorough:
+        return value
+    return displays.entry(ctx, argument, value, frame, ("keyword", expr.slot, name))
 
 
 def one_by_one(ctx: Interpreter, value: Value) -> list[Value] | None:

@@ -196,6 +196,9 @@ def _choice(ctx: Interpreter, expr: ir.Choice, frame: Frame) -> Value:
     guard = operators.guard(ctx, operators.truth(ctx, test, frame, expr.slot), frame, expr.slot)
     then = under_guard(ctx, expr.then, (guard, "then"), frame)
     other = under_guard(ctx, expr.other, (guard, "other"), frame)
+    if ctx.thorough:
+        then = displays.entry(ctx, expr.then, then, frame, ("then", expr.slot))
+        other = displays.entry(ctx, expr.other, other, frame, ("other", expr.slot))
     node = ctx.node(frame, ("choice", expr.slot), "condition")
     if ctx.kept(guard):
         ctx.graph.depend(node, (guard,))

@@ -61,6 +61,12 @@ class Interpreter:
         self.doubtful: set[ir.Call] = set()  # calls that give such
         self.came: dict[Key, set[int]] = {}  # what decides whether a copy of what is vacant at first is there
         self.came_out: dict[ir.Call, set[int]] = {}  # the same of calls that give such a copy
+        self.unchanged: set[ir.Call] = (
+            set()
+        )  # calls that pass on a value as it is; noted by thorough runs only
+        self.settings: dict[
+            Obj, tuple[str, ir.Pos]
+        ] = {}  # what was loaded from a file or the environment → path and place of the call
         self.patient = True  # what is not known yet may be stored by a root that runs later
         self.waiting: dict[Root, None] = {}  # roots that met such a thing
         self.doubts: dict[

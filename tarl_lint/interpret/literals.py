@@ -5,6 +5,7 @@ from __future__ import annotations
 from tarl_lint.interpret import nullness
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.constant_expressions import computed
 from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import LENGTH, item_field
@@ -12,6 +13,8 @@ from tarl_lint.memory.values import NONE, Value, pointer
 from tarl_lint.models import sizes
 
 MAX_EACH = 4  # elements that a comprehension takes one by one
+
+READING = frozenset(["get", "getattr", "get_param"])  # calls that give what is kept somewhere as it is
 
 
 def sequence_display(ctx: Interpreter, expr: ir.SequenceDisplay, frame: Frame) -> Value:
@@ -100,14 +103,26 @@ def _one_by_one_of(ctx: Interpreter, expr: ir.Comprehension, known: list[Value],
 def mark(ctx: Interpreter, node: int, expr: ir.Expr, value: Value, frame: Frame) -> None:
     """Note that a node is a constant, or passes on another unchanged."""
     known, constant = value.constant()
-    if (
-        isinstance(expr, (ir.Name, ir.Attribute, ir.Item))
-        or _conversion(expr)
-        or _parameter_call(ctx, expr, value)
+    if (_passes_on(ctx, expr) or _parameter_call(ctx, expr, value)) and not (
+        isinstance(expr, (ir.Call, ir.Choice)) and known and not value.deps
     ):
         ctx.graph.copies.add(node)
     elif known and isinstance(constant, (bool, int, float)):
         ctx.graph.literals[node] = (constant, expr.pos, frame.program.path)
+    elif ctx.thorough and not value.deps and not value.pts and (pos := computed(expr)):
+        ctx.graph.literals[node] = (None, pos, frame.program.path)
+
+
+def _passes_on(ctx: Interpreter, expr: ir.Expr) -> bool:
+    """Tell whether an expression gives something that is kept elsewhere as it is, or one of several such things."""
+    if isinstance(expr, ir.Choice):
+        return ctx.thorough and all(
+            isinstance(arm, ir.Const) or _passes_on(ctx, arm) for arm in (expr.then, expr.other)
+        )
+    if not isinstance(expr, ir.Call):
+        return isinstance(expr, (ir.Name, ir.Attribute, ir.Item))
+    named = expr.function.name if isinstance(expr.function, (ir.Name, ir.Attribute)) else ""
+    return named == "float" or (ctx.thorough and (named in READING or expr in ctx.unchanged))
 
 
 def _parameter_call(ctx: Interpreter, expr: ir.Expr, value: Value) -> bool:
@@ -116,8 +131,3 @@ def _parameter_call(ctx: Interpreter, expr: ir.Expr, value: Value) -> bool:
         return False
     ctx.graph.reads.ask(ctx.graph.parameters.issuperset, value.deps)
     return value.deps <= ctx.graph.parameters
-
-
-def _conversion(expr: ir.Expr) -> bool:
-    """Tell whether an expression is `float(x)`, which leaves the number what it is."""
-    return isinstance(expr, ir.Call) and isinstance(expr.function, ir.Name) and expr.function.name == "float"

@@ -36,6 +36,7 @@ from tarl_lint.models import (
     qt_signals,
     records,
     reflection,
+    settings,
     smach,
     strings,
 )
@@ -71,8 +72,10 @@ def call_library(
             return said
     particular = BUILTIN.get(name)
     if particular is not None:
-        return particular(ctx, Invocation(name, BOTTOM, arguments, frame, call))
-    return generic(ctx, qualified, arguments, frame, call)
+        found = particular(ctx, Invocation(name, BOTTOM, arguments, frame, call))
+    else:
+        found = generic(ctx, qualified, arguments, frame, call)
+    return settings.noted(ctx, qualified, found, arguments, frame, call)
 
 
 def _configured(ctx: Interpreter, qualified: str) -> Fact | None:
@@ -225,7 +228,8 @@ def _unknown_method(
         deps = ctx.use(base) | call_contexts.all_used(ctx, arguments) | given
     if not deps and not base.pts:
         return UNKNOWN
-    return new_object(ctx, arguments, deps, frame, call, fields=False)
+    made = new_object(ctx, arguments, deps, frame, call, fields=False)
+    return settings.loaded(ctx, made, frame, call) if name in settings.PARSING and ctx.thorough else made
 
 
 def _given(

@@ -68,6 +68,8 @@ def set_attribute(ctx: Interpreter, it: Invocation) -> Value:
     plain = it.arguments[0]
     if len(plain) == 3:
         value = containers.through_statement(ctx, plain[2], it.frame, it.call)
+        if ctx.thorough and value.deps != plain[2].deps:
+            ctx.graph.copies |= value.deps
         for field in plain[1].texts():
             updates.write_field(ctx, plain[0], field, value)
         if not plain[1].texts():

@@ -21,6 +21,7 @@ class Origin:
     value: bool | int | float | None
     path: str
     pos: ir.Pos
+    setting: str = ""  # the key that it has in the file that it was loaded from
 
 
 class Origins:
@@ -40,10 +41,26 @@ class Origins:
             if isinstance(expr.value, (bool, int, float)):
                 return frozenset([Origin(expr.value, "", expr.pos)])
             return frozenset()
-        if value is None or value.pts or not value.deps:
+        if value is None:
+            return frozenset()
+        if value.pts:
+            return self._loaded(value)
+        if not value.deps:
             return frozenset()
         found = self._trace(value.deps, set())
         return frozenset(found) if found is not None else frozenset()
+
+    def _loaded(self, value: Value) -> frozenset[Origin]:
+        """Return the origin of what was loaded from a file; nothing for a table, of which parts were taken."""
+        settings = self.machine.settings
+        if len(value.pts) != 1:
+            return frozenset()
+        (loaded,) = value.pts
+        if loaded.whole not in settings or loaded.subs:
+            return frozenset()
+        path, pos = settings[loaded.whole]
+        key = _dotted(loaded).rpartition(".")[2].strip("'\"")
+        return frozenset([Origin(None, path, pos, "" if key.isdigit() else key)])
 
     def entries(self, value: Value | None, index: Value | None) -> frozenset[Origin]:
         """Return the origins of a table's numbers if a computed index selects one of them, else nothing."""
@@ -70,9 +87,19 @@ class Origins:
                 if inner is None:
                     return None
                 found |= inner
-            elif node not in self.graph.held:  # a node that only passes an object on has no constant
+            elif node not in self.graph.held and not self._settled(
+                node
+            ):  # a node that only passes an object on has no constant
                 return None
         return found
+
+    def _settled(self, node: int) -> bool:
+        """Tell whether a node is None, or only chooses between constants, and no message has a say in it."""
+        place = self.graph.places[node]
+        if self.graph.data[node] or node in self.graph.live:
+            return False
+        made = place.statement.value if isinstance(place.statement, ir.Assign) else None
+        return place.role == "condition" or (isinstance(made, ir.Const) and made.value is None)
 
     def unchanged(self, value: Value, topic: str, path: str) -> bool:
         """Return whether a value is a field of a topic's messages, or a constant set before the first message."""

@@ -16,7 +16,12 @@ NOT_BEHAVIOUR: Final = frozenset(
         "wait_for_message", "wait_for_service", "get_parameter", "zfill", "ljust", "rjust", "seed", "time_ns",
     ]
 )  # fmt: skip
+TIMING: Final = frozenset(
+    ["sleep", "Rate", "create_rate", "create_timer", "Timer"]
+)  # the first argument says when
+PERIODS: Final = frozenset(["period", "timer_period_sec", "seconds", "secs", "hz", "frequency"])
 PARAMETER_CALLS: Final = frozenset(["get_param"])
+READING: Final = frozenset(["get", "getattr"])  # calls that read what is kept, whatever else they are given
 LOGGING: Final = frozenset(
     [
         "info",
@@ -50,6 +55,30 @@ def uses(statement: ir.Stmt, values: Mapping[ir.Pos, Value], constants: Constant
     """Yield the expressions of a statement that may be constants, outermost first."""
     for expr in _expressions(statement):
         yield from _inside(expr, values, constants)
+
+
+def timing_uses(
+    statement: ir.Stmt, values: Mapping[ir.Pos, Value], constants: Constants
+) -> Iterator[ir.Expr]:
+    """Yield the expressions that may be constants and say how long a statement waits, or how often something runs."""
+    for call in _timing_calls(_expressions(statement)):
+        for when in [*call.arguments[:1], *(value for name, value in call.keywords if name in PERIODS)]:
+            yield from _inside(when, values, constants)
+
+
+def sets_timing(statement: ir.Stmt) -> bool:
+    """Tell whether a statement waits, or says how often something runs."""
+    return any(True for _ in _timing_calls(_expressions(statement)))
+
+
+def _timing_calls(expressions: Sequence[ir.Expr]) -> Iterator[ir.Call]:
+    for expr in expressions:
+        if isinstance(expr, ir.Call):
+            name = expr.function.name if isinstance(expr.function, (ir.Name, ir.Attribute)) else ""
+            if name in TIMING:
+                yield expr
+            else:
+                yield from _timing_calls(expr.arguments)
 
 
 def _expressions(statement: ir.Stmt) -> Sequence[ir.Expr]:
@@ -101,6 +130,9 @@ def _call(expr: ir.Call, values: Mapping[ir.Pos, Value], constants: Constants) -
         return
     if name in NOT_BEHAVIOUR or name in LOGGING:
         return
+    if (name in READING or not _literals(expr)) and constants.of(expr, values.get(expr.pos)):
+        yield expr
+        return
     if isinstance(function, ir.Attribute) and not isinstance(function.base, ir.Name):
         yield from _inside(function.base, values, constants)
     for argument in expr.arguments:
@@ -108,6 +140,12 @@ def _call(expr: ir.Call, values: Mapping[ir.Pos, Value], constants: Constants) -
     for keyword, argument in expr.keywords:
         if keyword not in ("queue_size", "qos_profile", "timeout", "timeout_sec", "dtype", "axis"):
             yield from _inside(argument, values, constants)
+
+
+def _literals(expr: ir.Call) -> bool:
+    """Tell whether a call is given a number where it is written."""
+    given = [*expr.arguments, *(value for _, value in expr.keywords)]
+    return any(isinstance(each, ir.Const) and isinstance(each.value, (int, float)) for each in given)
 
 
 def _parts(expr: ir.Expr) -> Sequence[ir.Expr]:

@@ -11,9 +11,9 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import Value, join
-from tarl_lint.model import Flow, Operand, SiteId
+from tarl_lint.model import Flow, Operand, SiteId, Step
 from tarl_lint.queries.held_constants import Holding, Origin, Origins
-from tarl_lint.queries.operands import uses
+from tarl_lint.queries.operands import sets_timing, timing_uses, uses
 
 
 @dataclass(slots=True)
@@ -37,6 +37,8 @@ class Prober:
             (step.span.path, step.span.line, step.span.column): step.site for f in flows for step in f.steps
         }
         self.seen: dict[SiteId, Seen] = {}
+        self.timing: dict[SiteId, Step] = {}  # statements beside the flows that wait or set a rate
+        self._files = {step.span.path for f in flows for step in f.steps}
         self._columns: dict[tuple[str, ir.Pos], SiteId | None] = {}
         machine.probe, machine.watch = self._look, self._arrive
         machine.replay()
@@ -49,7 +51,8 @@ class Prober:
             return ()
         text = self.texts[seen.path]
         found: dict[ir.Pos, Operand] = {}
-        for expr in uses(seen.statement, seen.values, self.origins):
+        found_by = timing_uses if site in self.timing else uses
+        for expr in found_by(seen.statement, seen.values, self.origins):
             origins = self._origins(expr, seen.values)
             if not origins or expr.pos in found:
                 continue
@@ -60,7 +63,8 @@ class Prober:
             definition = None
             if single is not None:
                 definition = self.texts[single.path].stretch(single.pos) if single.path else span
-            found[expr.pos] = Operand(site, span, text.code(span), value, definition)
+            setting = single.setting if single is not None else ""
+            found[expr.pos] = Operand(site, span, text.code(span), value, definition, setting)
         return tuple(sorted(found.values(), key=lambda o: o.span))
 
     def _origins(self, expr: ir.Expr, values: Mapping[ir.Pos, Value]) -> frozenset[Origin]:
@@ -81,9 +85,23 @@ class Prober:
             self._columns[key] = self.starts.get((span.path, span.line, span.column))
         return self._columns[key]
 
+    def _timing(self, frame: Frame, statement: ir.Stmt) -> SiteId | None:
+        """Take a statement that waits or sets a rate, in a file that flows pass through, for a site of its own."""
+        path = frame.program.path
+        if path not in self._files or not sets_timing(statement):
+            return None
+        text = self.texts[path]
+        written = text.statement(statement.pos)
+        if written is None:
+            return None
+        site, span = text.site(written), text.span(written)
+        self.timing[site] = Step(site, span, text.code(span), "call", "context")
+        self._columns[path, statement.pos] = site
+        return site
+
     def _arrive(self, frame: Frame, statement: ir.Stmt) -> None:
         """Record the variables before a statement runs."""
-        site = self._site(frame, statement)
+        site = self._site(frame, statement) or self._timing(frame, statement)
         if site is None:
             return
         seen = self.seen.get(site)

@@ -120,3 +120,39 @@ def test_conditions_have_operands_too(tmp_path):
     )
     assert [o.code for o in analysis.operands(site(analysis, "if msg.data < NEAR:"))] == ["NEAR"]
     assert [o.code for o in analysis.operands(site(analysis, "out.publish(1.0)"))] == ["1.0"]
+
+
+WAITING = """
+    import rospy
+    PAUSE = 0.5
+    RATE = 10
+    class Turner:
+        def __init__(self):
+            self.period = 0.2
+            self.out = rospy.Publisher("b", F, queue_size=3)
+            self.timer = {timer}
+            rospy.Subscriber("a", F, self.on)
+        def on(self, msg):
+            self.out.publish(msg.data)
+            {waits}
+    """
+
+
+@pytest.mark.parametrize(
+    ("timer", "waits", "operands"),
+    [
+        ("None", "rospy.sleep(PAUSE)", [("PAUSE", 0.5)]),
+        ("None", "rospy.sleep(2.0 * PAUSE)", [("2.0", 2.0), ("PAUSE", 0.5)]),
+        ("None", "rospy.sleep(msg.data / PAUSE)", [("PAUSE", 0.5)]),
+        ("None", "time.sleep(self.period)", [("self.period", 0.2)]),
+        ("rospy.Timer(rospy.Duration(self.period), self.on)", "pass", [("self.period", 0.2)]),
+        ("self.create_timer(0.1, self.on)", "pass", [("0.1", 0.1)]),
+        ("self.create_timer(callback=self.on, timer_period_sec=self.period)", "pass", [("self.period", 0.2)]),
+        ("rospy.Rate(RATE)", "self.timer.sleep()", [("RATE", 10)]),
+    ],
+)
+def test_what_waits_or_sets_a_rate_has_operands_beside_the_flows(tmp_path, timer, waits, operands):
+    analysis = analysed(tmp_path, node=WAITING.replace("{timer}", timer).replace("{waits}", waits))
+    found = [o for step in analysis.timing for o in analysis.operands(step.site)]
+    assert [(o.code, o.value) for o in found] == operands
+    assert not {step.site for step in analysis.timing} & {step.site for step in analysis.sites}

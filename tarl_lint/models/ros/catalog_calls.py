@@ -94,6 +94,8 @@ def _default_of(
     if expr is not None:
         literals.mark(ctx, node, expr, default, frame)
     ctx.graph.flow(default.deps, node)
+    if ctx.thorough and default.pts:
+        return ctx.carry(default, node)  # a table with its entries
     return Value(ctx.kept(node))
 
 

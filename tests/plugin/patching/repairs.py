@@ -86,6 +86,7 @@ class TinyRos:
             Subscriber=lambda topic, kind, callback=None, **_: self.subscribe(topic, callback),
             Publisher=lambda *_, **__: SimpleNamespace(publish=self.published.append),
             is_shutdown=lambda: not self.loops(),
+            get_param=lambda _, default=None: default,
         )
         node = type("Node", (), {
             "__init__": lambda self, *_: None,

@@ -1,0 +1,48 @@
+"""Expressions that are put together from literals alone: `math.pi / 6`, `math.radians(20.0)`."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tarl_lint.ir import nodes as ir
+
+CONSTANTS: Final = frozenset(["pi", "tau", "e"])  # of math and numpy
+
+
+def computed(expr: ir.Expr) -> ir.Pos | None:
+    """Return the place of a number that is computed from literals; None where an expression is none.
+
+    That is the place of the literal where there is only one, and of the whole expression otherwise.
+    """
+    if not isinstance(expr, (ir.Operation, ir.Call)) or not of_literals(expr):
+        return None
+    found = numbers(expr)
+    return found[0].pos if len(found) == 1 else expr.pos
+
+
+def of_literals(expr: ir.Expr) -> bool:
+    """Tell whether an expression is put together from literals and constants of mathematics, by any functions."""
+    if isinstance(expr, ir.Const):
+        return isinstance(expr.value, (int, float, str))
+    if isinstance(expr, ir.Attribute):
+        return expr.name in CONSTANTS and isinstance(expr.base, ir.Name)
+    if isinstance(expr, ir.Operation):
+        return expr.operator != "text" and all(map(of_literals, expr.parts))
+    if isinstance(expr, ir.SequenceDisplay):
+        return all(map(of_literals, expr.items))
+    if isinstance(expr, ir.Call):
+        return bool(expr.arguments) and not expr.keywords and all(map(of_literals, expr.arguments))
+    return False
+
+
+def numbers(expr: ir.Expr) -> list[ir.Const]:
+    """Return the numbers that stand in an expression, in the order of the text."""
+    if isinstance(expr, ir.Const):
+        return [expr] if isinstance(expr.value, (int, float)) and not isinstance(expr.value, bool) else []
+    if isinstance(expr, ir.Operation):
+        return [each for part in expr.parts for each in numbers(part)]
+    if isinstance(expr, ir.SequenceDisplay):
+        return [each for item in expr.items for each in numbers(item)]
+    if isinstance(expr, ir.Call):
+        return [each for argument in expr.arguments for each in numbers(argument)]
+    return []

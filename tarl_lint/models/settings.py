@@ -1,0 +1,63 @@
+"""Numbers that are fixed when a node starts: read from a file or the environment, or computed from constants.
+
+Flows need none of them. A thorough run notes them, so that a repair may change them as it changes any constant.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tarl_lint.interpret import call_contexts
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Arguments
+from tarl_lint.ir import nodes as ir
+from tarl_lint.ir.constant_expressions import computed, numbers
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import Value
+
+LOADERS: Final = frozenset(
+    [
+        *(f"yaml.{name}" for name in ("load", "safe_load", "full_load", "unsafe_load")),
+        *(f"{module}.{name}" for module in ("json", "toml", "tomli", "tomllib") for name in ("load", "loads")),
+        "rosparam.load_file", "os.getenv", "os.environ.get",
+    ]
+)  # fmt: skip
+PARSING: Final = frozenset(["parse_args", "parse_known_args"])  # methods that read the command line
+COMPUTING: Final = frozenset(
+    [
+        "float", "int", "abs", "round", "pow", "min", "max", "sum", "numpy.deg2rad", "numpy.radians", "numpy.rad2deg",
+        "numpy.degrees", "numpy.sqrt", "numpy.abs", "numpy.sin", "numpy.cos", "numpy.tan", "numpy.float64",
+    ]
+)  # fmt: skip
+ARRAYS: Final = frozenset(["numpy.array", "numpy.asarray"])
+
+
+def noted(
+    ctx: Interpreter, qualified: str, found: Value, arguments: Arguments, frame: Frame, call: ir.Call
+) -> Value:
+    """Return the result of a library's function as made by a node that stands for a fixed number, if it is one."""
+    if not ctx.thorough:
+        return found
+    name = qualified.removeprefix("builtins.")
+    if name in LOADERS and ctx.graph.live.isdisjoint(call_contexts.all_used(ctx, arguments)):
+        return loaded(ctx, found, frame, call)
+    if name in ARRAYS and computed(call) and numbers(call):
+        return loaded(ctx, found, frame, call)
+    if (name in COMPUTING or name.startswith("math.")) and not found.deps and (pos := computed(call)):
+        ctx.unchanged.add(call)
+        node = ctx.node(frame, ("fixed", call.slot), "assign")
+        ctx.graph.literals[node] = (None, pos, frame.program.path)
+        return Value(frozenset([node]), found.pts, found.consts)
+    return found
+
+
+def loaded(ctx: Interpreter, found: Value, frame: Frame, call: ir.Call) -> Value:
+    """Return what was loaded: an object whose parts are unknown constants, or such a constant itself."""
+    ctx.unchanged.add(call)
+    for obj in found.pts:
+        ctx.settings[obj] = (frame.program.path, call.pos)
+    if found.pts:
+        return Value(pts=found.pts)
+    node = ctx.node(frame, ("settings", call.slot), "assign")
+    ctx.graph.literals[node] = (None, call.pos, frame.program.path)
+    return Value(frozenset([node]))

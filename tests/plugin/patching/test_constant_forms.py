@@ -1,0 +1,103 @@
+"""However a constant is written: it is an operand, the sweep finds it, and it is changed where it is defined."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from pytest_tarl.instrumentation.datafiles import reading
+from pytest_tarl.patching.definitions import Place, configured, defined, package_files, parameter
+from pytest_tarl.patching.mutate import Mutation, mutations, rewrite
+from pytest_tarl.searching.accept import Outcome
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from pytest_tarl.searching.sweep import Sweep
+from tarl_lint.api import Analysis, analyse
+from tests.plugin.patching.constants import DATA, FORMS, HERE, node
+from tests.plugin.patching.repairs import TinyRos
+
+WANTED = 5.0  # the gain that the world needs; the node has 2
+NOWHERE = {
+    "literal",
+    "array",
+    "choice",
+    "parameter at its use",
+    "parameters in a loop",
+    "environment",
+    "command line",
+}
+
+
+class World:
+    """Ten points a mission, less what the published value is off by."""
+
+    def __init__(self, name: str, folder: Path) -> None:
+        self.name, self.folder = name, folder
+        texts = dict(zip(("keeper.py", "helper.py"), node(name, str(folder)), strict=True))
+        for path, text in (texts | DATA).items():
+            (folder / path).write_text(text)
+        self.analysis: Analysis = analyse([folder], root=folder)
+
+    def published(self, changed: Mapping[str, str]) -> float:
+        """Return what the node sends for a value of 1, with some files changed."""
+        texts = {Path(path).name: text for path, text in {**self.analysis.sources, **changed}.items()}
+        overlay = {self.folder / Path(path).name: text for path, text in changed.items()}
+        ros = TinyRos()
+        with reading(overlay):
+            ros.run({name: texts[name] for name in ("helper.py", "keeper.py")}, "keeper.py")
+            ros.deliver("/in", SimpleNamespace(data=1.0))
+        return float(ros.published[-1])
+
+    def written(self, candidate: Candidate) -> dict[str, str]:
+        """Return the files that a candidate changes."""
+        return rewrite(self.analysis, candidate.mutations, candidate.guard, {}, DATA)
+
+    def run(self, candidate: Candidate, seed: int) -> Outcome:
+        total = 10.0 - abs(self.published(self.written(candidate)) - WANTED)
+        return Outcome(total, total > 9.0)
+
+    def place(self, mutation: Mutation) -> Place | None:
+        """Return where a mutation's constant is defined: in a file, if it was loaded from one."""
+        found = defined(self.analysis, mutation.operand)
+        if found is not None:
+            return found
+        texts = {
+            key: text
+            for key, text in package_files(self.folder, self.folder / "keeper.py").items()
+            if key == self.data
+        }
+        return next(configured(parameter(self.analysis, mutation.operand), texts), None)
+
+    @property
+    def data(self) -> str:
+        return FORMS[self.name].get("data", "")
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_a_constant_is_found_and_changed_where_it_is_defined(name: str, tmp_path: Path) -> None:
+    world = World(name, tmp_path)
+    assert world.published({}) == pytest.approx(2.0)
+    operands = [one for step in world.analysis.sites for one in world.analysis.operands(step.site)]
+    pairs = tuple(Pair(seed, 7.0) for seed in range(3))
+    goal = Goal(pairs, near=9.0, enough=9.0, online=7.0)
+    search = Sweep(operands, mutations, (ALWAYS,), Trials(world.run, 30), goal)
+    found = next(search.candidates())
+    (mutation,) = found.mutations
+    place = world.place(mutation)
+    if name in NOWHERE:
+        assert place is None
+        return
+    assert place is not None
+    moved = Candidate((replace(mutation, place=place),), ALWAYS)
+    assert world.published(world.written(moved)) == pytest.approx(
+        world.published(world.written(found)), rel=1e-3
+    )
+    ((path, text),) = world.written(moved).items()
+    before = {**world.analysis.sources, **DATA}[path].split("\n")
+    changed = [line for line, old in zip(text.split("\n"), before, strict=True) if line != old]
+    assert len(changed) == 1
+    assert HERE in changed[0] or path.endswith(".json")
