@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tarl_lint.interpret import call_contexts, displays, expressions, operators
+from tarl_lint.interpret import call_contexts, expressions, literals, operators
 from tarl_lint.interpret.call_contexts import CALLABLE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
@@ -54,7 +54,7 @@ def _noted(
     """Give a number that a keyword passes a node of its own, so that it is found again in what the call makes."""
     if not ctx.thorough:
         return value
-    return displays.entry(ctx, argument, value, frame, ("keyword", expr.slot, name))
+    return literals.entry(ctx, argument, value, frame, ("keyword", expr.slot, name))
 
 
 def one_by_one(ctx: Interpreter, value: Value) -> list[Value] | None:

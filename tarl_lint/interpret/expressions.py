@@ -197,8 +197,8 @@ def _choice(ctx: Interpreter, expr: ir.Choice, frame: Frame) -> Value:
     then = under_guard(ctx, expr.then, (guard, "then"), frame)
     other = under_guard(ctx, expr.other, (guard, "other"), frame)
     if ctx.thorough:
-        then = displays.entry(ctx, expr.then, then, frame, ("then", expr.slot))
-        other = displays.entry(ctx, expr.other, other, frame, ("other", expr.slot))
+        then = literals.entry(ctx, expr.then, then, frame, ("then", expr.slot))
+        other = literals.entry(ctx, expr.other, other, frame, ("other", expr.slot))
     node = ctx.node(frame, ("choice", expr.slot), "condition")
     if ctx.kept(guard):
         ctx.graph.depend(node, (guard,))
