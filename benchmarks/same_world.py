@@ -2,7 +2,8 @@
 
     python benchmarks/same_world.py [--comparisons 10] [--worlds shuttle …] [--committed] [--workers 2]
 
-Thirty worlds: the tasks of benchmarks/drift, the examples, and those of benchmarks/same_worlds. Each comparison is a
+Thirty worlds: the tasks of benchmarks/drift, the examples, one task of benchmarks/drift_judging, and those of
+benchmarks/same_worlds. No two of them draw the same episodes. Each comparison is a
 `pytest --tarl-record` and a `pytest --tarl-online` with seeds of their own; its result is read from the JSON that the
 second one writes. With `--committed` a world is recorded once and compared again and again, as in CI. Results are
 appended to a file (--found), and comparisons that it holds are not run again, so a run can be interrupted and resumed.
@@ -52,9 +53,10 @@ def worlds() -> dict[str, World]:
         ("quadrotor", "test_quadrotor.py"),
         ("shuttle", "test_shuttle.py::test_delivers"),
         ("shuttle_both_ways", "test_shuttle.py::test_shuttles"),
-        ("shuttle_swapped", "test_swapped.py"),
     ):
-        found[name] = World(EXAMPLES / name.partition("_both")[0].partition("_swapped")[0], test)
+        found[name] = World(EXAMPLES / name.partition("_both")[0], test)
+    putter = HERE / "drift_judging" / "carpet_putter"
+    found[putter.name] = World(putter, "test_putter.py")
     text = (HERE / "same_worlds" / "test_rewards.py").read_text()
     for test in (line[4:].partition("(")[0] for line in text.splitlines() if line.startswith("def test_")):
         found[test.removeprefix("test_")] = World(HERE / "same_worlds", f"test_rewards.py::{test}")
