@@ -1,0 +1,246 @@
+"""Run every node script of checked-out repositories in the in-process ROS, as a newcomer would, without any help.
+
+    python benchmarks/foreign_nodes.py FOLDER... [--only TEXT] [--keep SCRATCH] [--json FILE]
+
+Each FOLDER holds checkouts, one folder a repository. They are copied into a scratch folder. Each script gets a minimal
+simulation test: start it, then publish messages with some values on the topics that it subscribes to, for a few virtual
+seconds. A test runs in a process of its own with a time limit; there the operating system is closed: no programs, no
+network, no files outside of the scratch folder. Scripts in Python 2, tests, and those that need a GPU library or the
+SDK of a device that is not installed are counted apart, by name.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import multiprocessing
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import foreign_closed
+from foreign_scripts import Script, scripts
+
+LIMIT = 60  # seconds that a test may take
+TEST = """
+import json
+import sys
+sys.path.insert(0, {here!r})
+import pytest
+from foreign_messages import publish_to_all
+from pytest_tarl import Sensor
+
+@pytest.mark.tarl(nodes=[{node!r}], sensors=[Sensor("step", low=0, high=40, bins=8)])
+def test_node(tarl):
+    phase, heard = "start", set()
+    try:
+        tarl.start({node!r}{entry})
+        tarl.step(0.2)
+        phase = "hear"
+        for step in range(30):
+            publish_to_all(tarl, step)
+            heard |= tarl.ros.subscribed
+            tarl.step(0.1)
+            tarl.observe(step=step)
+        phase = "done"
+    finally:
+        with open({result!r}, "w") as file:
+            json.dump({{"phase": phase, "heard": sorted(heard), "sent": dict(tarl.ros.published)}}, file)
+"""
+KINDS = {  # what a message of a failed test says → the missing thing
+    r"No module named '([\w.]+)'": "module {0}",
+    r"cannot import name '(\w+)' from '([\w.]+)'": "name {1}.{0}",
+    r"([\w.]+) is not in the in-process ROS yet": "ROS API {0}",
+    r"Message type ([\w/]+) is not known": "message {0}",
+    r"KeyError: '?([~/\w]+)'? \(.*get_param": "parameter {0}",
+    r"exited with status (2)": "command line arguments",
+    r"(EOFError|termios.error|reading from stdin)": "keyboard",
+    r"KeyError: '(?:TURTLEBOT3_MODEL|LDS_MODEL|[A-Z_]{5,})'": "environment variable",
+    r"closed here: ([\w.]+)": "operating system ({0})",
+    r"never (waits)": "time: it never waits",
+    r"PackageNotFoundError: \S*package '(\w+)'": "package {0}",
+    r"ResourceNotFound: (\w+)": "package {0}",
+    r"No such file or directory: '([^']+)'": "file {0}",
+    r"raised (\w+: .{0,60})": "own {0}",
+}
+PYTHON_2 = re.compile(
+    r"raised (SyntaxError: |TabError|IndentationError|ModuleNotFoundError: No module named '(thread|Queue|cPickle|"
+    r"ConfigParser|urllib2|StringIO|Tkinter|commands|HTMLParser|httplib|sets|cv)'|NameError: name '(raw_input|unicode|"
+    r"xrange|basestring|long|reduce|file|unichr|execfile)'|AttributeError: .* has no attribute '(iteritems|has_key|"
+    r"itervalues|maxint|next|decode)'|ImportError: cannot import name 'maxint')"
+)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of one script."""
+
+    name: str
+    apart: str = ""
+    starts: bool = False
+    hears: tuple[str, ...] = ()
+    publishes: dict[str, int] = field(default_factory=dict)
+    fails: str = ""
+    missing: str = ""
+
+    @property
+    def verdict(self) -> str:
+        """Return the furthest that it came."""
+        if self.apart:
+            return "apart"
+        if not self.starts:
+            return "does not start"
+        if self.fails:
+            return "fails when it hears"
+        return " and ".join(["starts", *["hears"] * bool(self.hears), *["publishes"] * bool(self.publishes)])
+
+
+class Told:
+    """A plugin of pytest that keeps why a test failed."""
+
+    def __init__(self) -> None:
+        self.text = ""
+
+    def pytest_runtest_logreport(self, report: Any) -> None:
+        """Keep the text of a failure."""
+        if report.failed:
+            self.text = str(report.longrepr)
+
+    def pytest_collectreport(self, report: Any) -> None:
+        """Keep the text of a file that cannot be collected."""
+        if report.failed:
+            self.text = str(report.longrepr)
+
+
+def run(script: Script, number: int) -> Outcome:
+    """Write the test of a script into its package, run it, and read what came of it."""
+    if script.apart:
+        return Outcome(script.name, apart=script.apart)
+    folder = script.package / "tarl_tests"
+    folder.mkdir(exist_ok=True)
+    result = folder / f"result_{number}.json"
+    node = os.path.relpath(script.path, folder)
+    entry = f", entry={script.entry!r}" if script.entry else ""
+    here = str(Path(__file__).parent)
+    test = folder / f"test_{number}.py"
+    test.write_text(TEST.format(here=here, node=node, entry=entry, result=str(result)))
+    said = folder / f"said_{number}.txt"
+    child = multiprocessing.get_context("fork").Process(target=_child, args=(script, test, said))
+    child.start()
+    child.join(LIMIT)
+    if child.is_alive():
+        child.kill()
+        child.join()
+        return Outcome(script.name, fails=f"not done in {LIMIT} s", missing="time: not done")
+    nothing = {"phase": "start", "heard": [], "sent": {}}
+    found: dict[str, Any] = json.loads(result.read_text()) if result.exists() else nothing
+    fails = said.read_text("utf-8", errors="replace") if said.exists() else "the process ended"
+    old = PYTHON_2.search(fails)
+    if old is not None:
+        return Outcome(script.name, apart=f"Python 2 only ({old[1]})")
+    return Outcome(
+        script.name, "", found["phase"] != "start", tuple(found["heard"]), found["sent"], fails, why(fails)
+    )
+
+
+def _child(script: Script, test: Path, said: Path) -> None:
+    """Run one test in this process."""
+    import pytest
+
+    told = Told()
+    os.chdir(test.parent)
+    os.environ.update(HOME=str(script.repository), TMPDIR=str(test.parent), MPLBACKEND="Agg")
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    log = os.open(test.with_suffix(".log"), os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+    os.dup2(log, 1)
+    os.dup2(log, 2)
+    sys.dont_write_bytecode, tempfile.tempdir = True, None
+    foreign_closed.close_all_but(script.repository.parent)
+    options = ["-q", "-c", os.devnull, f"--rootdir={script.repository}", "-p", "no:cacheprovider"]
+    pytest.main([*options, "-p", "pytest_tarl.plugin", str(test)], plugins=[told])
+    said.write_text(told.text)
+    os._exit(0)
+
+
+def why(fails: str) -> str:
+    """Return the missing thing that a failure names."""
+    for pattern, name in KINDS.items():
+        found = re.search(pattern, fails)
+        if found is not None:
+            return name.format(*found.groups())
+    return fails.strip().splitlines()[-1][:100] if fails.strip() else ""
+
+
+def checkouts(folders: Sequence[Path], scratch: Path) -> list[Path]:
+    """Copy the repositories below the folders, each a git repository of its own as a clone is; return where."""
+    copies = []
+    for original in sorted(one for folder in folders for one in folder.iterdir() if one.is_dir()):
+        copy = scratch / original.name
+        shutil.rmtree(copy, ignore_errors=True)
+        shutil.copytree(original, copy, symlinks=True)
+        subprocess.run(["git", "init", "-q", str(copy)], check=True)
+        copies.append(copy)
+    return copies
+
+
+def report(outcomes: Sequence[Outcome]) -> None:
+    """Print the figures, the groups of what is missing, and what was set apart."""
+    ran = [one for one in outcomes if not one.apart]
+    started = [one for one in ran if one.starts]
+    print(
+        f"\n{len(started)} of {len(ran)} node scripts start without help; {len(outcomes) - len(ran)} are apart.\n"
+    )
+    print("| what they do | scripts |\n|---|---|")
+    for verdict, count in Counter(one.verdict for one in ran).most_common():
+        print(f"| {verdict} | {count} |")
+    print("\n| missing | scripts | for instance |\n|---|---|---|")
+    groups: dict[str, list[str]] = {}
+    for one in ran:
+        if one.fails:
+            groups.setdefault(f"{'' if one.starts else 'to start: '}{one.missing}", []).append(one.name)
+    for missing, names in sorted(groups.items(), key=lambda group: (-len(group[1]), group[0])):
+        print(f"| {missing} | {len(names)} | {names[0]} |")
+    print("\n| apart because | scripts |\n|---|---|")
+    apart = Counter(re.sub(r" \(.*", "", one.apart) for one in outcomes if one.apart)
+    for reason, count in apart.most_common():
+        print(f"| {reason} | {count} |")
+
+
+def main() -> None:
+    """Run the scripts and print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("folders", type=Path, nargs="+", help="folders of checkouts, one folder a repository")
+    parser.add_argument("--only", default="", help="run the scripts whose path contains this")
+    parser.add_argument("--keep", type=Path, help="scratch folder that stays, with the generated tests")
+    parser.add_argument("--json", type=Path, help="file for the outcome of every script")
+    options = parser.parse_args()
+    foreign_closed.warm_up()
+    with tempfile.TemporaryDirectory() as temporary:
+        scratch = (options.keep or Path(temporary)).resolve()
+        scratch.mkdir(parents=True, exist_ok=True)
+        found = [one for copy in checkouts(options.folders, scratch) for one in scripts(copy)]
+        chosen = [one for one in found if options.only in one.name]
+        began, outcomes = time.perf_counter(), []
+        for number, script in enumerate(chosen):
+            outcomes.append(run(script, number))
+            one = outcomes[-1]
+            print(f"{one.name}: {one.verdict}{f': {one.missing}' if one.fails else one.apart and f': {one.apart}'}",
+                  flush=True)  # fmt: skip
+        report(outcomes)
+        print(f"\n{time.perf_counter() - began:.0f} s")
+        if options.json:
+            options.json.write_text(json.dumps([asdict(one) for one in outcomes], indent=1))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,110 @@
+"""Find the node scripts of checked-out repositories, and what sets some of them apart. Nothing is executed."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+GPU = frozenset({"chainer", "chainercv", "cupy", "fairseq", "fcn", "keras", "openravepy", "tensorflow", "torch",
+                 "torchvision", "pycuda", "chainer_mask_rcnn", "baselines", "hmr", "caffe"})  # fmt: skip
+HARDWARE = frozenset({"RPi", "alsaaudio", "baxter_interface", "naoqi", "openhrivoice", "pyaudio", "pyrealsense2",
+                      "serial", "smbus", "spidev", "bluetooth", "usb", "intera_interface", "qi", "evdev", "pygame",
+                      "rangelibc", "range_libc", "speech_recognition", "pyudev", "xarm", "fetch_api", "naoqi_driver",
+                      "pr2_ik", "hironx_client", "rtm", "OpenHRP", "hrpsys"})  # fmt: skip
+TESTING = frozenset({"unittest", "rostest", "pytest", "rosunit", "launch_testing", "nose"})
+MADE_BY = re.compile(r"\brospy\.init_node\s*\(|\brclpy\.(create_node|spin)\b|\(\s*(rclpy\.node\.)?Node\s*\)")
+ENTRY = re.compile(r"['\"]\s*[\w.-]+\s*=\s*([\w.]+)\s*:\s*(\w+)\s*['\"]")
+SKIPPED = frozenset({"launch", "test", "tests", "build", "install", "devel", "tarl_tests"})
+
+
+@dataclass(frozen=True)
+class Script:
+    """A node script: its file, the function that an entry point names, and why it is counted apart, if it is."""
+
+    repository: Path
+    path: Path
+    entry: str | None = None
+    apart: str = ""
+
+    @property
+    def name(self) -> str:
+        """Return the path below the folder of repositories."""
+        return f"{self.repository.name}/{self.path.relative_to(self.repository)}"
+
+    @property
+    def package(self) -> Path:
+        """Return the folder of the package that the script is in."""
+        inside = [one for one in self.path.parents if one.is_relative_to(self.repository)]
+        return next((one for one in inside if (one / "package.xml").is_file()), self.path.parent)
+
+
+def scripts(repository: Path) -> list[Script]:
+    """Return the node scripts of a repository, sorted by path."""
+    entries = dict(entry_points(repository))
+    found = (script(repository, path, entries.get(path)) for path in sorted(files(repository)))
+    return [one for one in found if one is not None]
+
+
+def files(repository: Path) -> Iterator[Path]:
+    """Yield the Python files outside of folders for launch files and tests."""
+    for path in repository.rglob("*"):
+        parts = path.relative_to(repository).parts
+        if not path.is_file() or path.is_symlink() or not SKIPPED.isdisjoint(parts[:-1]) or ".git" in parts:
+            continue
+        if path.suffix == ".py" or ("." not in path.name and _first_line(path).startswith(b"#!")):
+            yield path
+
+
+def _first_line(path: Path) -> bytes:
+    with path.open("rb") as file:
+        first = file.readline(120)
+    return first if b"python" in first else b""
+
+
+def entry_points(repository: Path) -> Iterator[tuple[Path, str]]:
+    """Yield the files and functions of the console scripts that `setup.py` and `setup.cfg` name."""
+    for setup in [*repository.rglob("setup.py"), *repository.rglob("setup.cfg")]:
+        for module, function in ENTRY.findall(setup.read_text("utf-8", errors="replace")):
+            yield setup.parent.joinpath(*module.split(".")).with_suffix(".py"), function
+
+
+def script(repository: Path, path: Path, entry: str | None) -> Script | None:
+    """Return the node script that a file is, None if it is none."""
+    text = path.read_text("utf-8", errors="replace")
+    if path.name == "setup.py" or path.name.endswith(".launch.py") or not MADE_BY.search(text):
+        return None
+    try:
+        tree = ast.parse(text)
+    except (SyntaxError, ValueError) as error:
+        return Script(repository, path, apart=f"Python 2 only ({error})")
+    imported = set(imports(tree))
+    if not TESTING.isdisjoint(imported):
+        return Script(repository, path, apart="a test, not a node")
+    runs = any(map(_runs, tree.body))
+    if entry is None and not runs:
+        return Script(repository, path, apart="a module that starts nothing when it is run")
+    for kind, names in (("GPU library", GPU), ("hardware SDK", HARDWARE)):
+        needed = sorted(names & imported)
+        if needed:
+            return Script(repository, path, apart=f"needs a {kind}: {needed[0]}")
+    return Script(repository, path, None if runs else entry)
+
+
+def imports(tree: ast.AST) -> Iterator[str]:
+    """Yield the packages that a file imports."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.partition(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            yield (node.module or "").partition(".")[0]
+
+
+def _runs(statement: ast.stmt) -> bool:
+    """Tell whether a statement at the top of a file makes a node: a `__main__` guard, or a call of its own."""
+    if isinstance(statement, ast.If):
+        return "__name__" in ast.unparse(statement.test)
+    text = "" if isinstance(statement, ast.FunctionDef | ast.ClassDef) else ast.unparse(statement)
+    return bool(MADE_BY.search(text)) or text in ("main()", "sys.exit(main())")
