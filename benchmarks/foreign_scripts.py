@@ -103,8 +103,8 @@ def imports(tree: ast.AST) -> Iterator[str]:
 
 
 def _runs(statement: ast.stmt) -> bool:
-    """Tell whether a statement at the top of a file makes a node: a `__main__` guard, or a call of its own."""
+    """Tell whether a statement at the top of a file makes a node: the guard of a script, or a call of its own."""
     if isinstance(statement, ast.If):
-        return "__name__" in ast.unparse(statement.test)
+        return re.search(r"__name_", ast.unparse(statement.test)) is not None
     text = "" if isinstance(statement, ast.FunctionDef | ast.ClassDef) else ast.unparse(statement)
     return bool(MADE_BY.search(text)) or text in ("main()", "sys.exit(main())")

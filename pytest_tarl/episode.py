@@ -223,7 +223,8 @@ class Tarl:
             "the slices there stay empty."
             for path, positions in self._imports.unrecorded.items()
         ]
-        return (*ended, *missing, *(self._replay.notes if self._replay is not None else ()))
+        started = self._ros.notes if self._ros is not None else ()
+        return (*ended, *missing, *started, *(self._replay.notes if self._replay is not None else ()))
 
     def problem(self) -> RecordingError | None:
         """Return why the episode cannot be learned from: no reward, a silent sensor, a mute node; None when it can."""

@@ -16,6 +16,7 @@ from pytest_tarl.ros.install import standins_installed
 from pytest_tarl.ros.messages import workspace
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Scheduler, Spinning, running_task
+from pytest_tarl.ros.uninstalled import UninstalledFinder
 from pytest_tarl.ros.watchdog import DEFAULT_LIMIT, WATCHDOG
 
 Part = TypeVar("Part")
@@ -42,6 +43,7 @@ class Ros:
         self.bus = Bus(self.scheduler, self._run, self)
         self.processes: list[Process] = []
         self._parts: dict[Any, Any] = {}
+        self.uninstalled = UninstalledFinder()
         self.closed = False
 
     @property
@@ -68,6 +70,11 @@ class Ros:
     def shutdown_errors(self) -> tuple[NodeError, ...]:
         """What nodes raised while they were being ended; they cannot fail an episode that is over."""
         return tuple(error for process in self.processes for error in process.errors)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the user should know of how the nodes were started."""
+        return self.uninstalled.notes()
 
     def part(self, kind: Callable[[Ros], Part]) -> Part:
         """Return this episode's only instance of `kind`: what a ROS master or the network would hold."""

@@ -15,7 +15,9 @@ from pytest_tarl.ros.hosttime import virtual_host_time
 from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.installed import installed_kind
 from pytest_tarl.ros.messages.packages import PARTS, could_be_package, is_package, package_module
+from pytest_tarl.ros.messages.workspace import packages
 from pytest_tarl.ros.missing import unsupported
+from pytest_tarl.ros.siblings import generated, has_configurations, is_generated, sibling
 from pytest_tarl.ros.threads import threads_as_tasks
 from pytest_tarl.stale_modules import holders
 
@@ -154,14 +156,27 @@ class StandinFinder:
             return self._talking_spec(name)
         if root in _STANDALONE:
             return None if PathFinder.find_spec(root) is not None else self._spec(name)
-        if not could_be_package(root):
-            return None
+        if is_generated(name):
+            return self._spec(name)
+        if could_be_package(root) and self._holds_messages(name):
+            return self._spec(name)
+        return self._installed_by_workspace(name) if name == root else None
+
+    def _holds_messages(self, name: str) -> bool:
+        """Tell whether a module is a message package, or the part of a package of nodes that holds its messages."""
+        root, _, part = name.partition(".")
         kind = self._kind_of_importer()
         if installed_kind(root) == kind or not is_package(kind, root):
+            return False
+        if part.partition(".")[0] in PARTS:
+            return True
+        return not _is_ordinary_package(root) and sibling(root) is None
+
+    def _installed_by_workspace(self, root: str) -> ModuleSpec | None:
+        """Find what a package of the workspace would install, unless the search path has a module of that name."""
+        if not packages() or _is_ordinary_package(root):
             return None
-        if name.partition(".")[2].partition(".")[0] in PARTS or not _is_ordinary_package(root):
-            return self._spec(name)
-        return None  # a package of nodes that defines messages as well: only those are ours
+        return sibling(root) or (self._spec(root) if has_configurations(root) else None)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         """Make a module object that nobody has seen before."""
@@ -169,6 +184,10 @@ class StandinFinder:
         if name in STANDINS:
             module = ModuleType(name)
             module.__dict__.update(_contents(_HOME + STANDINS[name]))
+        elif is_generated(name):
+            module = generated(name)
+        elif has_configurations(name) and not is_package(self._kind or "ros1", name):
+            module = ModuleType(name, "A package of the workspace without Python modules of its own.")
         else:
             made = package_module(self._kind or "ros2", name)
             if made is None:
@@ -260,11 +279,13 @@ def standins_installed(ros: Ros) -> Iterator[None]:
     finder = StandinFinder()
     finder.hidden = _hide(root for root in _TALKING if root != "genpy" or not _has_genpy())
     sys.meta_path.insert(0, finder)
+    sys.meta_path.append(ros.uninstalled)
     try:
         with virtual_host_time(ros.scheduler), threads_as_tasks():
             yield
     finally:
         sys.meta_path.remove(finder)
+        sys.meta_path.remove(ros.uninstalled)
         gone = [sys.modules[name] for name in finder.loaded if name in sys.modules]
         for name in holders(gone, sorted(sys.modules.keys() - finder.before - set(finder.loaded))):
             del sys.modules[name]  # what took a stand-in apart, or wrapped it, does so with the next one

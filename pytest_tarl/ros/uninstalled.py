@@ -1,0 +1,110 @@
+"""Import modules of the workspace that no package installs, and take note: on the robot the import would fail."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator, Sequence
+from functools import cache
+from importlib.machinery import ModuleSpec, PathFinder
+from pathlib import Path
+from types import FrameType, ModuleType
+
+from pytest_tarl.ros.messages.workspace import packages, workspaces
+from tarl_lint.workspace.folders import folders
+
+_MISSING = frozenset({"ImportError", "ModuleNotFoundError", "Exception", "BaseException"})
+
+
+class UninstalledFinder:
+    """The last finder on `sys.meta_path`: it is asked for what nobody else has. `taken` are module names and files."""
+
+    def __init__(self) -> None:
+        self.taken: dict[str, Path] = {}
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, _target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Find a top-level module that a file of a workspace imports, in its own package, else in the workspace."""
+        if path is not None or "." in name:
+            return None
+        importer = _importer(sys._getframe(1))
+        if importer is None or _is_optional(importer.f_code.co_filename, importer.f_lineno):
+            return None
+        place = _nearest(name, Path(importer.f_code.co_filename).resolve())
+        if place is None:
+            return None
+        self.taken[name] = place
+        return PathFinder.find_spec(name, [str(place.parent)])
+
+    def notes(self) -> tuple[str, ...]:
+        """Return what users should know of the modules that were found this way."""
+        return tuple(
+            f"{name} was imported from {place}, which no package of the workspace installs: on the robot the import "
+            "fails unless the folder is on PYTHONPATH. Name it in the setup.py of its package."
+            for name, place in sorted(self.taken.items())
+        )
+
+
+def _importer(frame: FrameType | None) -> FrameType | None:
+    """Return the frame that imports, if it runs a file of a workspace."""
+    while frame is not None and (
+        "importlib" in frame.f_code.co_filename
+        or frame.f_globals.get("__name__", "").startswith("pytest_tarl")
+    ):
+        frame = frame.f_back
+    if frame is None:
+        return None
+    file = Path(frame.f_code.co_filename)
+    return frame if any(file.is_relative_to(one.root) for one in workspaces()) else None
+
+
+def _nearest(name: str, importer: Path) -> Path | None:
+    """Return the only module of that name in the importer's package, else the only one in its workspace."""
+    for workspace in workspaces():
+        if importer.is_relative_to(workspace.root):
+            found = [one for one in _modules(workspace.root).get(name, ()) if one != importer]
+            own = workspace.package_of(importer)
+            near = [one for one in found if own is not None and one.is_relative_to(own.folder)]
+            chosen = near or found
+            return chosen[0] if len(chosen) == 1 else None
+    return None
+
+
+@cache
+def _modules(root: Path) -> dict[str, tuple[Path, ...]]:
+    """Return the files and folders of a workspace that could be imported at the top, by name."""
+    found: dict[str, tuple[Path, ...]] = {}
+    for folder, files in folders(root):
+        if folder.name in ("launch", "test", "tests"):
+            continue
+        for place in _importable(folder, files):
+            found[place.stem] = (*found.get(place.stem, ()), place)
+    return found
+
+
+def _importable(folder: Path, files: list[str]) -> Iterator[Path]:
+    if "__init__.py" in files:
+        yield folder
+    elif any(name.endswith(".py") for name in files) and folder not in {
+        one.folder for one in packages().values()
+    }:
+        yield folder  # a namespace package
+    yield from (folder / name for name in files if name.endswith(".py") and name.removesuffix(".py").isidentifier()
+                and name not in ("__init__.py", "setup.py"))  # fmt: skip
+
+
+@cache
+def _is_optional(file: str, line: int) -> bool:
+    """Tell whether an import stands in a `try` that catches its failure: the node copes without the module."""
+    try:
+        tree = ast.parse(Path(file).read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return False
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Try) and node.body[0].lineno <= line <= (node.body[-1].end_lineno or line):
+            caught = {name.id for one in node.handlers for name in ast.walk(one.type or ast.Name("Exception"))
+                      if isinstance(name, ast.Name)}  # fmt: skip
+            if caught & _MISSING:
+                return True
+    return False

@@ -1,0 +1,142 @@
+"""Read from `CMakeLists.txt` what is installed of Python: programs, modules, packages. Nothing is executed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from tarl_lint.workspace.model import Problem
+
+LARGEST: Final = 500_000  # bytes
+_TOKEN: Final = re.compile(
+    r"""\#\[(?P<eq>=*)\[.*?\](?P=eq)\] | \#[^\n]*
+        | (?P<word>"(?:[^"\\]|\\.)*" | [^\s()#"]+) | (?P<open>\() | (?P<close>\))""",
+    re.VERBOSE | re.DOTALL,
+)
+_VARIABLE: Final = re.compile(r"\$\{(\w+)\}")
+_KEYWORDS: Final = frozenset(
+    ["PROGRAMS", "FILES", "TARGETS", "DIRECTORY", "DESTINATION", "RENAME", "PATTERN", "OPTIONAL", "PERMISSIONS",
+     "COMPONENT", "USE_SOURCE_PERMISSIONS", "CONFIGURATIONS", "EXCLUDE", "REGEX", "RUNTIME", "LIBRARY", "ARCHIVE",
+     "FILES_MATCHING", "SCRIPTS_DESTINATION"]
+)  # fmt: skip
+_PROGRAMS: Final = re.compile(r"BIN_DESTINATION|^lib/|^bin$")  # where `ros2 run` and `rosrun` look
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A call in a CMake file, with variables replaced where they are known."""
+
+    name: str
+    words: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Cmake:
+    """What a package installs: programs (a pair of file and installed name) and Python packages (name and folder)."""
+
+    programs: tuple[tuple[str, str], ...] = ()
+    python_packages: tuple[tuple[str, str], ...] = ()
+    uses_setup: bool = False
+    problems: tuple[Problem, ...] = ()
+
+
+def cmake(folder: Path, package: str) -> Cmake:
+    """Return what the `CMakeLists.txt` in a folder installs, nothing without such a file."""
+    path = folder / "CMakeLists.txt"
+    try:
+        text = path.read_text("utf-8", errors="replace") if path.is_file() else ""
+    except OSError as error:
+        return Cmake(problems=(Problem(path, 0, f"it cannot be read: {error.strerror}"),))
+    if len(text) > LARGEST:
+        return Cmake(problems=(Problem(path, 0, f"it has more than {LARGEST:,} bytes"),))
+    programs: dict[str, str] = {}
+    packages: dict[str, str] = {}
+    uses_setup = False
+    for command in commands(text, folder, package):
+        if command.name == "catkin_python_setup":
+            uses_setup = True
+        elif command.name in ("install", "catkin_install_python"):
+            programs |= dict(_programs(folder, command.words))
+        elif command.name == "ament_python_install_package" and command.words:
+            name, *rest = command.words
+            place = rest[rest.index("PACKAGE_DIR") + 1] if "PACKAGE_DIR" in rest[:-1] else name
+            packages[name] = place
+    return Cmake(tuple(sorted(programs.items())), tuple(sorted(packages.items())), uses_setup)
+
+
+def commands(text: str, folder: Path, package: str) -> Iterator[Command]:
+    """Yield the commands of a CMake text. `set` and `file(GLOB)` define variables."""
+    here = str(folder)
+    variables = {"PROJECT_NAME": [package], "CMAKE_CURRENT_SOURCE_DIR": [here], "PROJECT_SOURCE_DIR": [here],
+                 "CMAKE_SOURCE_DIR": [here], "CMAKE_CURRENT_LIST_DIR": [here]}  # fmt: skip
+    for name, words in _calls(text):
+        replaced = tuple(piece for word in words for piece in _replaced(word, variables))
+        if name == "set" and replaced:
+            variables[replaced[0]] = list(replaced[1:])
+        elif name == "file" and len(replaced) > 1 and replaced[0] in ("GLOB", "GLOB_RECURSE"):
+            variables[replaced[1]] = list(_globbed(folder, replaced[2:], deep=replaced[0] != "GLOB"))
+        yield Command(name, replaced)
+
+
+def _calls(text: str) -> Iterator[tuple[str, list[str]]]:
+    name, depth, words = "", 0, list[str]()
+    for token in _TOKEN.finditer(text):
+        if token["open"]:
+            depth += 1
+        elif token["close"]:
+            depth -= 1
+            if depth <= 0:
+                yield name.lower(), words
+                depth, words = 0, []
+        elif token["word"] and depth:
+            words.append(token["word"])
+        elif token["word"]:
+            name = token["word"]
+
+
+def _replaced(word: str, variables: dict[str, list[str]]) -> list[str]:
+    """Replace the variables of a word; a list that stands alone becomes several words."""
+    quoted = word.startswith('"')
+    word = word.strip('"') if quoted else word
+    alone = _VARIABLE.fullmatch(word)
+    if alone is not None and not quoted:
+        return variables.get(alone[1], [word])
+    text = _VARIABLE.sub(lambda found: ";".join(variables.get(found[1], [found[0]])), word)
+    return [text] if quoted else [part for part in text.split(";") if part]
+
+
+def _globbed(folder: Path, patterns: tuple[str, ...], *, deep: bool) -> Iterator[str]:
+    for pattern in patterns:
+        relative = pattern.removeprefix(f"{folder}/")
+        if (
+            relative.startswith("/")
+            or ".." in relative
+            or relative in ("RELATIVE", "CONFIGURE_DEPENDS", str(folder))
+        ):
+            continue
+        try:
+            found = folder.rglob(relative) if deep else folder.glob(relative)
+            yield from sorted(str(path.relative_to(folder)) for path in found)
+        except (ValueError, OSError, NotImplementedError):
+            continue
+
+
+def _programs(folder: Path, words: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    """Yield the files that an `install` command installs as programs: by name, or all files of a folder."""
+    groups: dict[str, list[str]] = {}
+    within: list[str] = []
+    for word in words:
+        if word in _KEYWORDS:
+            within = groups.setdefault(word, [])
+        else:
+            within.append(word.removeprefix(f"{folder}/"))
+    renamed = next(iter(groups.get("RENAME", ())), "")
+    yield from ((one, renamed or Path(one).name) for one in groups.get("PROGRAMS", ()))
+    if _PROGRAMS.search(" ".join(groups.get("DESTINATION", ())[:1])):
+        inside = [path for one in groups.get("DIRECTORY", ()) for path in sorted((folder / one).glob("*"))]
+        for path in (*inside, *(folder / one for one in groups.get("FILES", ()))):
+            if path.is_file() and path.is_relative_to(folder):
+                yield str(path.relative_to(folder)), path.name

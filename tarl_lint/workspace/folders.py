@@ -1,0 +1,52 @@
+"""Walk through the source folders of a workspace, and find where a workspace begins."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final
+
+LIMIT: Final = 20_000  # folders of one workspace
+MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "pyvenv.cfg", ".catkin")
+_BUILT: Final = frozenset({"build", "install", "log", "devel", "logs"})
+_NEVER: Final = frozenset({"__pycache__", "node_modules", "site-packages", "dist-packages"})
+
+
+def folders(root: Path) -> Iterator[tuple[Path, list[str]]]:
+    """Yield the folders that hold sources, with their files, sorted; what building leaves is skipped."""
+    for looked, (folder, names, files) in enumerate(os.walk(root)):
+        if looked >= LIMIT:
+            return
+        if looked and not set(MARKERS).isdisjoint(files):
+            names.clear()
+            continue
+        names[:] = sorted(name for name in names if _holds_sources(folder, name))
+        yield Path(folder), sorted(files)
+
+
+def _holds_sources(folder: str, name: str) -> bool:
+    if name.startswith(".") or name in _NEVER:
+        return False
+    return name not in _BUILT or Path(folder, name, "__init__.py").is_file()
+
+
+def workspace_root(path: Path) -> Path | None:
+    """Return the folder of the workspace around a file or folder, None without a package or repository.
+
+    That is the `src` of a colcon or catkin workspace, else the outermost folder of the git repository, else the folder
+    that holds the outermost package.
+    """
+    around = (path, *path.parents) if path.is_dir() else tuple(path.parents)
+    for folder in around:
+        if folder.name == "src" and any(
+            (folder.parent / one).is_dir() for one in ("build", "install", "devel")
+        ):
+            return folder
+        if (folder / ".git").exists():
+            return folder
+    packages = [folder for folder in around if (folder / "package.xml").is_file()]
+    if not packages:
+        return None
+    above = packages[-1].parent
+    return above if above != Path(above.anchor) else packages[-1]

@@ -1,0 +1,65 @@
+"""Read `package.xml`: the name of a package, how it is built, what it depends on."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+from xml.etree import ElementTree
+
+from tarl_lint.workspace.model import Kind, Problem
+
+LARGEST: Final = 200_000  # bytes
+_DEPENDS: Final = frozenset({"depend", "build_depend", "exec_depend", "run_depend", "buildtool_depend", "test_depend",
+                             "build_export_depend", "group_depend"})  # fmt: skip
+_BUILD_TYPES: Final[tuple[Kind, ...]] = ("ament_python", "ament_cmake", "catkin", "cmake")
+
+
+@dataclass(frozen=True, slots=True)
+class Manifest:
+    """What `package.xml` says of a package."""
+
+    name: str
+    kind: Kind
+    dependencies: tuple[str, ...] = ()
+
+
+def manifest(folder: Path) -> tuple[Manifest, list[Problem]]:
+    """Return the manifest in a folder; the folder's name stands for one that cannot be read."""
+    path = folder / "package.xml"
+    root, problem = _root(path)
+    if root is None:
+        return Manifest(folder.name, _kind(folder, "", ())), [Problem(path, 0, problem)]
+    name = (root.findtext("name") or "").strip()
+    depends = tuple(sorted({tag.text.strip() for tag in root if tag.tag in _DEPENDS and tag.text}))
+    stated = (root.findtext("export/build_type") or "").strip()
+    problems = [] if name else [Problem(path, 0, "it has no <name>")]
+    return Manifest(name or folder.name, _kind(folder, stated, depends), depends), problems
+
+
+def _root(path: Path) -> tuple[ElementTree.Element | None, str]:
+    try:
+        text = path.read_bytes()
+    except OSError as error:
+        return None, f"it cannot be read: {error.strerror}"
+    if len(text) > LARGEST or re.search(rb"<!(DOCTYPE|ENTITY)", text):
+        return None, "it is too large, or declares entities"
+    try:
+        return ElementTree.fromstring(text), ""  # noqa: S314 - without entities, nothing expands
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        return None, f"it is not XML: {error}"
+
+
+def _kind(folder: Path, stated: str, depends: tuple[str, ...]) -> Kind:
+    """Return the build type: as stated, else as the build tool depended on, else as the files tell."""
+    for kind in _BUILD_TYPES:
+        if stated == kind:
+            return kind
+    if "catkin" in depends:
+        return "catkin"
+    if any(one.startswith("ament_cmake") for one in depends):
+        return "ament_cmake"
+    if (folder / "CMakeLists.txt").is_file():
+        return "catkin" if not stated else "cmake"
+    return "ament_python" if (folder / "setup.py").is_file() else "unknown"

@@ -1,0 +1,80 @@
+"""The values of a workspace description. Paths are absolute."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal
+
+Kind = Literal["catkin", "ament_python", "ament_cmake", "cmake", "unknown"]
+INTERFACES: Final = ("msg", "srv", "action")
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Something that could not be read: the file, a line (0 for the whole file) and the reason."""
+
+    file: Path
+    line: int
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Executable:
+    """A Python program of a package: its name for `ros2 run` or `rosrun`, its file, the function of an entry point.
+
+    `path` is None where the declared file does not exist.
+    """
+
+    name: str
+    path: Path | None
+    entry: str | None = None
+    module: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ImportRoot:
+    """A top-level module or package that installing makes importable, and the folder or file it comes from."""
+
+    name: str
+    path: Path
+
+
+@dataclass(frozen=True, slots=True)
+class Package:
+    """A package: a folder with a `package.xml`."""
+
+    name: str
+    folder: Path
+    kind: Kind
+    dependencies: tuple[str, ...] = ()
+    executables: tuple[Executable, ...] = ()
+    modules: tuple[ImportRoot, ...] = ()
+    interfaces: tuple[Path, ...] = ()
+    configurations: tuple[Path, ...] = ()
+    launch_files: tuple[Path, ...] = ()
+    parameter_files: tuple[Path, ...] = ()
+    problems: tuple[Problem, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Workspace:
+    """All packages below a folder, sorted by name; the first of two packages with the same name counts."""
+
+    root: Path
+    packages: tuple[Package, ...] = ()
+
+    def package(self, name: str) -> Package | None:
+        """Return the package of that name."""
+        return next((one for one in self.packages if one.name == name), None)
+
+    def package_of(self, path: Path) -> Package | None:
+        """Return the innermost package that contains a file."""
+        around = [one for one in self.packages if path.is_relative_to(one.folder)]
+        return max(around, key=lambda one: len(one.folder.parts), default=None)
+
+    def problems(self) -> Iterator[Problem]:
+        """Yield everything that could not be read."""
+        for one in self.packages:
+            yield from one.problems

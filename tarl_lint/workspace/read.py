@@ -1,0 +1,100 @@
+"""Read a workspace: every package below a folder, and what it holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+from tarl_lint.workspace.executables import installed, may_be_started
+from tarl_lint.workspace.folders import folders
+from tarl_lint.workspace.manifests import Manifest, manifest
+from tarl_lint.workspace.model import INTERFACES, Package, Problem, Workspace
+
+_LAUNCH: Final = (".launch", ".launch.xml", ".launch.py", ".launch.yaml", ".launch.yml")
+_YAML: Final = (".yaml", ".yml")
+
+
+@dataclass
+class _Found:
+    """The files of a package, while folders are walked."""
+
+    folder: Path
+    declared: bool
+    interfaces: list[Path] = field(default_factory=list)
+    configurations: list[Path] = field(default_factory=list)
+    launch_files: list[Path] = field(default_factory=list)
+    parameter_files: list[Path] = field(default_factory=list)
+    scripts: list[Path] = field(default_factory=list)
+
+    def take(self, path: Path) -> None:
+        """Sort a file in by its name."""
+        name, above = path.name, path.parent.name
+        if name.endswith(_LAUNCH) or (above == "launch" and _is_launch_file(path)):
+            self.launch_files.append(path)
+        elif path.suffix == ".cfg" and _mentions(path, b"dynamic_reconfigure"):
+            self.configurations.append(path)
+        elif path.suffix in _YAML:
+            self.parameter_files.append(path)
+        elif path.suffix in ("", ".py") and may_be_started(path):
+            self.scripts.append(path)
+
+
+def read(root: Path) -> Workspace:
+    """Return the description of the workspace below a folder. Nothing is executed, nothing is written."""
+    found: dict[Path, _Found] = {}
+    for folder, files in folders(root.resolve()):
+        if "package.xml" in files:
+            found[folder] = _Found(folder, declared=True)
+        owner = next((found[one] for one in (folder, *folder.parents) if one in found), None)
+        if folder.name in INTERFACES:
+            interfaces = [folder / name for name in files if name.endswith(f".{folder.name}")]
+            if interfaces:
+                found.setdefault(
+                    folder.parent, _Found(folder.parent, declared=False)
+                ).interfaces += interfaces
+        elif owner is not None:
+            for name in files:
+                owner.take(folder / name)
+    packages: dict[str, Package] = {}
+    for one in found.values():
+        package = _package(one)
+        packages.setdefault(package.name, package)
+    return Workspace(root.resolve(), tuple(packages[name] for name in sorted(packages)))
+
+
+def _package(found: _Found) -> Package:
+    problems: list[Problem] = []
+    if found.declared:
+        declared, problems = manifest(found.folder)
+    else:  # definitions without a package: the folder's name stands for it
+        declared = Manifest(found.folder.name, "unknown")
+    executables, modules, more = installed(found.folder, declared, found.scripts)
+    return Package(
+        name=declared.name,
+        folder=found.folder,
+        kind=declared.kind,
+        dependencies=declared.dependencies,
+        executables=executables,
+        modules=modules,
+        interfaces=tuple(found.interfaces),
+        configurations=tuple(found.configurations),
+        launch_files=tuple(found.launch_files),
+        parameter_files=tuple(found.parameter_files),
+        problems=(*problems, *more),
+    )
+
+
+def _is_launch_file(path: Path) -> bool:
+    """Tell whether a file in a folder `launch` is a launch file without the usual ending."""
+    if path.suffix == ".xml":
+        return _mentions(path, b"<launch")
+    return path.name.endswith("_launch.py")
+
+
+def _mentions(path: Path, word: bytes) -> bool:
+    try:
+        with path.open("rb") as file:
+            return word in file.read(200_000)
+    except OSError:
+        return False
