@@ -13,8 +13,8 @@ Judgements are made from the source alone, before `compare` runs. A judged call 
 
     {"seed": 41, "calls": {"repo/dir/node.py:30": {"from": [{"at": "12", "kind": "data", "path": ["20-22", "30"]}]}}}
 
-A place is a line of the file of the call, or `path:line` below the repository. A call with `"skip": "why"` is no publish
-call of ROS.
+A place is a line of the file of the call, or `path:line` below the repository. A call with `"skip": "why"` is no
+publish call of ROS; `"uncalled": true` marks one that nothing in its tree calls (counted in a row of its own).
 """
 
 from __future__ import annotations
@@ -32,11 +32,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-from tarl_lint.api import analyse
+from tarl_lint.config import Config, Options
 from tarl_lint.model import Flow
+from tarl_lint.runner import run
 
 KINDS: Final = {"explicit": "data", "implicit": "control"}
-OWN_ANSWERS: Final = ("rospy.Service", "rclpy.create_service", "actionlib.", "rclpy.action.")
+ANSWERS: Final = ("rospy.Service", "rclpy.create_service", "actionlib.", "rclpy.action.")
 
 
 @dataclass(frozen=True, order=True)
@@ -85,9 +86,8 @@ def publish_calls(trees: Path) -> list[Place]:
         except (SyntaxError, ValueError):
             continue
         for node in ast.walk(tree):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
-                if node.func.attr == "publish":
-                    found.add(Place(path.relative_to(trees).as_posix(), node.lineno))
+            if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "publish":
+                found.add(Place(path.relative_to(trees).as_posix(), node.lineno))
     return sorted(found)
 
 
@@ -95,8 +95,9 @@ def reported(trees: Path) -> dict[Place, list[Flow]]:
     """Return the flows that tarl-lint reports in each repository, by the place of the publish call."""
     flows = dict[Place, list[Flow]]()
     for tree in sorted(path for path in trees.iterdir() if path.is_dir()):
-        for flow in analyse([tree]).flows:
-            if not flow.sink.api.startswith(OWN_ANSWERS):
+        for finding in run(Options(paths=(tree,), jobs=1, cache=False), Config(root=tree)).findings:
+            flow = finding.flow
+            if flow is not None and not flow.sink.api.startswith(ANSWERS):
                 flows.setdefault(_place(trees, flow.sink.span.path, flow.sink.span.line), []).append(flow)
     return flows
 
@@ -161,13 +162,15 @@ class Truth:
             self.remarks.append(f"{call}: {kind} from {source}, judged {wanted['kind']}")
             return False
         steps = {
-            _place(trees, s.span.path, line): s.dependence
+            _place(trees, s.span.path, line)
             for s in flow.steps
+            if s.dependence != "context"
             for line in range(s.span.line, s.span.end_line + 1)
         }
-        lacking = [p for p in lines(wanted.get("path", ()), call.path) if steps.get(p) in (None, "context")]
+        lacking = [p for p in lines(wanted.get("path", ()), call.path) if p not in steps]
         if lacking:
-            self.remarks.append(f"{call}: {kind} from {source} lacks {', '.join(map(str, lacking))}")
+            shown = ", ".join(str(p.line if p.path == call.path else p) for p in lacking)
+            self.remarks.append(f"{call}: {kind} from {source} lacks {shown}")
         return not lacking
 
 
