@@ -32,9 +32,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-from tarl_lint.config import Config, Options
 from tarl_lint.model import Flow
-from tarl_lint.runner import run
+from tarl_lint.run.runner import run
+from tarl_lint.settings.config import Config, Options
 
 KINDS: Final = {"explicit": "data", "implicit": "control"}
 ANSWERS: Final = ("rospy.Service", "rclpy.create_service", "actionlib.", "rclpy.action.")
