@@ -120,6 +120,7 @@ class Linker(Interpreter):
         self.spent = self.saved = 0
         self.limit = HASTE if self.hurried(root.program) else MAX_STATEMENTS
         self.graph.edges = self.edges_of.get(root.program, 0)
+        self.graph.made = self.nodes_of.get(root.program, 0)
         self.activations.clear()
         self.leisure, self.idled = None, 0
         self.delivered = frozenset()
@@ -132,6 +133,7 @@ class Linker(Interpreter):
         finally:
             self.totals[root.program] = self.totals.get(root.program, 0) + self.worked
             self.edges_of[root.program] = self.graph.edges
+            self.nodes_of[root.program] = self.graph.made
             if self.graph.edges >= MAX_EDGES:
                 self.cut[root.program] = None
             self.took[root] = self.spent

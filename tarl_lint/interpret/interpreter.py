@@ -77,6 +77,7 @@ class Interpreter:
         self.saved = 0  # of it in calls that were replayed
         self.totals: dict[str, int] = {}  # the same in all runs before, of each program
         self.edges_of: dict[str, int] = {}  # edges that the runs of each program made
+        self.nodes_of: dict[str, int] = {}  # nodes that they made
         self.frames_of: dict[str, int] = {}  # activations of each program
         self.cut: dict[str, None] = {}  # programs of which not everything was followed
         self.limit = MAX_STATEMENTS

@@ -11,7 +11,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.values import Branches, Nodes
 
-MAX_NODES = 15_000  # after which content is taken to arrive as it is, too
+MAX_NODES = 6_000  # of a program; after that, content is taken to arrive as it is, too
 MAX_EDGES = 200_000  # of data; then few of very many values that meet in one are followed
 FEW = 8
 MANY = 16  # nodes that meet in a field where everything adds up and are told apart
@@ -61,6 +61,7 @@ class Graph:
         default_factory=dict
     )  # (node of a carrier, what it carries)
     edges: int = 0  # of data, that the program at work made
+    made: int = 0  # nodes that the program at work made
     grown: int = 0  # how often something new was inside an object that was passed on
     live: set[int] = field(default_factory=set)  # nodes that sources lead to, by data or by decisions
     onward: dict[int, list[int]] = field(default_factory=dict)  # where nodes lead that are not live yet
@@ -73,6 +74,7 @@ class Graph:
         number = self.numbers.get(key)
         if number is None:
             number = self.numbers[key] = len(self.places)
+            self.made += 1
             self.places.append(place)
             self.data.append(set())
             self.control.append(set())
@@ -191,8 +193,8 @@ class Graph:
         return (content - taken) | found if found else content
 
     def large(self) -> bool:
-        """Tell whether there are too many nodes to say how content arrives."""
-        return len(self.places) > MAX_NODES
+        """Tell whether the program at work made too many nodes to say how content arrives."""
+        return self.made > MAX_NODES
 
     def _consult(self, carriers: Nodes) -> None:
         """Note that it matters what carriers have passed on by now, and those through which they were carried."""
@@ -255,7 +257,7 @@ class Graph:
 
     def settle(self) -> None:
         """Follow everything that was passed on inside objects back through those who passed it before."""
-        done = 0
+        done = self.made = 0
         while done < len(self.arriving):
             pending = list(islice(self.arriving, done, None))
             done += len(pending)

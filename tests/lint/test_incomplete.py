@@ -9,8 +9,10 @@ from xml.etree import ElementTree
 
 import pytest
 
+from tarl_lint import engine
 from tarl_lint.interpret.budget import MAX_STATEMENTS
 from tarl_lint.interpret.fixpoint import Linker
+from tarl_lint.memory import value_flow_graph
 from tarl_lint.model import Cut
 from tarl_lint.node_names import node_name
 from tarl_lint.read.source import Module
@@ -93,3 +95,26 @@ def test_a_program_spends_its_own_budget_and_not_that_of_others_that_import_the_
     with_deep_stack(machine.link)
     assert list(machine.cut) == ["large.py"]
     assert machine.totals["small.py"] < 50
+
+
+BRIDGED = (
+    "import rospy\nfrom cv_bridge import CvBridge\nfrom lib import helper\npub = rospy.Publisher('b', Image)\n"
+    "def on(msg):\n    bridge = CvBridge()\n    image = bridge.imgmsg_to_cv2(msg)\n    image[helper(image) > 3] = 0\n"
+    "    image = helper(image) * 2\n    out = bridge.cv2_to_imgmsg(image)\n    pub.publish(out)\n"
+    "rospy.Subscriber('a', Image, on)\n"
+)
+
+
+def test_the_steps_of_a_node_do_not_depend_on_how_many_nodes_import_the_same(monkeypatch):
+    def steps(texts):
+        modules = [Module(p, p.removesuffix(".py"), t, ast.parse(t)) for p, t in texts.items()]
+        flows = [f for f in engine.analyse(modules, Config()) if f.sink.span.path == "node.py"]
+        return [(s.span.line, s.dependence) for s in flows[0].steps]
+
+    alone = {"lib.py": LIBRARY, "node.py": BRIDGED}
+    expected = steps(alone)
+    assert (7, "data") in expected
+    monkeypatch.setattr(value_flow_graph, "MAX_NODES", 60)  # enough for one node, not for nine
+    others = {f"another{n}.py": BRIDGED for n in range(8)}
+    assert steps(alone) == expected
+    assert steps({**others, **alone}) == expected
