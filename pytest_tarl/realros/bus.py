@@ -16,7 +16,7 @@ from pytest_tarl.ros.messages import find_class
 from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.snapshot import stamp_if_unset, translate, type_name
 from pytest_tarl.ros.process import Process
-from pytest_tarl.ros.scheduler import running_task
+from pytest_tarl.ros.scheduler import Program, running_task
 from pytest_tarl.ros.threads import threads_as_tasks
 
 _SWITCH_INTERVAL = (
@@ -43,7 +43,7 @@ class RealBus(Bus):
             return
         self._run(self._publish, place, message, latch)
 
-    def disconnect(self, process: Process) -> None:
+    def disconnect(self, process: Program) -> None:
         """Do nothing: a process that has ended takes nothing any more."""
 
     def collect(self) -> bool:

@@ -91,7 +91,7 @@ class WireScheduler(Scheduler):
         self.later(_nothing)
 
     def _resume(self, task: Task, woken: bool) -> None:
-        if self.enter is not None and not task.done:
+        if self.enter is not None and not task.done and isinstance(task.process, Process):
             self.enter(task.process)
         super()._resume(task, woken)
 

@@ -15,6 +15,7 @@ from pytest_tarl.realros.rclpy_network import pause
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.hosttime import REAL_MONOTONIC
 from pytest_tarl.ros.names import absolute
+from pytest_tarl.ros.process import running_process
 from pytest_tarl.ros.scheduler import Task, running_task
 
 if TYPE_CHECKING:
@@ -48,18 +49,18 @@ def _patch_nodes(network: RclpyNetwork) -> None:
     make, destroy = node_class.__init__, node_class.destroy_node
 
     def init(self: Any, node_name: str, **options: Any) -> None:
-        task = running_task()
-        if task is None:
+        process = running_process()
+        if process is None:
             make(self, node_name, **options)
             return
         if options.get("use_global_arguments", True):
             own = list(options.get("cli_args") or ())
-            options["cli_args"] = own + ros_arguments((*task.process.argv[1:], *network.arguments))
+            options["cli_args"] = own + ros_arguments((*process.argv[1:], *network.arguments))
         given = _parameters(network, node_name, options)
         options["parameter_overrides"] = [*given, *(options.get("parameter_overrides") or ())]
         make(self, node_name, **options)
-        network.nodes.append((task.process, self))
-        task.process.label = self.get_fully_qualified_name()
+        network.nodes.append((process, self))
+        process.label = self.get_fully_qualified_name()
 
     def end(self: Any) -> Any:
         network.nodes[:] = [(process, node) for process, node in network.nodes if node is not self]

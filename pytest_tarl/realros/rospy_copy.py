@@ -5,13 +5,10 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pytest_tarl.realros.copies import Modules, load_copy, show
 from pytest_tarl.ros.process import Process
-
-if TYPE_CHECKING:
-    from pytest_tarl.realros.rospy_network import RospyNetwork
 
 _PARTS = ("client", "core", "names", "rostime", "timer", "topics", "service", "numpy_msg", "impl.init",
           "impl.tcpros", "impl.tcpros_base", "impl.tcpros_pubsub", "impl.tcpros_service", "impl.paramserver",
@@ -21,8 +18,7 @@ _PARTS = ("client", "core", "names", "rostime", "timer", "topics", "service", "n
 class RospyCopy:
     """A rospy of its own. `process` is the node that uses it in the present episode, None for the world's."""
 
-    def __init__(self, network: RospyNetwork, argv: Sequence[str]) -> None:
-        self.network = network
+    def __init__(self, argv: Sequence[str]) -> None:
         self.argv = tuple(argv)
         self.modules: Modules = load_copy("rospy", _PARTS, argv)
         self.process: Process | None = None

@@ -13,7 +13,6 @@ from pytest_tarl.errors import NodeError, RecordingError
 from pytest_tarl.realros.lockstep import PATIENCE, Way, Wire, WireScheduler
 from pytest_tarl.realros.master import Master
 from pytest_tarl.realros.rospy_copy import RospyCopy
-from pytest_tarl.realros.rospy_patches import patch
 from pytest_tarl.realros.service_calls import ServiceCalls
 from pytest_tarl.ros.messages.snapshot import snapshot
 from pytest_tarl.ros.names import absolute
@@ -26,9 +25,10 @@ _BASE = frozenset({"/run_id", "/rosdistro", "/rosversion"})
 
 
 class RospyNetwork:
-    """One per test run. The episode sets `scheduler` and the two callbacks."""
+    """One per test run. The episode sets `scheduler` and the two callbacks. `patch` makes a copy run in lock-step."""
 
-    def __init__(self) -> None:
+    def __init__(self, patch: Callable[[RospyCopy, RospyNetwork], None]) -> None:
+        self._patch = patch
         self.master = Master()
         self.wire = Wire()
         self.scheduler = WireScheduler()
@@ -158,8 +158,8 @@ class RospyNetwork:
             self.scheduler.wake(task)
 
     def _made(self, argv: Sequence[str]) -> RospyCopy:
-        copy = RospyCopy(self, argv)
-        patch(copy)
+        copy = RospyCopy(argv)
+        self._patch(copy, self)
         return copy
 
     def _ends(self, topic: str, kind: str) -> list[tuple[RospyCopy, Any]]:

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.realros.lockstep import Way
 from pytest_tarl.ros.clock import NANOSECONDS, nanoseconds
-from pytest_tarl.ros.process import Process
+from pytest_tarl.ros.process import Process, running_process
 from pytest_tarl.ros.scheduler import Task, running_task
 
 if TYPE_CHECKING:
     from pytest_tarl.realros.rospy_copy import RospyCopy
+    from pytest_tarl.realros.rospy_network import RospyNetwork
 
 REAL_TIME = SimpleNamespace(  # bound now: nodes may see a virtual clock under the same names
     time=time.time, sleep=time.sleep, monotonic=time.monotonic, perf_counter=time.perf_counter,
@@ -25,20 +26,20 @@ REAL_TIME = SimpleNamespace(  # bound now: nodes may see a virtual clock under t
 _ON_REAL_TIME = ("core", "topics", "impl.init", "impl.registration", "impl.tcpros_base", "impl.tcpros_pubsub")
 
 
-def patch(copy: RospyCopy) -> None:
+def patch(copy: RospyCopy, network: RospyNetwork) -> None:
     """Make a copy of rospy run in lock-step."""
     for part in _ON_REAL_TIME:
         copy.modules[f"rospy.{part}"].__dict__["time"] = REAL_TIME
     copy.core.__dict__["configure_logging"] = lambda *_, **__: None  # pytest's own handlers stay as they are
     _patch_clock(copy)
-    _patch_waits(copy)
+    _patch_waits(copy, network)
     _patch_timers(copy)
     _patch_end(copy)
-    _patch_beginning(copy)
-    _patch_sending(copy)
-    _patch_receiving(copy)
-    _patch_connecting(copy)
-    _patch_services(copy)
+    _patch_beginning(copy, network)
+    _patch_sending(copy, network)
+    _patch_receiving(copy, network)
+    _patch_connecting(copy, network)
+    _patch_services(copy, network)
 
 
 def _replace(copy: RospyCopy, part: str, name: str, make: Callable[[Callable[..., Any]], Any]) -> None:
@@ -53,7 +54,7 @@ def _replace(copy: RospyCopy, part: str, name: str, make: Callable[[Callable[...
 def _patch_clock(copy: RospyCopy) -> None:
     def make(original: Callable[[], Any]) -> Callable[[], Any]:
         def get_rostime() -> Any:
-            process = _process()
+            process = running_process()
             if process is not None and copy.rostime.is_rostime_initialized():
                 copy.rostime.__dict__["_rostime_current"] = copy.rostime.Time(
                     *divmod(process.scheduler.time, NANOSECONDS)
@@ -65,28 +66,28 @@ def _patch_clock(copy: RospyCopy) -> None:
     _replace(copy, "rostime", "get_rostime", make)
 
 
-def _patch_waits(copy: RospyCopy) -> None:
+def _patch_waits(copy: RospyCopy, network: RospyNetwork) -> None:
     def make_sleep(original: Callable[[Any], None]) -> Callable[[Any], None]:
         def sleep(duration: Any) -> None:
-            process = _process()
+            process = running_process()
             if process is None:
                 original(duration)
                 return
             copy.rostime.get_rostime()  # raises before init_node
             span = duration.to_nsec() if hasattr(duration, "to_nsec") else nanoseconds(duration)
-            _sleep(copy, process, process.scheduler.time + span)
+            _sleep(copy, network, process, process.scheduler.time + span)
 
         return sleep
 
     def make_wallsleep(original: Callable[[float], None]) -> Callable[[float], None]:
         def wallsleep(duration: float) -> None:
-            process = _process()
+            process = running_process()
             if process is None:
                 original(duration)
             elif process.ending:
                 process.refuse_to_wait()
             else:
-                copy.network.listening.append(_task())
+                network.listening.append(_task())
                 process.scheduler.wait(process.scheduler.time + nanoseconds(duration))
 
         return wallsleep
@@ -98,10 +99,10 @@ def _patch_waits(copy: RospyCopy) -> None:
     )
 
 
-def _sleep(copy: RospyCopy, process: Process, until: int) -> None:
+def _sleep(copy: RospyCopy, network: RospyNetwork, process: Process, until: int) -> None:
     if process.ending:
         process.refuse_to_wait()
-        if copy.network.in_hooks:
+        if network.in_hooks:
             return  # time stands still by then
     elif until >= process.scheduler.time:
         process.scheduler.wait(until)
@@ -114,7 +115,7 @@ def _patch_timers(copy: RospyCopy) -> None:
     start, join, is_alive = timer.start, timer.join, timer.is_alive
 
     def begin(self: Any) -> None:
-        process = _process()
+        process = running_process()
         if process is None:
             start(self)
         else:
@@ -138,14 +139,14 @@ def _patch_timers(copy: RospyCopy) -> None:
 def _patch_end(copy: RospyCopy) -> None:
     def make_is_shutdown(original: Callable[[], bool]) -> Callable[[], bool]:
         def is_shutdown() -> bool:
-            process = _process()
+            process = running_process()
             return original() if process is None else process.ending
 
         return is_shutdown
 
     def make_signal_shutdown(original: Callable[[str], None]) -> Callable[[str], None]:
         def signal_shutdown(reason: str) -> None:
-            process = _process()
+            process = running_process()
             if process is None:
                 original(reason)
             elif not process.ending:
@@ -157,20 +158,20 @@ def _patch_end(copy: RospyCopy) -> None:
     _replace(copy, "core", "signal_shutdown", make_signal_shutdown)
 
 
-def _patch_beginning(copy: RospyCopy) -> None:
+def _patch_beginning(copy: RospyCopy, network: RospyNetwork) -> None:
     def make(original: Callable[..., None]) -> Callable[..., None]:
         def init_node(name: str, *args: Any, **kwargs: Any) -> None:
-            if _process() is None:
+            if running_process() is None:
                 original(name, *args, **kwargs)
             else:
-                copy.network.initialise(copy, name, args, kwargs)
+                network.initialise(copy, name, args, kwargs)
 
         return init_node
 
     _replace(copy, "client", "init_node", make)
 
 
-def _patch_sending(copy: RospyCopy) -> None:
+def _patch_sending(copy: RospyCopy, network: RospyNetwork) -> None:
     publisher = copy.topics._PublisherImpl
     original = publisher.publish
 
@@ -182,7 +183,7 @@ def _patch_sending(copy: RospyCopy) -> None:
         connections = self.connections if connection_override is None else [connection_override]
         ways = [Way(self.resolved_name, copy.name, connection.endpoint_id) for connection in connections]
         for way in ways:
-            copy.network.wire.wait_for_all(way)
+            network.wire.wait_for_all(way)
         try:
             result = original(self, message, connection_override)
         except (
@@ -192,21 +193,19 @@ def _patch_sending(copy: RospyCopy) -> None:
             self.buff.truncate(0)
             raise
         for way in ways:
-            copy.network.sent(way)
+            network.sent(way)
         return result
 
     publisher.publish = publish
 
 
-def _patch_receiving(copy: RospyCopy) -> None:
+def _patch_receiving(copy: RospyCopy, network: RospyNetwork) -> None:
     subscriber = copy.topics._SubscriberImpl
     add_callback, make = subscriber.add_callback, subscriber.__init__
 
     def receive_callback(self: Any, messages: list[Any], connection: Any) -> None:
         for message in messages:
-            copy.network.wire.arrived(
-                Way(self.resolved_name, connection.callerid_pub, copy.name), (self, message)
-            )
+            network.wire.arrived(Way(self.resolved_name, connection.callerid_pub, copy.name), (self, message))
 
     def add(self: Any, callback: Any, arguments: Any) -> None:
         connections, self.connections = (
@@ -217,7 +216,7 @@ def _patch_receiving(copy: RospyCopy) -> None:
             add_callback(self, callback, arguments)
         finally:
             self.connections = connections
-        copy.network.latched(copy, self, callback, arguments)
+        network.latched(copy, self, callback, arguments)
 
     def init(self: Any, name: str, data_class: Any) -> None:
         make(self, name, data_class)
@@ -226,7 +225,7 @@ def _patch_receiving(copy: RospyCopy) -> None:
     subscriber.receive_callback, subscriber.add_callback, subscriber.__init__ = receive_callback, add, init
 
 
-def _patch_connecting(copy: RospyCopy) -> None:
+def _patch_connecting(copy: RospyCopy, network: RospyNetwork) -> None:
     manager = type(copy.topic_manager)
     acquire = manager.acquire_impl
 
@@ -235,37 +234,32 @@ def _patch_connecting(copy: RospyCopy) -> None:
         new = name not in known
         impl = acquire(self, kind, name, data_class)
         impl.ref_count += new  # one reference of our own: connections outlive the episode
-        copy.network.joined(copy, impl, publishes=known is self.pubs)
+        network.joined(copy, impl, publishes=known is self.pubs)
         return impl
 
     manager.acquire_impl = acquire_impl
 
 
-def _patch_services(copy: RospyCopy) -> None:
+def _patch_services(copy: RospyCopy, network: RospyNetwork) -> None:
     service, proxy = copy.tcp_services.ServiceImpl, copy.tcp_services.ServiceProxy
     make, call = service.__init__, proxy.call
 
     def init(self: Any, name: str, service_class: Any, handler: Any, *args: Any, **kwargs: Any) -> None:
-        process = _process()
+        process = running_process()
         if process is not None and copy.rospy.core.is_initialized():
             copy.services.append(self)
-            served = copy.network.calls.served(process, name, handler)
+            served = network.calls.served(process, name, handler)
             make(self, name, service_class, served, *args, **kwargs)
-            copy.network.wake_listening()
+            network.wake_listening()
         else:
             make(self, name, service_class, handler, *args, **kwargs)
 
     def ask(self: Any, *args: Any, **kwargs: Any) -> Any:
-        if _process() is None:
+        if running_process() is None:
             return call(self, *args, **kwargs)
-        return copy.network.calls.call(_task(), lambda: call(self, *args, **kwargs))
+        return network.calls.call(_task(), lambda: call(self, *args, **kwargs))
 
     service.__init__, proxy.call = init, ask
-
-
-def _process() -> Process | None:
-    task = running_task()
-    return None if task is None else task.process
 
 
 def _task() -> Task:

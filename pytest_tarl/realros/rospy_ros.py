@@ -14,6 +14,7 @@ from pytest_tarl.realros.bus import RealBus, RealRos, refused
 from pytest_tarl.realros.copies import present, show
 from pytest_tarl.realros.lockstep import WireScheduler
 from pytest_tarl.realros.rospy_network import RospyNetwork, mismatch, quiet_publisher
+from pytest_tarl.realros.rospy_patches import patch
 from pytest_tarl.ros.bus import Topic
 from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.process import Process
@@ -162,7 +163,7 @@ class RospyRos(RealRos):
 @cache
 def rospy_network() -> RospyNetwork:
     """Return the network of this run, started at first use."""
-    return RospyNetwork()
+    return RospyNetwork(patch)
 
 
 def close_network() -> None:

@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 from pytest_tarl.errors import RecordingError, UnsupportedApiError
-from pytest_tarl.ros import services
 from pytest_tarl.ros.messages.snapshot import snapshot, stamp_if_unset, type_name
 from pytest_tarl.ros.messages.values import FieldError
 from pytest_tarl.ros.names import absolute
-from pytest_tarl.ros.scheduler import Scheduler, running_task
-
-if TYPE_CHECKING:
-    from pytest_tarl.ros.episode import Ros
-    from pytest_tarl.ros.process import Process
+from pytest_tarl.ros.scheduler import Program, Scheduler, running_task
+from pytest_tarl.ros.services import Reply, ServiceDirectory
 
 Listener = Callable[[Any], None]
 
@@ -24,8 +20,11 @@ Listener = Callable[[Any], None]
 class Subscription(Protocol):
     """A node's end of a topic."""
 
-    process: Process
     message_type: type | None  # None takes anything
+
+    @property
+    def process(self) -> Program:
+        """The process that subscribes."""
 
     def deliver(self, message: Any) -> None:
         """Take a message that nobody else holds. Called outside of all tasks."""
@@ -34,8 +33,11 @@ class Subscription(Protocol):
 class Publication(Protocol):
     """A node's end of a topic that it publishes on."""
 
-    process: Process
     type: str
+
+    @property
+    def process(self) -> Program:
+        """The process that publishes."""
 
 
 class Topic:
@@ -53,8 +55,10 @@ class Topic:
 class Bus:
     """What the world publishes and hears. One per episode."""
 
-    def __init__(self, scheduler: Scheduler, run: Callable[..., None], ros: Ros | None = None) -> None:
-        self._ros = ros  # None on a real ROS, where services are not ours
+    def __init__(
+        self, scheduler: Scheduler, run: Callable[..., None], services: ServiceDirectory | None = None
+    ) -> None:
+        self._services = services  # None on an installed ROS, which has its own
         self._scheduler = scheduler
         self._run = run
         self._topics: dict[str, Topic] = {}
@@ -99,34 +103,34 @@ class Bus:
 
     def serve(self, service: str, service_type: Any, handler: Callable[[Any], Any]) -> None:
         """Have the world answer a service: `handler(request)` returns the response."""
-        services.serve(self._embedded("serve"), service, service_type, handler)
+        self._own_services("serve").serve(service, service_type, handler)
 
-    def call(self, service: str, request: Any) -> services.Reply:
+    def call(self, service: str, request: Any) -> Reply:
         """Call a node's service from the world: the reply is `done` once the node has answered.
 
         A node that waits answers before this returns, one that is busy during a later `step`. Raises
         RecordingError when nobody serves it.
         """
-        ros = self._embedded("call")
-        reply: list[services.Reply | None] = []
+        services = self._own_services("call")
+        reply: list[Reply | None] = []
         if running_task() is not None:
-            reply.append(services.call(ros, service, request))
+            reply.append(services.call(service, request))
         else:
-            self._run(lambda: reply.append(services.call(ros, service, request)))
+            self._run(lambda: reply.append(services.call(service, request)))
         if reply[0] is None:
-            names = [name for name, _ in ros.part(services.ServiceDirectory).names()]
+            names = [name for name, _ in services.names()]
             raise RecordingError(
                 f"No node serves {absolute(service)} now; services that are there: {', '.join(names) or 'none'}."
             )
         return reply[0]
 
-    def _embedded(self, what: str) -> Ros:
-        if self._ros is None:
+    def _own_services(self, what: str) -> ServiceDirectory:
+        if self._services is None:
             raise UnsupportedApiError(
                 f"tarl.bus.{what} works with --tarl-ros=embedded only: on a real ROS let a small node of the test "
                 "call or answer the service."
             )
-        return self._ros
+        return self._services
 
     def topic(self, name: str) -> Topic:
         """Return the topic of that name, made at first use."""
@@ -182,7 +186,7 @@ class Bus:
         message = snapshot(message)
         self._scheduler.later(lambda: self._hand(place, subscription, message))
 
-    def disconnect(self, process: Process) -> None:
+    def disconnect(self, process: Program) -> None:
         """Forget the publications and subscriptions of a process that has ended."""
         for place in self._topics.values():
             place.subscriptions = [s for s in place.subscriptions if s.process is not process]

@@ -6,23 +6,20 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from pytest_tarl.errors import NodeError
 from pytest_tarl.ros.argv import command_line
-from pytest_tarl.ros.bus import Bus
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.install import standins_installed
 from pytest_tarl.ros.messages import workspace
-from pytest_tarl.ros.process import Process
-from pytest_tarl.ros.scheduler import Scheduler, Spinning, running_task
+from pytest_tarl.ros.process import Network, Process
+from pytest_tarl.ros.scheduler import Spinning, running_task
 from pytest_tarl.ros.uninstalled import UninstalledFinder
 from pytest_tarl.ros.watchdog import DEFAULT_LIMIT, WATCHDOG
 
-Part = TypeVar("Part")
 
-
-class Ros:
+class Ros(Network):
     """Nodes, their bus and their clock, for one episode.
 
     `parameters` are given to every node (`kp`, `~kp` or `/node/kp`), `remappings` are old → new names.
@@ -36,13 +33,7 @@ class Ros:
         remappings: Mapping[str, str] | None = None,
         watchdog_limit: float = DEFAULT_LIMIT,
     ) -> None:
-        self.parameters = dict(parameters or {})
-        self.remappings = dict(remappings or {})
-        self.watchdog_limit = watchdog_limit
-        self.scheduler = Scheduler()
-        self.bus = Bus(self.scheduler, self._run, self)
-        self.processes: list[Process] = []
-        self._parts: dict[Any, Any] = {}
+        super().__init__(self._run, parameters or {}, remappings or {}, watchdog_limit)
         self.uninstalled = UninstalledFinder()
         self.closed = False
 
@@ -76,13 +67,6 @@ class Ros:
         """What the user should know of how the nodes were started."""
         return self.uninstalled.notes()
 
-    def part(self, kind: Callable[[Ros], Part]) -> Part:
-        """Return this episode's only instance of `kind`: what a ROS master or the network would hold."""
-        if kind not in self._parts:
-            self._parts[kind] = kind(self)
-        found: Part = self._parts[kind]
-        return found
-
     def use_definitions_around(self, folder: Path) -> None:
         """Know the message, service and action files of the workspace that `folder` is in."""
         workspace.search(folder)
@@ -104,7 +88,7 @@ class Ros:
 
     def installed(self) -> AbstractContextManager[None]:
         """Put rospy, rclpy and the message packages where imports find them; restore on exit what was there."""
-        return standins_installed(self)
+        return standins_installed(self.scheduler, self.uninstalled)
 
     def close(self) -> None:
         """End every node as ROS would, then forget everything. Raises NodeError for one that does not let itself."""

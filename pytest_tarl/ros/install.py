@@ -22,7 +22,8 @@ from pytest_tarl.ros.threads import threads_as_tasks
 from pytest_tarl.stale_modules import holders
 
 if TYPE_CHECKING:
-    from pytest_tarl.ros.episode import Ros
+    from pytest_tarl.ros.scheduler import Scheduler
+    from pytest_tarl.ros.uninstalled import UninstalledFinder
 
 _HOME = "pytest_tarl.ros."
 STANDINS: Mapping[str, str] = {  # what a node imports → what it gets
@@ -274,18 +275,18 @@ def _imports(code: CodeType) -> set[str]:
 
 
 @contextmanager
-def standins_installed(ros: Ros) -> Iterator[None]:
+def standins_installed(scheduler: Scheduler, uninstalled: UninstalledFinder) -> Iterator[None]:
     """Have imports find the stand-ins and nodes see the virtual clock as the host's; undo all of it on exit."""
     finder = StandinFinder()
     finder.hidden = _hide(root for root in _TALKING if root != "genpy" or not _has_genpy())
     sys.meta_path.insert(0, finder)
-    sys.meta_path.append(ros.uninstalled)
+    sys.meta_path.append(uninstalled)
     try:
-        with virtual_host_time(ros.scheduler), threads_as_tasks():
+        with virtual_host_time(scheduler), threads_as_tasks():
             yield
     finally:
         sys.meta_path.remove(finder)
-        sys.meta_path.remove(ros.uninstalled)
+        sys.meta_path.remove(uninstalled)
         gone = [sys.modules[name] for name in finder.loaded if name in sys.modules]
         for name in holders(gone, sorted(sys.modules.keys() - finder.before - set(finder.loaded))):
             del sys.modules[name]  # what took a stand-in apart, or wrapped it, does so with the next one

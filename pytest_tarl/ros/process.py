@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from typing import Any, TypeVar
 
 from pytest_tarl.errors import NodeError, StuckNodeError, TarlError, UnsupportedApiError
 from pytest_tarl.ros import blame
+from pytest_tarl.ros.bus import Bus
+from pytest_tarl.ros.parameter_server import ParameterServer
 from pytest_tarl.ros.scheduler import Scheduler, Spinning, Task, current_task, running_task
+from pytest_tarl.ros.services import ServiceDirectory
 from pytest_tarl.ros.watchdog import WATCHDOG
-
-if TYPE_CHECKING:
-    from pytest_tarl.ros.bus import Bus
-    from pytest_tarl.ros.episode import Ros
 
 Part = TypeVar("Part")
 
@@ -20,10 +20,45 @@ _PATIENCE = 1_000  # waits that return at once before a loop counts as one that 
 _ROUNDS = 5  # how often the tasks of an ending process are given the chance to return by themselves
 
 
+class Network:
+    """What the processes of an episode share: clock, topics, services, parameters.
+
+    `part` holds what a single client library shares between processes, such as its actions.
+    """
+
+    def __init__(
+        self,
+        run: Callable[..., None],
+        parameters: Mapping[str, Any],
+        remappings: Mapping[str, str],
+        watchdog_limit: float,
+    ) -> None:
+        self.parameters = dict(parameters)
+        self.remappings = dict(remappings)
+        self.watchdog_limit = watchdog_limit
+        self.scheduler = Scheduler()
+        self.services = ServiceDirectory(self.scheduler)
+        self.bus = Bus(self.scheduler, run, self.services)
+        self.processes: list[Process] = []
+        self._parts: dict[Any, Any] = {}
+
+    @cached_property
+    def parameter_server(self) -> ParameterServer:
+        """The ROS 1 parameters, filled from `parameters` at first use."""
+        return ParameterServer(self.parameters)
+
+    def part(self, kind: Callable[[Network], Part]) -> Part:
+        """Return this episode's only instance of `kind`, made at first use."""
+        if kind not in self._parts:
+            self._parts[kind] = kind(self)
+        found: Part = self._parts[kind]
+        return found
+
+
 class Process:
     """A program and the state that rospy or rclpy keep in its interpreter (`part`)."""
 
-    def __init__(self, ros: Ros, name: str, argv: Sequence[str]) -> None:
+    def __init__(self, ros: Network, name: str, argv: Sequence[str]) -> None:
         self.ros = ros
         self.name = name
         self.argv = tuple(argv)
@@ -152,11 +187,17 @@ def _of_pytest(error: BaseException) -> bool:
     return any(kind.__module__ == "_pytest.outcomes" for kind in type(error).__mro__)
 
 
+def running_process() -> Process | None:
+    """Return the process whose task is running, None outside of all nodes."""
+    task = running_task()
+    return task.process if task is not None and isinstance(task.process, Process) else None
+
+
 def current_process(api: str) -> Process:
     """Return the process whose task is running. Raises UnsupportedApiError outside of all nodes."""
-    task = running_task()
-    if task is not None:
-        return task.process
+    process = running_process()
+    if process is not None:
+        return process
     raise UnsupportedApiError(
         f"{api} was called outside of a node, or from a thread that the node started: the in-process ROS "
         "answers only to programs that were started with tarl.start(…), in their own thread. In the test itself use "

@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Callable
 from functools import partial
 from heapq import heappop, heappush
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from greenlet import GreenletExit, getcurrent, greenlet
 
@@ -18,8 +18,29 @@ from pytest_tarl.errors import NodeError, StuckNodeError
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.watchdog import WATCHDOG, Spinning
 
-if TYPE_CHECKING:
-    from pytest_tarl.ros.process import Process
+
+class Program(Protocol):
+    """What the scheduler needs of the process that a task belongs to: see `Process`."""
+
+    label: str
+    tasks: list[Task]
+    ending: bool
+
+    @property
+    def scheduler(self) -> Scheduler:
+        """The scheduler that runs its tasks."""
+
+    def failed(self, task: Task, error: BaseException) -> None:
+        """Take note of the exception that ended a task."""
+
+    def finished(self, task: Task) -> None:
+        """Forget a task that has ended."""
+
+    def spins(self, place: blame.Place | None) -> NodeError:
+        """Return the error for a task that never waits."""
+
+    def refuse_to_wait(self) -> None:
+        """Take note of a wait that returns at once because the process is ending."""
 
 
 class Task:
@@ -27,7 +48,7 @@ class Task:
 
     __slots__ = ("args", "done", "function", "parked", "process", "ticket", "worker")
 
-    def __init__(self, process: Process, function: Callable[..., Any], args: tuple[Any, ...]) -> None:
+    def __init__(self, process: Program, function: Callable[..., Any], args: tuple[Any, ...]) -> None:
         self.process = process
         self.function = function
         self.args = args
@@ -126,7 +147,7 @@ class Scheduler:
             task.ticket += 1
             self._ready.append(partial(self._resume, task, True))
 
-    def spawn(self, process: Process, function: Callable[..., Any], *args: Any) -> Task:
+    def spawn(self, process: Program, function: Callable[..., Any], *args: Any) -> Task:
         """Start a task: at once when called from outside, when the running task waits otherwise."""
         task = Task(process, function, args)
         process.tasks.append(task)
@@ -202,4 +223,4 @@ class Scheduler:
         worker.switch(woken)
 
 
-__all__ = ["Scheduler", "Spinning", "Task", "current_task", "running_task"]
+__all__ = ["Program", "Scheduler", "Spinning", "Task", "current_task", "running_task"]

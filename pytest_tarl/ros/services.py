@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 from pytest_tarl.ros.messages.snapshot import snapshot, translate
 from pytest_tarl.ros.names import absolute
-from pytest_tarl.ros.scheduler import Task, running_task
-
-if TYPE_CHECKING:
-    from pytest_tarl.ros.episode import Ros
+from pytest_tarl.ros.scheduler import Scheduler, Task, running_task
 
 Answer = Callable[[Any], None]  # takes the response, None where the handler gave none
 
@@ -28,8 +25,8 @@ class Endpoint(Protocol):
 class ServiceDirectory:
     """The services of one episode. An offer becomes an endpoint when somebody asks for it."""
 
-    def __init__(self, ros: Ros) -> None:
-        self._ros = ros
+    def __init__(self, scheduler: Scheduler) -> None:
+        self._scheduler = scheduler
         self._endpoints: dict[str, Endpoint] = {}
         self._offers: dict[str, Callable[[], Any]] = {}
         self._waiting: list[Task] = []
@@ -47,7 +44,7 @@ class ServiceDirectory:
         """Add a service and wake those who wait for it."""
         self._endpoints[name] = endpoint
         for task in self._waiting:
-            self._ros.scheduler.wake(task)
+            self._scheduler.wake(task)
 
     def offer(self, names: Iterable[str], make: Callable[[], Any]) -> None:
         """Have `make` called when one of `names` is first asked for."""
@@ -70,7 +67,7 @@ class ServiceDirectory:
 
     def wait(self, task: Task, name: str, until: int | None, going_on: Callable[[], bool]) -> bool:
         """Wait in `task` until somebody serves `name`; tell whether that was within the time."""
-        clock = self._ros.scheduler
+        clock = self._scheduler
         self._waiting.append(task)
         try:
             while name not in self and going_on() and (until is None or clock.time < until):
@@ -78,6 +75,23 @@ class ServiceDirectory:
         finally:
             self._waiting.remove(task)
         return name in self
+
+    def serve(self, name: str, service_class: Any, handler: Callable[[Any], Any]) -> None:
+        """Have the world answer a service with `handler(request)`, which returns the response."""
+        self.add(absolute(name), WorldService(self._scheduler, service_class, handler))
+
+    def call(self, name: str, request: Any) -> Reply | None:
+        """Call a node's service from the world. Return None if no node offers it."""
+        endpoint = self.find(absolute(name))
+        if endpoint is None:
+            return None
+        reply = Reply()
+        sent = adapted(request, endpoint.request_type)
+        if running_task() is not None:
+            self._scheduler.later(lambda: endpoint.handle(sent, reply.take))
+        else:
+            endpoint.handle(sent, reply.take)
+        return reply
 
 
 class Reply:
@@ -95,10 +109,10 @@ class Reply:
 class WorldService:
     """A service that the simulated world answers, as quickly as it is asked."""
 
-    def __init__(self, ros: Ros, service_class: Any, handler: Callable[[Any], Any]) -> None:
+    def __init__(self, scheduler: Scheduler, service_class: Any, handler: Callable[[Any], Any]) -> None:
         self.service_class = service_class
         self.request_type = request_class(service_class)
-        self._ros = ros
+        self._scheduler = scheduler
         self._handler = handler
 
     def handle(self, request: Any, answer: Answer) -> None:
@@ -106,7 +120,7 @@ class WorldService:
         try:
             answer(self._handler(request))
         except Exception as error:
-            self._ros.scheduler.failure = self._ros.scheduler.failure or error
+            self._scheduler.failure = self._scheduler.failure or error
             answer(None)
 
 
@@ -118,22 +132,3 @@ def request_class(service_class: Any) -> Any:
 def adapted(message: Any, wanted: type) -> Any:
     """Return a copy of a request or response in the class that the other side uses."""
     return snapshot(message) if isinstance(message, wanted) else translate(message, wanted)
-
-
-def serve(ros: Ros, name: str, service_class: Any, handler: Callable[[Any], Any]) -> None:
-    """Have the world answer a service with `handler(request)`, which returns the response."""
-    ros.part(ServiceDirectory).add(absolute(name), WorldService(ros, service_class, handler))
-
-
-def call(ros: Ros, name: str, request: Any) -> Reply | None:
-    """Call a node's service from the world; None if nobody serves it."""
-    endpoint = ros.part(ServiceDirectory).find(absolute(name))
-    if endpoint is None:
-        return None
-    reply = Reply()
-    sent = adapted(request, endpoint.request_type)
-    if running_task() is not None:
-        ros.scheduler.later(lambda: endpoint.handle(sent, reply.take))
-    else:
-        endpoint.handle(sent, reply.take)
-    return reply

@@ -8,7 +8,7 @@ from pytest_tarl.ros.messages import message_type
 from pytest_tarl.ros.rospy.topics import Publisher, Subscriber
 
 if TYPE_CHECKING:
-    from pytest_tarl.ros.episode import Ros
+    from pytest_tarl.ros.process import Network
 
 PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING, RECALLED, LOST = range(10)
 TERMINAL = (PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST)
@@ -24,7 +24,7 @@ def __getattr__(name: str) -> Any:
 class ActionServers:
     """The actions that nodes of an episode serve, and how many goals there were."""
 
-    def __init__(self, ros: Ros) -> None:
+    def __init__(self, ros: Network) -> None:
         self._ros = ros
         self.names: set[str] = set()
         self.goals = 0

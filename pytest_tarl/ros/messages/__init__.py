@@ -49,17 +49,6 @@ def find_class(kind: Kind, package: str, name: str, part: str = "msg") -> type[A
     )
 
 
-def class_like(own: type, other: type) -> type[Any]:
-    """Return the class of the same message type as `own` in the ROS generation of `other`."""
-    from pytest_tarl.ros.messages.snapshot import type_name
-
-    package, _, short = type_name(own).partition("/")
-    found = find_class("ros1" if hasattr(other, "_slot_types") else "ros2", package, short)
-    if found is None:
-        raise unknown_type(package, short)
-    return found
-
-
 def unknown_type(package: str, name: str) -> UnsupportedApiError:
     """Say that a type has no definition."""
     return UnsupportedApiError(

@@ -67,18 +67,18 @@ class Message:
         return type(self)._tarl_copy(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        from pytest_tarl.ros.messages import message_type
-
-        name = f"{type(self).__module__.replace('.', '/')}/{type(self).__name__}"
-        return _rebuild, (
-            message_type,
-            name,
-            {field.name: getattr(self, field.name) for field in self._tarl_fields},
-        )
+        fields = {field.name: getattr(self, field.name) for field in self._tarl_fields}
+        return _rebuild, (type(self).__module__, type(self).__name__, fields)
 
 
-def _rebuild(find: Callable[[str], type], name: str, fields: dict[str, Any]) -> Any:
-    return find(name)(**fields)
+def _rebuild(module: str, name: str, fields: dict[str, Any]) -> Message:
+    """Return a copy, possibly in another process, where the class may not have been built yet."""
+    package, _, part = module.partition(".")
+    if part == "srv":
+        service_class(package, name.rpartition("_")[0])
+    elif part == "action":
+        action_class(package, name.partition("_")[0])
+    return _nested(f"{package}/{name}")(**fields)
 
 
 def _shown(value: Any) -> str:

@@ -9,6 +9,7 @@ from io import BytesIO
 from typing import Any
 
 from pytest_tarl.ros.clock import NANOSECONDS
+from pytest_tarl.ros.messages import find_class, unknown_type
 from pytest_tarl.ros.messages.values import FieldError, as_float32
 
 _COPIERS: dict[type, Callable[[Any], Any]] = {}  # by message class; filled at first use, never changed
@@ -66,10 +67,17 @@ def _translated(value: Any, template: Any, wanted: type) -> Any:
     if is_message(value):
         return translate(value, type(template))
     if isinstance(value, list | tuple) and value and is_message(value[0]):
-        from pytest_tarl.ros.messages import class_like
-
-        return [translate(item, class_like(type(item), wanted)) for item in value]
+        return [translate(item, _class_like(type(item), wanted)) for item in value]
     return bytes(value) if isinstance(template, bytes) else list(value) if hasattr(value, "tolist") else value
+
+
+def _class_like(own: type, other: type) -> type[Any]:
+    """Return the class of the same message type as `own` in the ROS generation of `other`."""
+    package, _, short = type_name(own).partition("/")
+    found = find_class("ros1" if hasattr(other, "_slot_types") else "ros2", package, short)
+    if found is None:
+        raise unknown_type(package, short)
+    return found
 
 
 def is_message(value: Any) -> bool:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.messages.snapshot import type_name
 from pytest_tarl.ros.scheduler import current_task
-from pytest_tarl.ros.services import ServiceDirectory
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.process import Process
@@ -58,7 +57,7 @@ class NodeGraph:
 
     def count_services(self, service_name: str) -> int:
         """Return how many serve a service: one or none."""
-        return int(self.resolve_topic_name(service_name) in self.process.ros.part(ServiceDirectory))
+        return int(self.resolve_topic_name(service_name) in self.process.ros.services)
 
     def count_clients(self, service_name: str) -> int:
         """Return how many clients of a service nodes have made."""
@@ -71,7 +70,7 @@ class NodeGraph:
 
     def get_service_names_and_types(self) -> NamesAndTypes:
         """List services."""
-        return [(n, [_service_type(made)]) for n, made in self.process.ros.part(ServiceDirectory).names()]
+        return [(n, [_service_type(made)]) for n, made in self.process.ros.services.names()]
 
     def get_node_names(self) -> list[str]:
         """List the nodes of the episode."""

@@ -10,7 +10,6 @@ from pytest_tarl.ros.rclpy.exceptions import ParameterException
 from pytest_tarl.ros.rclpy.parameter import Parameter, ParameterType
 from pytest_tarl.ros.rclpy.parameters import outcome
 from pytest_tarl.ros.rclpy.services import Service
-from pytest_tarl.ros.services import ServiceDirectory
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.node import Node
@@ -28,7 +27,7 @@ _NAMES = {
 def offer_parameter_services(node: Node) -> None:
     """Have `/node/set_parameters` and its sisters served."""
     names = {kind: f"{node.get_fully_qualified_name()}/{name}" for kind, name in _NAMES.items()}
-    directory = node.process.ros.part(ServiceDirectory)
+    directory = node.process.ros.services
 
     def make() -> None:
         directory.withdraw(names.values())

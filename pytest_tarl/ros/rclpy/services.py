@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.rclpy.task import Future
 from pytest_tarl.ros.scheduler import Task, current_task
-from pytest_tarl.ros.services import Answer, ServiceDirectory, adapted
+from pytest_tarl.ros.services import Answer, adapted
 
 if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.node import Node
@@ -29,7 +29,7 @@ class Service:
         self.callback = callback
         self.callback_group = group
         self.queue: deque[tuple[Any, Answer]] = deque()
-        self._directory = node.process.ros.part(ServiceDirectory)
+        self._directory = node.process.ros.services
         self._directory.add(srv_name, self)
 
     def handle(self, request: Any, answer: Answer) -> None:
@@ -73,7 +73,7 @@ class Client:
         self.srv_name = self.service_name = srv_name
         self.callback_group = group
         self.queue: deque[tuple[Future, Any]] = deque()
-        self._directory = node.process.ros.part(ServiceDirectory)
+        self._directory = node.process.ros.services
         self._calling: dict[Future, Task] = {}
         self._pending: list[Future] = []
 

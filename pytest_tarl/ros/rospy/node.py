@@ -10,7 +10,6 @@ from typing import Any
 from pytest_tarl.ros import names
 from pytest_tarl.ros.process import Process, current_process
 from pytest_tarl.ros.rospy.exceptions import ROSException, ROSInitException
-from pytest_tarl.ros.rospy.parameters import ParameterServer
 from pytest_tarl.ros.scheduler import Task, running_task
 
 DEBUG, INFO, WARN, ERROR, FATAL = 1, 2, 4, 8, 16
@@ -43,7 +42,7 @@ class RospyNode:
             name = f"{name}_{len(self.process.ros.processes)}_{self.process.scheduler.time // 1_000_000}"
         self.name = self.process.label = names.absolute(f"{self.namespace}/{name}")
         self.initialised = True
-        server = self.process.ros.part(ParameterServer)
+        server = self.process.ros.parameter_server
         server.enter_node(self.name)
         for key, value in self.command_line.parameters.items():
             server.set(names.expand(key, self.name), value)

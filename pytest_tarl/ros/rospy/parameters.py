@@ -1,89 +1,20 @@
-"""The parameter server of an episode and rospy's functions for it."""
+"""rospy's functions for parameters."""
 
 from __future__ import annotations
 
-from copy import deepcopy
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pytest_tarl.ros.names import absolute
+from pytest_tarl.ros.parameter_server import ParameterServer, keys_of
 from pytest_tarl.ros.process import current_process
-
-if TYPE_CHECKING:
-    from pytest_tarl.ros.episode import Ros
-    from pytest_tarl.ros.rospy.node import RospyNode
+from pytest_tarl.ros.rospy.node import RospyNode
 
 _NOTHING = object()
 
 
-class ParameterServer:
-    """The tree of parameters that all rospy nodes of an episode share."""
-
-    def __init__(self, ros: Ros) -> None:
-        self._root: dict[str, Any] = {}
-        self._private: dict[str, Any] = {}  # given by the test for every node
-        for name, value in ros.parameters.items():
-            if not name.startswith("~"):
-                self.set(absolute(name), value)
-            if not name.startswith("/"):
-                self._private[name.removeprefix("~")] = value
-
-    def enter_node(self, node: str) -> None:
-        """Give a new node the parameters that the test set without naming a node."""
-        for name, value in self._private.items():
-            if self.get(f"{node}/{name}") is None:
-                self.set(f"{node}/{name}", value)
-
-    def get(self, name: str, default: Any = None) -> Any:
-        """Return the value, or the subtree as a dict."""
-        branch: Any = self._root
-        for key in _keys(name):
-            if not isinstance(branch, dict) or key not in branch:
-                return default
-            branch = branch[key]
-        return deepcopy(branch)
-
-    def set(self, name: str, value: Any) -> None:
-        """Set a value; a dict becomes a subtree."""
-        keys = _keys(name)
-        if not keys:
-            self._root = deepcopy(value)
-            return
-        branch = self._root
-        for key in keys[:-1]:
-            if not isinstance(branch.get(key), dict):
-                branch[key] = {}
-            branch = branch[key]
-        branch[keys[-1]] = deepcopy(value)
-
-    def delete(self, name: str) -> bool:
-        """Remove a parameter or a subtree; tell whether it was there."""
-        *path, last = _keys(name)
-        branch: Any = self._root
-        for key in path:
-            branch = branch.get(key) if isinstance(branch, dict) else None
-        return isinstance(branch, dict) and branch.pop(last, _NOTHING) is not _NOTHING
-
-    def names(self) -> list[str]:
-        """List all parameters."""
-        return list(_leaves("", self._root))
-
-
-def _keys(name: str) -> list[str]:
-    return [key for key in name.split("/") if key]
-
-
-def _leaves(prefix: str, branch: dict[str, Any]) -> list[str]:
-    found = []
-    for key, value in branch.items():
-        found += _leaves(f"{prefix}/{key}", value) if isinstance(value, dict) else [f"{prefix}/{key}"]
-    return found
-
-
 def _server(api: str) -> tuple[RospyNode, ParameterServer]:
-    from pytest_tarl.ros.rospy.node import RospyNode
-
     process = current_process(f"rospy.{api}")
-    return process.part(RospyNode), process.ros.part(ParameterServer)
+    return process.part(RospyNode), process.ros.parameter_server
 
 
 def get_param(param_name: str, default: Any = _NOTHING) -> Any:
@@ -122,7 +53,7 @@ def delete_param(param_name: str) -> None:
 def search_param(param_name: str) -> str | None:
     """Return the full name of the nearest parameter of that name, from the node's own namespace upwards."""
     node, server = _server("search_param")
-    path = _keys(node.name)
+    path = keys_of(node.name)
     for length in range(len(path), -1, -1):
         name = absolute("/".join([*path[:length], param_name]))
         if server.get(name, _NOTHING) is not _NOTHING:

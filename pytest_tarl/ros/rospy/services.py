@@ -21,7 +21,7 @@ from pytest_tarl.ros.rospy.exceptions import (
 )
 from pytest_tarl.ros.rospy.node import this_node
 from pytest_tarl.ros.scheduler import current_task
-from pytest_tarl.ros.services import Answer, ServiceDirectory, adapted
+from pytest_tarl.ros.services import Answer, adapted
 
 _LOGGER = logging.getLogger("rosout")
 _POLL = 0.3  # seconds between two looks of `wait_for_service`
@@ -53,7 +53,7 @@ class Service:
         self.request_type: type = service_class._request_class
         self.handler = handler
         self._error_handler = error_handler
-        self._directory = node.process.ros.part(ServiceDirectory)
+        self._directory = node.process.ros.services
         if self.resolved_name in self._directory:
             raise ServiceException(f"service [{self.resolved_name}] already registered")
         self._directory.add(self.resolved_name, self)
@@ -113,7 +113,7 @@ class ServiceProxy:
     def call(self, *args: Any, **kwds: Any) -> Any:
         """Call the service with a request or its fields. Raises ServiceException."""
         request = self._request(args, kwds)
-        service = self._node.process.ros.part(ServiceDirectory).find(self.resolved_name)
+        service = self._node.process.ros.services.find(self.resolved_name)
         if service is None:
             raise ServiceException(f"service [{self.resolved_name}] unavailable")
         clock, task, answers = self._node.process.scheduler, current_task(), []
@@ -161,7 +161,7 @@ def wait_for_service(service: str, timeout: Any = None) -> None:
         raise ValueError("timeout must be non-zero")
     polls = None if timeout is None else max(ceil(seconds / _POLL), 0)  # rospy looks at the time only then
     until = None if polls is None else node.process.scheduler.time + polls * nanoseconds(_POLL)
-    directory = node.process.ros.part(ServiceDirectory)
+    directory = node.process.ros.services
     if directory.wait(current_task(), name, until, lambda: not node.process.ending):
         return
     if node.process.ending:

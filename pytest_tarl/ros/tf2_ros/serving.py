@@ -7,9 +7,8 @@ from __future__ import annotations
 from typing import Any
 
 from pytest_tarl.ros.clock import nanoseconds
-from pytest_tarl.ros.episode import Ros
 from pytest_tarl.ros.names import absolute
-from pytest_tarl.ros.process import current_process
+from pytest_tarl.ros.process import Network, current_process
 from pytest_tarl.ros.tf2_ros.buffer import Buffer, BufferInterface, nanoseconds_of
 from pytest_tarl.ros.transforms import TimeoutException
 
@@ -19,7 +18,7 @@ _LOOK = nanoseconds(0.01)  # between two looks for the server
 class BufferServers:
     """The buffers of an episode that others may ask, by the name of their server."""
 
-    def __init__(self, _ros: Ros) -> None:
+    def __init__(self, _ros: Network) -> None:
         self.by_name: dict[str, Buffer] = {}
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from pytest_tarl.ros.parameter_server import ParameterServer
 from pytest_tarl.ros.process import Process, current_process
 from pytest_tarl.ros.rospy.node import RospyNode, this_node
-from pytest_tarl.ros.rospy.parameters import ParameterServer
 from pytest_tarl.ros.services import ServiceDirectory
 
 Entry = tuple[str, list[str]]  # a topic or service and its nodes
@@ -56,12 +56,12 @@ def services() -> dict[str, Any]:
 
 def directory() -> ServiceDirectory:
     """Return who serves what."""
-    return current_process("rosservice").ros.part(ServiceDirectory)
+    return current_process("rosservice").ros.services
 
 
 def parameters() -> ParameterServer:
     """Return the parameter server."""
-    return current_process("rosparam").ros.part(ParameterServer)
+    return current_process("rosparam").ros.parameter_server
 
 
 def below(name: str, namespace: str | None) -> bool:

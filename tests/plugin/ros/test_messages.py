@@ -62,6 +62,17 @@ def test_every_common_message_is_built_copied_and_shown(kind: str) -> None:
             assert pickle.loads(pickle.dumps(twin)) == twin
 
 
+@pytest.mark.parametrize(
+    "part",
+    ["srv.SetBool.Request", "srv.SetBool.Response", "action.Fibonacci.Goal", "action.Fibonacci.Feedback"],
+)
+def test_parts_of_services_and_actions_can_be_pickled(part: str) -> None:
+    kind, name, half = part.split(".")
+    package = "std_srvs" if kind == "srv" else "action_tutorials_interfaces"
+    made = getattr(message_type(f"{package}/{kind}/{name}"), half)()
+    assert pickle.loads(pickle.dumps(made)) == made
+
+
 def test_ros1_constructor_takes_all_by_position_or_any_by_keyword() -> None:
     vector = message_type("geometry_msgs/Vector3")
     assert vector(1.0, 2.0, 3.0) == vector(x=1.0, y=2.0, z=3.0)

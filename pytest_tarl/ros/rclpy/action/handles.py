@@ -11,7 +11,7 @@ from pytest_tarl.ros.messages.snapshot import snapshot
 from pytest_tarl.ros.rclpy.exceptions import RCLError
 
 if TYPE_CHECKING:
-    from pytest_tarl.ros.episode import Ros
+    from pytest_tarl.ros.process import Network
     from pytest_tarl.ros.rclpy.action.client import ActionClient
     from pytest_tarl.ros.rclpy.action.server import ActionServer
     from pytest_tarl.ros.rclpy.task import Future
@@ -41,7 +41,7 @@ class CancelResponse(Enum):
 class ActionDirectory:
     """Who serves which action, in one episode, and how many goals there were."""
 
-    def __init__(self, ros: Ros) -> None:
+    def __init__(self, ros: Network) -> None:
         self.servers: dict[str, ActionServer] = {}
         self._ros = ros
         self._goals = 0

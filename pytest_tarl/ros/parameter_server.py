@@ -1,0 +1,76 @@
+"""The parameter server of an episode: one tree that all rospy nodes share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from copy import deepcopy
+from typing import Any
+
+from pytest_tarl.ros.names import absolute
+
+_ABSENT = object()
+
+
+class ParameterServer:
+    """The tree of parameters that all rospy nodes of an episode share."""
+
+    def __init__(self, given: Mapping[str, Any]) -> None:
+        self._root: dict[str, Any] = {}
+        self._private: dict[str, Any] = {}  # given by the test for every node
+        for name, value in given.items():
+            if not name.startswith("~"):
+                self.set(absolute(name), value)
+            if not name.startswith("/"):
+                self._private[name.removeprefix("~")] = value
+
+    def enter_node(self, node: str) -> None:
+        """Give a new node the parameters that the test set without naming a node."""
+        for name, value in self._private.items():
+            if self.get(f"{node}/{name}") is None:
+                self.set(f"{node}/{name}", value)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """Return the value, or the subtree as a dict."""
+        branch: Any = self._root
+        for key in keys_of(name):
+            if not isinstance(branch, dict) or key not in branch:
+                return default
+            branch = branch[key]
+        return deepcopy(branch)
+
+    def set(self, name: str, value: Any) -> None:
+        """Set a value; a dict becomes a subtree."""
+        keys = keys_of(name)
+        if not keys:
+            self._root = deepcopy(value)
+            return
+        branch = self._root
+        for key in keys[:-1]:
+            if not isinstance(branch.get(key), dict):
+                branch[key] = {}
+            branch = branch[key]
+        branch[keys[-1]] = deepcopy(value)
+
+    def delete(self, name: str) -> bool:
+        """Remove a parameter or a subtree; tell whether it was there."""
+        *path, last = keys_of(name)
+        branch: Any = self._root
+        for key in path:
+            branch = branch.get(key) if isinstance(branch, dict) else None
+        return isinstance(branch, dict) and branch.pop(last, _ABSENT) is not _ABSENT
+
+    def names(self) -> list[str]:
+        """List all parameters."""
+        return list(_leaves("", self._root))
+
+
+def keys_of(name: str) -> list[str]:
+    """Split a parameter's name at its slashes."""
+    return [key for key in name.split("/") if key]
+
+
+def _leaves(prefix: str, branch: dict[str, Any]) -> list[str]:
+    found = []
+    for key, value in branch.items():
+        found += _leaves(f"{prefix}/{key}", value) if isinstance(value, dict) else [f"{prefix}/{key}"]
+    return found
