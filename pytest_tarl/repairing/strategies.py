@@ -13,6 +13,7 @@ from pytest_tarl.searching import candidates
 from pytest_tarl.searching.ask_tell import Asking, factory
 from pytest_tarl.searching.epsilon_greedy import EpsilonGreedy
 from pytest_tarl.searching.halving import Halving
+from pytest_tarl.searching.plainness import writing
 from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import Strategy, Trials
 from pytest_tarl.searching.sweep import Sweep
@@ -62,7 +63,8 @@ def operands(order: Order) -> tuple[Operand, ...]:
     """Return all operands of the analysed flows, those of the sites that the slices rank first in front."""
     rank = {culprit.site.id: i for i, culprit in enumerate(order.comparison.culprits)}
     steps = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
-    return tuple(dict.fromkeys(o for step in steps for o in order.analysis.operands(step.site)))
+    found = dict.fromkeys(o for step in steps for o in order.analysis.operands(step.site))
+    return tuple(sorted(found, key=writing))
 
 
 def timing_operands(order: Order) -> tuple[Operand, ...]:

@@ -9,6 +9,7 @@ from math import isfinite
 from pytest_tarl.model import Guard
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.searching.units import Unit
+from tarl_lint.model import Operand
 
 
 class Oddness(IntEnum):
@@ -36,6 +37,18 @@ def plainer(
     gaining = [unit for unit in read if max(gains.get(unit, {}).values(), default=0.0) >= promising]
     others = [unit for unit in read if unit not in gains] if odd is Oddness.OFFSET else []
     return [*sorted(gaining, key=lambda unit: -max(gains[unit].values())), *sorted(others, key=_kind)]
+
+
+def writing(operand: Operand) -> Oddness:
+    """Return how a change of an operand reads, which is the order to try them in.
+
+    In one product a named constant and a literal are the same change, and a maintainer makes it in the named one. A
+    literal zero is a bound or a start more often than a number that somebody chose.
+    """
+    zero = operand.value == 0 and not isinstance(operand.value, bool)
+    if not operand.literal:
+        return Oddness.INNER if zero else Oddness.NAMED
+    return Oddness.OFFSET if zero else Oddness.INNER
 
 
 def edges(guard: Guard) -> tuple[str, ...]:

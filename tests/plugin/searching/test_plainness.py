@@ -14,7 +14,7 @@ from pytest_tarl.model import Conjunct, Guard
 from pytest_tarl.patching.mutate import Mutation, mutations
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.candidates import ALWAYS
-from pytest_tarl.searching.plainness import Oddness, edges, oddness
+from pytest_tarl.searching.plainness import Oddness, edges, oddness, writing
 from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
 from pytest_tarl.searching.sweep import Sweep
 from pytest_tarl.sensors import Sensor
@@ -96,3 +96,11 @@ def test_a_narrow_window_near_the_original_is_found_soon(factor: float, smaller:
     found = next(search.candidates())
     assert found.mutations[0].operand == NAMED
     assert search.trials.spent <= 60
+
+
+def test_names_are_tried_before_numbers_in_a_line_and_zeros_last() -> None:
+    named_zero = replace(operand(6, "TRIM", 0.0), definition=operand(1, "0.0", 0.0).span)
+    unknown = replace(operand(7, "self.k", None), definition=None)
+    flag = operand(8, "False", False)
+    ordered = sorted([OFFSET, INNER, named_zero, flag, NAMED, unknown], key=writing)
+    assert ordered == [NAMED, unknown, INNER, named_zero, flag, OFFSET]
