@@ -89,7 +89,9 @@ def _written(
         fill = {**fill, "left": left, "op": op, "right": right, "closed": _CLOSED[op], "back": back}
     again = made.uses("x") > 1 or bool(made.lines)
     if again and made.on != "comparison" and not isinstance(node, ast.Name | ast.Attribute):
-        return _behind(source, statement, node, form, fill, condition)
+        if _target(statement) is not None and statement.value is node:  # type: ignore[attr-defined]
+            return _behind(source, statement, node, form, fill, condition)
+        return _ahead(source, statement, node, form, fill, condition)
     fill = {**fill, "x": code}
     if made.lines and not _can_stand_before(source, statement):
         raise RepairError(f"{source.path}:{node.lineno}: no line can be written before this one.")
@@ -119,6 +121,50 @@ def _behind(
     lines.append(f"{name} = {choice(condition, new, name) if condition else new}")
     indent, end = source.indentation(statement), source.line_end(statement)
     return [Edit(end, end, "".join(f"\n{indent}{line}" for line in lines))]
+
+
+def _ahead(
+    source: Document,
+    statement: ast.stmt,
+    node: ast.expr,
+    form: Form,
+    fill: Mapping[str, str],
+    condition: str,
+) -> list[Edit]:
+    """Give a value that has no name one in front of the statement that uses it, `return a * b`, and change it there."""
+    if not _can_stand_before(source, statement) or not _always_evaluated(source, statement, node):
+        raise RepairError(
+            f"{source.path}:{node.lineno}: the value cannot be given a name in front of this line."
+        )
+    code = source.source(node)
+    name = free(_short(statement, node), set(names(source)))
+    fill = {**fill, "x": name}
+    lines = [f"{name} = ({code})" if "\n" in code else f"{name} = {code}"]
+    lines += [filled(line, fill) for line in form.template.lines]
+    new = filled(form.template.expression, fill)
+    text = choice(condition, new, name) if condition else new
+    start, indent = source.start(statement), source.indentation(statement)
+    before = "".join(f"{line}\n{indent}" for line in lines)
+    return [
+        Edit(start, start, before),
+        Edit(source.start(node), source.end(node), fitted(source, node, text)),
+    ]
+
+
+def _always_evaluated(source: Document, statement: ast.stmt, node: ast.expr) -> bool:
+    """Tell whether a statement evaluates an expression once whenever it runs."""
+    inner: ast.AST = node
+    for around in source.ancestors(node):
+        if around is statement:
+            return not isinstance(statement, ast.While | ast.For)
+        if isinstance(around, ast.Lambda | ast.GeneratorExp | ast.ListComp | ast.SetComp | ast.DictComp):
+            return False
+        if isinstance(around, ast.IfExp) and inner is not around.test:
+            return False
+        if isinstance(around, ast.BoolOp) and inner is not around.values[0]:
+            return False
+        inner = around
+    return False
 
 
 def _swapped(source: Document, node: ast.expr, form: Form, condition: str) -> list[Edit]:

@@ -21,7 +21,7 @@ from pytest_tarl.patching.templates import Template, templates
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 from pytest_tarl.searching.sweep import Sweep
-from tarl_lint.model import Operand, SiteId, Span
+from tarl_lint.model import Operand, SiteId, Span, Step
 
 MOST = {
     "value": 5,
@@ -146,17 +146,15 @@ def _operands(template: Template, spot: _Spot, bare: Form, scale: float) -> Iter
 
 
 def _spots(order: Order) -> Iterator[_Spot]:
-    """Yield the expressions of the flows' statements, those of the sites that the slices rank first in front."""
-    rank = {culprit.site.id: at for at, culprit in enumerate(order.comparison.culprits)}
+    """Yield the expressions of the flows' statements, in the order of the statements."""
     sizes = _typical(order)
-    steps = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
     seen: set[tuple[str, int]] = set()
-    for step in steps:
+    for step in _steps(order):
         try:
             source = document(step.span.path, order.analysis.sources[step.span.path])
         except (RepairError, KeyError):
             continue
-        for node, kind in _expressions(source, step.span):
+        for node, kind in _expressions(source, step.span, str(step.site) in sizes):
             key = (source.path, source.start(node))
             if key not in seen:
                 seen.add(key)
@@ -166,8 +164,23 @@ def _spots(order: Order) -> Iterator[_Spot]:
                 )
 
 
-def _expressions(source: Document, span: Span) -> Iterator[tuple[ast.expr, str]]:
-    """Yield what may be changed in the statement at a span, and what it is."""
+def _steps(order: Order) -> list[Step]:
+    """Return the flows' statements: in turns the one that the slices rank next, and the one next to the publish call.
+
+    What limits, smooths or adds to a command does it where the command is sent, whatever line the loss comes from.
+    """
+    rank = {culprit.site.id: at for at, culprit in enumerate(order.comparison.culprits)}
+    ranked = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
+    away: dict[SiteId, int] = {}
+    for flow in order.analysis.flows:
+        for distance, step in enumerate(reversed(flow.steps)):
+            away[step.site] = min(distance, away.get(step.site, distance))
+    late = sorted(order.analysis.sites, key=lambda step: away[step.site])
+    return list(dict.fromkeys(step for pair in zip(ranked, late, strict=True) for step in pair))
+
+
+def _expressions(source: Document, span: Span, numeric: bool) -> Iterator[tuple[ast.expr, str]]:
+    """Yield what may be changed in the statement at a span, and what it is; `numeric` where it recorded numbers."""
     statements = [
         node for node in ast.walk(source.tree) if isinstance(node, ast.stmt) and node.lineno == span.line
     ]
@@ -176,13 +189,32 @@ def _expressions(source: Document, span: Span) -> Iterator[tuple[ast.expr, str]]
             for node in ast.walk(statement.test):
                 if isinstance(node, ast.Compare) and len(node.ops) == 1 and _orders(node.ops[0]):
                     yield node, "comparison"
-        elif isinstance(statement, ast.Assign | ast.AnnAssign | ast.Return) and statement.value is not None:
-            if _is_numeric(statement.value):
-                yield statement.value, "value"
-            elif isinstance(statement.value, ast.Attribute):
-                yield statement.value, "input"
+        elif isinstance(statement, ast.Assign | ast.AnnAssign | ast.AugAssign | ast.Return):
+            value = statement.value
+            if value is not None and (_is_numeric(value) or (numeric and _computes(value))):
+                yield value, "value"
+            elif isinstance(value, ast.Attribute):
+                yield value, "input"
         elif isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):
-            yield from ((each, "value") for each in statement.value.args if _is_numeric(each))
+            yield from ((each, "value") for each in _passed(statement.value))
+
+
+def _passed(call: ast.Call) -> Iterator[ast.expr]:
+    """Yield the numbers that a call calculates for its arguments, those inside of messages that it makes, too."""
+    for each in (*call.args, *(keyword.value for keyword in call.keywords)):
+        if _is_numeric(each):
+            yield each
+        elif isinstance(each, ast.Call) and _makes_an_object(each):
+            yield from _passed(each)
+
+
+def _computes(node: ast.expr) -> bool:
+    """Tell whether an expression may give a number: a call of a function, or a choice between two values."""
+    return isinstance(node, ast.IfExp) or (isinstance(node, ast.Call) and not _makes_an_object(node))
+
+
+def _makes_an_object(call: ast.Call) -> bool:
+    return ast.unparse(call.func).rpartition(".")[2][:1].isupper()
 
 
 def _is_numeric(node: ast.expr) -> bool:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pytest_tarl.errors import SettingsError
+from pytest_tarl.errors import RepairError, SettingsError
 from pytest_tarl.patching.document import apply_edits, document
 from pytest_tarl.patching.structures import Form, form_edits
 from pytest_tarl.patching.templates import SHIPPED, contents, template, templates
@@ -101,3 +101,72 @@ def test_a_template_that_is_none_is_explained(tmp_path: Path, text: str, words: 
         template(tmp_path / "own.toml")
     assert words in str(raised.value)
     assert "own.toml" in str(raised.value)
+
+
+HOLDER = """\
+class Node:
+    def __init__(self):
+        self.gain = 2.0
+
+    def wanted(self, error):
+        {statement}
+"""
+
+
+@pytest.mark.parametrize(
+    ("statement", "at", "lines"),
+    [
+        (
+            "return self.gain * error",
+            "self.gain * error",
+            ["value = self.gain * error", "{limited}", "return self.last_value"],
+        ),
+        (
+            "self.send(Float64(data=self.gain * error))",
+            "self.gain * error",
+            ["value = self.gain * error", "{limited}", "self.send(Float64(data=self.last_value))"],
+        ),
+        (
+            "self.speed += self.gain * error",
+            "self.gain * error",
+            ["value = self.gain * error", "{limited}", "self.speed += self.last_value"],
+        ),
+        (
+            "cmd.linear.x = self.speed_for(error)",
+            "self.speed_for(error)",
+            [
+                "cmd.linear.x = self.speed_for(error)",
+                "self.last_x += max(-0.1, min(0.1, cmd.linear.x - self.last_x))",
+                "cmd.linear.x = self.last_x",
+            ],
+        ),
+    ],
+)
+def test_a_value_without_a_name_gets_one_in_front_of_its_statement(
+    statement: str, at: str, lines: list[str]
+) -> None:
+    limited = "self.last_value += max(-0.1, min(0.1, value - self.last_value))"
+    before = HOLDER.format(statement=statement)
+    source = document("node.py", before)
+    form = Form(template(SHIPPED / "rate_limit.toml"))
+    text = apply_edits(source, form_edits(source, source.find(span(before, at)), form, {"step": 0.1}, "", ""))
+    ast.parse(text)
+    assert text.split("\n")[6:-1] == [f"        {line.format(limited=limited)}" for line in lines]
+
+
+@pytest.mark.parametrize(
+    ("statement", "at"),
+    [
+        ("return [self.gain * x for x in error]", "self.gain * x"),
+        ("return 0.0 if error is None else self.gain * error", "self.gain * error"),
+        ("return error and self.gain * error", "self.gain * error"),
+        ("return lambda x: self.gain * x", "self.gain * x"),
+        ("while self.gain * error > 1.0: error -= 1.0", "self.gain * error"),
+    ],
+)
+def test_a_value_that_is_not_always_calculated_gets_no_name_in_front(statement: str, at: str) -> None:
+    before = HOLDER.format(statement=statement)
+    source = document("node.py", before)
+    form = Form(template(SHIPPED / "rate_limit.toml"))
+    with pytest.raises(RepairError):
+        form_edits(source, source.find(span(before, at)), form, {"step": 0.1}, "", "")

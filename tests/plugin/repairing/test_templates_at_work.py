@@ -33,6 +33,7 @@ class Keeper:
     def __init__(self):
         self.bound = None
         self.slope = None
+        self.off = False
         self.out = rospy.Publisher("/out", Float64, queue_size=1)
         rospy.Subscriber("/bound", Float64, self.on_bound)
         rospy.Subscriber("/slope", Float64, self.on_slope)
@@ -44,6 +45,9 @@ class Keeper:
     def on_slope(self, msg):
         self.slope = msg.data
 
+    def twice(self, value):
+        return value + value
+
     def on_value(self, msg):
         {body}
 
@@ -53,6 +57,12 @@ if __name__ == "__main__":
     Keeper()
 """
 VALUE = "value = msg.data + msg.data\n        self.out.publish(value)"
+BODIES = {  # other ways to come to the same value
+    "a call": "value = self.twice(msg.data)\n        self.out.publish(value)",
+    "a result": "self.out.publish(self.twice(msg.data))",
+    "a message": "self.out.publish(Float64(data=msg.data + msg.data))",
+    "a choice": "value = -msg.data if self.off else self.twice(msg.data)\n        self.out.publish(value)",
+}
 INPUT = "value = msg.data\n        self.out.publish(value)"
 COMPARED = (
     "value = msg.data\n        if value < self.bound:\n            self.out.publish(value)\n"
@@ -124,13 +134,13 @@ MENDED: dict[str, tuple[str, Callable[[], Command]]] = {
 class World:
     """Thirty values a mission, and ten points less the share of the wanted commands by which those sent are off."""
 
-    def __init__(self, name: str, folder: Path) -> None:
-        body, self.mended = MENDED[name]
+    def __init__(self, name: str, folder: Path, body: str = "") -> None:
+        usual, self.mended = MENDED[name]
         self.bound = BOUNDS.get(name, 0.0)
         self.pair = name == "swapped_axes"
         self.steps = name == "comparison"
         path = folder / "keeper.py"
-        path.write_text(NODE.format(body=body))
+        path.write_text(NODE.format(body=body or usual))
         self.analysis = analyse([path], root=folder)
 
     def told(self, seed: int) -> Iterator[tuple[float, float]]:
@@ -149,7 +159,7 @@ class World:
             ros.deliver("/in", SimpleNamespace(data=value, x=value, y=slope))
             sent = ros.published[-1]
             wanted = mended(value, slope)
-            off += abs((sent.x if self.pair else float(sent)) - wanted)
+            off += abs((sent.x if self.pair else float(getattr(sent, "data", sent))) - wanted)
             whole += abs(wanted)
         return 10.0 - 10.0 * min(off / whole, 2.0)
 
@@ -165,7 +175,22 @@ class World:
 def test_a_template_is_found_fitted_and_runs(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    world = World(name, tmp_path)
+    check_found(name, World(name, tmp_path), monkeypatch)
+
+
+@pytest.mark.parametrize("name", ["limit", "low_pass", "rate_limit", "integral"])
+@pytest.mark.parametrize("body", BODIES)
+def test_a_template_is_found_wherever_the_value_comes_from(
+    name: str, body: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    world = World(name, tmp_path, BODIES[body])
+    recorded = {str(step.site): 1.0 for step in world.analysis.sites}
+    monkeypatch.setattr(structural, "_typical", lambda _: recorded)
+    check_found(name, world, monkeypatch)
+
+
+def check_found(name: str, world: World, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Search with one template alone, and look at what was found on fresh seeds."""
     monkeypatch.setattr(structural, "templates", lambda _: (template(SHIPPED / f"{name}.toml"),))
     pairs = tuple(Pair(seed, world.run(Candidate((), ALWAYS), seed).total) for seed in range(8))
     online = sum(pair.total for pair in pairs) / len(pairs)
@@ -173,7 +198,7 @@ def test_a_template_is_found_fitted_and_runs(
     slope = Sensor("slope", topic="/slope", field="data", low=0, high=2, bins=4)
     order: Any = SimpleNamespace(
         analysis=world.analysis,
-        root=tmp_path,
+        root=Path(),
         comparison=SimpleNamespace(culprits=(), sensors=(slope,)),
         fixture=SimpleNamespace(sample=SimpleNamespace(lists=()), lists=()),
         goal=Goal(pairs, near=8.5, enough=9.0, online=online),
