@@ -28,6 +28,7 @@ from pathlib import Path
 from typing import Any
 
 import foreign_closed
+from foreign_reasons import set_apart, why
 from foreign_scripts import Script, scripts
 
 LIMIT = 60  # seconds that a test may take
@@ -56,28 +57,6 @@ def test_node(tarl):
         with open({result!r}, "w") as file:
             json.dump({{"phase": phase, "heard": sorted(heard), "sent": dict(tarl.ros.published)}}, file)
 """
-KINDS = {  # what a message of a failed test says → the missing thing
-    r"No module named '([\w.]+)'": "module {0}",
-    r"cannot import name '(\w+)' from '([\w.]+)'": "name {1}.{0}",
-    r"([\w.]+) is not in the in-process ROS yet": "ROS API {0}",
-    r"Message type ([\w/]+) is not known": "message {0}",
-    r"KeyError: '?([~/\w]+)'? \(.*get_param": "parameter {0}",
-    r"exited with status (2)": "command line arguments",
-    r"(EOFError|termios.error|reading from stdin)": "keyboard",
-    r"KeyError: '(?:TURTLEBOT3_MODEL|LDS_MODEL|[A-Z_]{5,})'": "environment variable",
-    r"closed here: ([\w.]+)": "operating system ({0})",
-    r"never (waits)": "time: it never waits",
-    r"PackageNotFoundError: \S*package '(\w+)'": "package {0}",
-    r"ResourceNotFound: (\w+)": "package {0}",
-    r"No such file or directory: '([^']+)'": "file {0}",
-    r"raised (\w+: .{0,60})": "own {0}",
-}
-PYTHON_2 = re.compile(
-    r"raised (SyntaxError: |TabError|IndentationError|ModuleNotFoundError: No module named '(thread|Queue|cPickle|"
-    r"ConfigParser|urllib2|StringIO|Tkinter|commands|HTMLParser|httplib|sets|cv)'|NameError: name '(raw_input|unicode|"
-    r"xrange|basestring|long|reduce|file|unichr|execfile)'|AttributeError: .* has no attribute '(iteritems|has_key|"
-    r"itervalues|maxint|next|decode)'|ImportError: cannot import name 'maxint')"
-)
 
 
 @dataclass(frozen=True)
@@ -144,9 +123,9 @@ def run(script: Script, number: int) -> Outcome:
     nothing = {"phase": "start", "heard": [], "sent": {}}
     found: dict[str, Any] = json.loads(result.read_text()) if result.exists() else nothing
     fails = said.read_text("utf-8", errors="replace") if said.exists() else "the process ended"
-    old = PYTHON_2.search(fails)
-    if old is not None:
-        return Outcome(script.name, apart=f"Python 2 only ({old[1]})")
+    apart = set_apart(fails, script.repository)
+    if apart:
+        return Outcome(script.name, apart=apart)
     return Outcome(
         script.name, "", found["phase"] != "start", tuple(found["heard"]), found["sent"], fails, why(fails)
     )
@@ -170,15 +149,6 @@ def _child(script: Script, test: Path, said: Path) -> None:
     pytest.main([*options, "-p", "pytest_tarl.plugin", str(test)], plugins=[told])
     said.write_text(told.text)
     os._exit(0)
-
-
-def why(fails: str) -> str:
-    """Return the missing thing that a failure names."""
-    for pattern, name in KINDS.items():
-        found = re.search(pattern, fails)
-        if found is not None:
-            return name.format(*found.groups())
-    return fails.strip().splitlines()[-1][:100] if fails.strip() else ""
 
 
 def checkouts(folders: Sequence[Path], scratch: Path) -> list[Path]:

@@ -15,6 +15,14 @@ HARDWARE = frozenset({"RPi", "alsaaudio", "baxter_interface", "naoqi", "openhriv
                       "rangelibc", "range_libc", "speech_recognition", "pyudev", "xarm", "fetch_api", "naoqi_driver",
                       "pr2_ik", "hironx_client", "rtm", "OpenHRP", "hrpsys"})  # fmt: skip
 TESTING = frozenset({"unittest", "rostest", "pytest", "rosunit", "launch_testing", "nose"})
+DISPLAY = frozenset({"PyQt5", "PySide", "PySide2", "python_qt_binding", "Tkinter", "tkinter", "wx"})
+DISTRIBUTED = frozenset(  # what `ros-noetic-desktop-full` and `ros-humble-desktop` bring, and MoveIt
+    {"actionlib", "control_msgs", "cv_bridge", "diagnostic_updater", "dynamic_reconfigure", "genpy", "image_geometry",
+     "interactive_markers", "laser_assembler", "laser_geometry", "message_filters", "moveit_commander", "moveit_msgs",
+     "pcl_msgs", "rclpy", "rosbag", "rosgraph", "roslib", "rosmsg", "rosnode", "rosparam", "rospy", "rosservice",
+     "rostopic", "sensor_msgs_py", "smach", "smach_ros", "tf", "tf2_ros", "tf_conversions", "topic_tools",
+     "urdf_parser_py", "xacro", "rcl_interfaces", "std_srvs", "nav2_msgs", "map_msgs", "octomap_msgs"}
+)  # fmt: skip
 MADE_BY = re.compile(r"\brospy\.init_node\s*\(|\brclpy\.(create_node|spin)\b|\(\s*(rclpy\.node\.)?Node\s*\)")
 ENTRY = re.compile(r"['\"]\s*[\w.-]+\s*=\s*([\w.]+)\s*:\s*(\w+)\s*['\"]")
 SKIPPED = frozenset({"launch", "test", "tests", "build", "install", "devel", "tarl_tests"})
@@ -86,7 +94,7 @@ def script(repository: Path, path: Path, entry: str | None) -> Script | None:
     runs = any(map(_runs, tree.body))
     if entry is None and not runs:
         return Script(repository, path, apart="a module that starts nothing when it is run")
-    for kind, names in (("GPU library", GPU), ("hardware SDK", HARDWARE)):
+    for kind, names in (("GPU library", GPU), ("hardware SDK", HARDWARE), ("display", DISPLAY)):
         needed = sorted(names & imported)
         if needed:
             return Script(repository, path, apart=f"needs a {kind}: {needed[0]}")

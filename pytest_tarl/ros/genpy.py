@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from struct import Struct
 from typing import Any
 
 from pytest_tarl.ros.messages.ros1 import Message
@@ -15,7 +16,10 @@ __all__ = [
     "SerializationError",
     "TVal",
     "Time",
+    "struct_I",
 ]
+
+struct_I = Struct("<I")  # noqa: N816 (genpy's name): the length of a text or array in a serialized message
 
 
 class MessageException(Exception):  # noqa: N818 (named by genpy)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from importlib import import_module
 from importlib.machinery import ModuleSpec, PathFinder
 from types import CodeType, FrameType, ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from pytest_tarl.ros.hosttime import virtual_host_time
 from pytest_tarl.ros.messages.definitions import Kind
@@ -34,8 +34,10 @@ STANDINS: Mapping[str, str] = {  # what a node imports → what it gets
     "rospy.numpy_msg": "rospy.numpy_msg",
     "genpy": "genpy",
     "genpy.rostime": "genpy",
-    "genpy.message": "genpy",
+    "genpy.message": "roslib_message",
+    "genpy.dynamic": "genpy_dynamic",
     "roslib": "roslib",
+    "roslib.message": "roslib_message",
     "rospy.client": "rospy",
     "rospy.core": "rospy",
     "rospy.msg": "rospy.topics",
@@ -65,6 +67,9 @@ STANDINS: Mapping[str, str] = {  # what a node imports → what it gets
     "rclpy.exceptions": "rclpy.exceptions",
     "rclpy.executors": "rclpy.executors",
     "rclpy.logging": "rclpy.logging",
+    "rclpy.impl": "rclpy.impl",
+    "rclpy.impl.logging_severity": "rclpy.logging",
+    "rclpy.impl.rcutils_logger": "rclpy.logging",
     "rclpy.node": "rclpy.node",
     "rclpy.parameter": "rclpy.parameter",
     "rclpy.publisher": "rclpy.topics",
@@ -75,6 +80,8 @@ STANDINS: Mapping[str, str] = {  # what a node imports → what it gets
     "rclpy.time": "rclpy.time",
     "rclpy.timer": "rclpy.timer",
     "rclpy.utilities": "rclpy.utilities",
+    "image_geometry": "image_geometry",
+    "image_geometry.cameramodels": "image_geometry",
     "message_filters": "message_filters",
     "actionlib": "actionlib",
     "actionlib.simple_action_client": "actionlib.client",
@@ -118,14 +125,17 @@ STANDINS: Mapping[str, str] = {  # what a node imports → what it gets
     "rosservice": "tools.rosservice",
     "rostopic": "tools.rostopic",
     "tf2_ros.buffer_client": "tf2_ros.serving",
+    "tf2_ros.buffer_server": "tf2_ros.serving",
+    "topic_tools": "topic_tools",
 }
 _TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_transformations", "tf2_ros", "tf2_py",
             "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py", "ros_numpy", "rosgraph",
-            "rosnode", "rosparam", "rosservice", "rostopic")  # fmt: skip
+            "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools")  # fmt: skip
 _MISSING = ("roslaunch", "moveit_commander", "image_transport", "tf2_sensor_msgs", "tf2_kdl",
             "nav2_simple_commander")  # fmt: skip
 _STANDALONE = (
     "cv_bridge",
+    "image_geometry",
     "rospkg",
     "ament_index_python",
 )  # a real one works without a running ROS and is preferred
@@ -185,6 +195,7 @@ class StandinFinder:
         if name in STANDINS:
             module = ModuleType(name)
             module.__dict__.update(_contents(_HOME + STANDINS[name]))
+            module.__dict__["__getattr__"] = partial(_attribute, name, module.__dict__.get("__getattr__"))
         elif is_generated(name):
             module = generated(name)
         elif has_configurations(name) and not is_package(self._kind or "ros1", name):
@@ -233,6 +244,18 @@ class StandinFinder:
         return kind
 
 
+def _attribute(module: str, otherwise: Callable[[str], Any] | None, name: str) -> Any:
+    """Return a module within a stand-in: what the test put into `sys.modules`, or a stand-in of its own."""
+    inner = f"{module}.{name}"
+    if inner in sys.modules:
+        return sys.modules[inner]
+    if inner in STANDINS:
+        return import_module(inner)
+    if otherwise is None:
+        raise AttributeError(f"module {module!r} has no attribute {name!r}")
+    return otherwise(name)
+
+
 @cache
 def _contents(home: str) -> Mapping[str, object]:
     """Return what a stand-in holds; every episode's module gets a copy of it."""
@@ -270,6 +293,11 @@ def _kind_named_by(frame: FrameType | None) -> Kind | None:
     return None
 
 
+def kind_of_caller() -> Kind:
+    """Tell for which ROS generation the calling code asks: that of the client library which it names."""
+    return _kind_named_by(sys._getframe(1)) or "ros1"
+
+
 def _imports(code: CodeType) -> set[str]:
     return {name.partition(".")[0] for name in code.co_names}
 
@@ -298,5 +326,10 @@ def standins_installed(scheduler: Scheduler, uninstalled: UninstalledFinder) -> 
 def _hide(roots: Iterable[str]) -> dict[str, ModuleType]:
     """Take the modules of a real ROS, or of another stand-in, out of the way."""
     present = {root for root in roots if root in sys.modules}
-    names = [name for name in sys.modules if name.partition(".")[0] in present] if present else []
+    names = [name for name in sys.modules if name.partition(".")[0] in present and not _is_given(name)]
     return {name: sys.modules.pop(name) for name in names}
+
+
+def _is_given(name: str) -> bool:
+    """Tell whether a module was put into `sys.modules` by the test, for something that there is no stand-in for."""
+    return name not in STANDINS and getattr(sys.modules[name], "__spec__", None) is None

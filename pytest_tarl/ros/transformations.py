@@ -16,6 +16,14 @@ __all__ = [
     "rotation_matrix", "translation_from_matrix", "translation_matrix", "unit_vector", "vector_norm",
 ]  # fmt: skip
 
+_SELDOM = (
+    "clip_matrix", "compose_matrix", "decompose_matrix", "is_same_transform", "orthogonalization_matrix",
+    "projection_matrix", "random_quaternion", "random_rotation_matrix", "random_vector", "reflection_from_matrix",
+    "reflection_matrix", "rotation_from_matrix", "scale_from_matrix", "scale_matrix", "shear_matrix",
+    "superimposition_matrix",
+)  # fmt: skip
+__all__ += _SELDOM
+
 Numbers = Sequence[float]
 _AXES = "xyz"
 
@@ -164,7 +172,7 @@ def rotation_matrix(angle: float, direction: Numbers, point: Numbers | None = No
     """Return the 4×4 matrix of a turn about an axis through the origin, or through a point."""
     turned = quaternion_matrix(quaternion_about_axis(angle, direction))
     if point is not None:
-        centre = _array([float(part) for part in point])
+        centre = _array([float(part) for part in point[:3]])
         turned[:3, 3] = centre - turned[:3, :3] @ centre
     return turned
 
@@ -220,5 +228,9 @@ def _array(parts: Any) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Return what is needed seldom; name what is missing."""
+    if name in _SELDOM:
+        from pytest_tarl.ros import transformations_affine
+
+        return getattr(transformations_affine, name)
     raise refuse("tf.transformations", name)

@@ -49,6 +49,15 @@ def find_class(kind: Kind, package: str, name: str, part: str = "msg") -> type[A
     )
 
 
+def class_of(kind: Kind, name: str) -> type[Any]:
+    """Return the message class of a type name, `package/Name`. Raises UnsupportedApiError if nobody knows it."""
+    package, _, short = name.partition("/")
+    found = find_class(kind, package, short)
+    if found is None:
+        raise unknown_type(package, short)
+    return found
+
+
 def unknown_type(package: str, name: str) -> UnsupportedApiError:
     """Say that a type has no definition."""
     return UnsupportedApiError(

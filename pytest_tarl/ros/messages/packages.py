@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from types import ModuleType
 from typing import Any
 
@@ -12,7 +13,7 @@ from pytest_tarl.ros.messages.workspace import workspace_packages
 
 _ENDINGS = ("_msgs", "_srvs", "_interfaces")
 _OTHERS = {"turtlesim", "rospy_tutorials", "actionlib_tutorials", "beginner_tutorials", "turtle_actionlib",
-           "roscpp_tutorials", "roscpp", "bond", "theora_image_transport"}  # fmt: skip
+           "roscpp_tutorials", "laser_assembler", "roscpp", "bond", "theora_image_transport"}  # fmt: skip
 PARTS: tuple[Part, ...] = ("msg", "srv", "action")
 
 
@@ -58,6 +59,21 @@ class PackagePart(ModuleType):
         return None
 
 
+class MessagePackage(ModuleType):
+    """`package`: its parts are there without an import of their own, since other messages import them."""
+
+    def __init__(self, kind: Kind, package: str) -> None:
+        super().__init__(package, f"Message package {package}, built from definitions.")
+        self._kind = kind
+        self.__path__: list[str] = []
+
+    def __getattr__(self, name: str) -> Any:
+        for part in PARTS:
+            if name == part and type_names(self._kind, self.__name__, part):
+                return import_module(f"{self.__name__}.{part}")
+        raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
+
+
 def package_module(kind: Kind, name: str) -> ModuleType | None:
     """Make the module of that dotted name; None if it is no part of a message package."""
     package, _, part = name.partition(".")
@@ -70,6 +86,4 @@ def package_module(kind: Kind, name: str) -> ModuleType | None:
             return PackagePart(kind, package, known)
     if part:
         return None
-    module = ModuleType(package, f"Message package {package}, built from definitions.")
-    module.__path__ = []
-    return module
+    return MessagePackage(kind, package)

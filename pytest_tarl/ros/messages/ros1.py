@@ -18,6 +18,10 @@ from pytest_tarl.ros.messages.definitions import Definition, Field, find_message
 from pytest_tarl.ros.messages.times import Duration, Time, TVal
 from pytest_tarl.ros.messages.values import INTEGERS, FieldError
 
+CARRIED: dict[
+    str, type[Message]
+] = {}  # types that nobody knows, built from the text that a bag or topic carried
+
 
 class Message:
     """Base of all ROS 1 messages: arguments by position (all of them) or by keyword (any of them)."""
@@ -201,7 +205,7 @@ def _element_default(field: Field) -> Callable[[], Any]:
 
 
 def _nested(base: str) -> type[Message]:
-    built = message_class(*base.split("/"))
+    built = message_class(*base.split("/")) or CARRIED.get(base)
     if built is None:
         raise FieldError(f"message type {base} is not known")
     return built

@@ -59,6 +59,8 @@ def as_bool(value: Any, field: str) -> bool:
     try:
         return bool(operator.index(value))
     except TypeError as error:
+        if type(value).__module__ == "numpy" and type(value).__name__ in ("bool", "bool_"):
+            return bool(value)  # numpy 2 took its index away
         raise FieldError(f"field {field!r} must be a bool, not {value!r}") from error
 
 

@@ -28,6 +28,29 @@ trajectory_msgs/JointTrajectoryPoint error
 """
 
 BOTH = f"""
+== control_msgs/PointHead
+geometry_msgs/PointStamped target
+geometry_msgs/Vector3 pointing_axis
+string pointing_frame
+duration min_duration
+float64 max_velocity
+---
+---
+float64 pointing_angle_error
+== control_msgs/SingleJointPosition
+float64 position
+duration min_duration
+float64 max_velocity
+---
+---
+std_msgs/Header header
+float64 position
+float64 velocity
+float64 error
+== control_msgs/JointTrajectory
+trajectory_msgs/JointTrajectory trajectory
+---
+---
 == control_msgs/FollowJointTrajectory
 {_TRAJECTORY}
 == control_msgs/GripperCommand

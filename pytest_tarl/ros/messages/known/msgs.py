@@ -18,6 +18,29 @@ string name
 float64 position
 float64 velocity
 float64 acceleration
+== pcl_msgs/ModelCoefficients
+std_msgs/Header header
+float32[] values
+== pcl_msgs/PointIndices
+std_msgs/Header header
+int32[] indices
+== pcl_msgs/Vertices
+uint32[] vertices
+== pcl_msgs/PolygonMesh
+std_msgs/Header header
+sensor_msgs/PointCloud2 cloud
+pcl_msgs/Vertices[] polygons
+== audio_common_msgs/AudioData
+uint8[] data
+== audio_common_msgs/AudioInfo
+uint8 channels
+uint32 sample_rate
+string sample_format
+uint32 bitrate
+string coding_format
+== audio_common_msgs/AudioDataStamped
+std_msgs/Header header
+audio_common_msgs/AudioData audio
 == control_msgs/PidState
 std_msgs/Header header
 duration timestep
@@ -184,6 +207,12 @@ uint8 b
 """
 
 ROS1 = """
+== control_msgs/JointTrajectoryControllerState
+std_msgs/Header header
+string[] joint_names
+trajectory_msgs/JointTrajectoryPoint desired
+trajectory_msgs/JointTrajectoryPoint actual
+trajectory_msgs/JointTrajectoryPoint error
 == move_base_msgs/RecoveryStatus
 geometry_msgs/PoseStamped pose_stamped
 uint16 current_recovery_number

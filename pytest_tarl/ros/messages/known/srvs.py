@@ -1,6 +1,20 @@
 """Service types, as `== package/Name` and the lines of its .srv file."""
 
 BOTH = """
+== control_msgs/QueryCalibrationState
+---
+bool is_calibrated
+== control_msgs/QueryTrajectoryState
+time time
+---
+string[] name
+float64[] position
+float64[] velocity
+float64[] acceleration
+== pcl_msgs/UpdateFilename
+string filename
+---
+bool success
 == gazebo_msgs/GetModelState
 string model_name
 string relative_entity_name
@@ -132,6 +146,16 @@ float32 angular
 """
 
 ROS1 = """
+== laser_assembler/AssembleScans
+time begin
+time end
+---
+sensor_msgs/PointCloud cloud
+== laser_assembler/AssembleScans2
+time begin
+time end
+---
+sensor_msgs/PointCloud2 cloud
 == diagnostic_msgs/SelfTest
 ---
 string id
@@ -231,6 +255,14 @@ bool success
 string[] names
 ---
 ParameterDescriptor[] descriptors
+== rcl_interfaces/GetLoggerLevels
+string[] names
+---
+rcl_interfaces/LoggerLevel[] levels
+== rcl_interfaces/SetLoggerLevels
+rcl_interfaces/LoggerLevel[] levels
+---
+rcl_interfaces/SetLoggerLevelsResult[] results
 == rcl_interfaces/GetParameterTypes
 string[] names
 ---

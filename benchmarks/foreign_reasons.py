@@ -1,0 +1,63 @@
+"""Why a node script fails: the missing thing by name, or a reason to count the script apart."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+
+from foreign_scripts import DISTRIBUTED
+
+KINDS = {  # what a message of a failed test says → the missing thing
+    r"No module named '([\w.]+)'": "module {0}",
+    r"cannot import name '(\w+)' from '([\w.]+)'": "name {1}.{0}",
+    r"([\w.]+) is not in the in-process ROS yet": "ROS API {0}",
+    r"Message type ([\w/]+) is not known": "message {0}",
+    r"KeyError: '?([~/\w]+)'? \(.*get_param": "parameter {0}",
+    r"exited with status (2)": "command line arguments",
+    r"(EOFError|termios.error|reading from stdin)": "keyboard",
+    r"KeyError: '(?:TURTLEBOT3_MODEL|LDS_MODEL|[A-Z_]{5,})'": "environment variable",
+    r"closed here: ([\w.]+)": "operating system ({0})",
+    r"never (waits)": "time: it never waits",
+    r"PackageNotFoundError: \S*package '(\w+)'": "package {0}",
+    r"ResourceNotFound: (\w+)": "package {0}",
+    r"No such file or directory: '([^']+)'": "file {0}",
+    r"raised (\w+: .{0,60})": "own {0}",
+}
+PYTHON_2 = re.compile(
+    r"raised (SyntaxError: |TabError|IndentationError|ModuleNotFoundError: No module named '(thread|Queue|cPickle|"
+    r"ConfigParser|urllib2|StringIO|Tkinter|commands|HTMLParser|httplib|sets|cv)'|NameError: name '(raw_input|unicode|"
+    r"xrange|basestring|long|reduce|file|unichr|execfile)'|AttributeError: .* has no attribute '(iteritems|has_key|"
+    r"itervalues|maxint|next|decode)'|ImportError: cannot import name 'maxint')"
+)
+
+
+def why(fails: str) -> str:
+    """Return the missing thing that a failure names."""
+    for pattern, name in KINDS.items():
+        found = re.search(pattern, fails)
+        if found is not None:
+            return name.format(*found.groups())
+    return fails.strip().splitlines()[-1][:100] if fails.strip() else ""
+
+
+def set_apart(fails: str, repository: Path) -> str:
+    """Return why a script is counted apart: for Python 2, a display, or a package that is neither here nor in ROS."""
+    old = PYTHON_2.search(fails)
+    if old is not None:
+        return f"Python 2 only ({old[1]})"
+    if "highgui" in fails:
+        return "needs a display: a window of OpenCV"
+    found = re.search(r"No module named '(\w+)|essage type (\w+)/\w+ is not known", fails)
+    name = next((one for one in found.groups() if one), "") if found is not None else ""
+    if not name or name in DISTRIBUTED or name in _in_checkout(repository):
+        return ""
+    return f"needs a package from elsewhere: {name}"
+
+
+@cache
+def _in_checkout(repository: Path) -> frozenset[str]:
+    """Return the names of files and folders that a checkout could import, and of its packages."""
+    named = {path.stem for path in repository.rglob("*") if path.suffix in ("", ".py")}
+    manifests = (path.read_text("utf-8", errors="replace") for path in repository.rglob("package.xml"))
+    return frozenset(named | {name for text in manifests for name in re.findall(r"<name>\s*([\w-]+)", text)})

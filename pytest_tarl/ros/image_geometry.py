@@ -1,0 +1,232 @@
+"""`image_geometry`: where points of space are seen in a picture, by the CameraInfo of one camera or of a pair.
+
+Pinhole model: u = (P00 x + P02 z + P03) / z, with the matrices of sensor_msgs/CameraInfo, reduced to its binning and
+region of interest. Matrices are `numpy.matrix`, as in ROS 1. Rectifying needs OpenCV.
+"""
+
+# ruff: noqa: N802, N803 (image_geometry's names)
+
+from __future__ import annotations
+
+import copy
+import math
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+from pytest_tarl.ros.missing import refuse, unsupported
+
+__all__ = ["PinholeCameraModel", "StereoCameraModel"]
+
+Point = Sequence[float]
+
+
+class PinholeCameraModel:
+    """One camera."""
+
+    def __init__(self) -> None:
+        self.K: Any = None
+        self.D: Any = None
+        self.R: Any = None
+        self.P: Any = None
+        self.full_K: Any = None
+        self.full_P: Any = None
+        self.width: Any = None
+        self.height: Any = None
+        self.binning_x: Any = None
+        self.binning_y: Any = None
+        self.raw_roi: Any = None
+        self.tf_frame: Any = None
+        self.stamp: Any = None
+        self.resolution: tuple[int, int] | None = None
+
+    def fromCameraInfo(self, msg: Any) -> None:
+        """Take the parameters of a sensor_msgs/CameraInfo of either ROS generation."""
+        k, d, r, p = (getattr(msg, name if hasattr(msg, name) else name.lower()) for name in "KDRP")
+        self.K, self.full_K = _matrix(k, 3, 3), _matrix(k, 3, 3)
+        self.P, self.full_P = _matrix(p, 3, 4), _matrix(p, 3, 4)
+        self.D = _matrix(d, len(d), 1) if len(d) else None
+        self.R = _matrix(r, 3, 3)
+        self.width, self.height = msg.width, msg.height
+        self.resolution = (msg.width, msg.height)
+        self.binning_x, self.binning_y = max(1, msg.binning_x), max(1, msg.binning_y)
+        roi = self.raw_roi = copy.copy(msg.roi)
+        if not any((roi.x_offset, roi.y_offset, roi.width, roi.height)):  # stands for the whole picture
+            roi.width, roi.height = msg.width, msg.height
+        self.tf_frame, self.stamp = msg.header.frame_id, msg.header.stamp
+        for row, offset, binning in ((0, roi.x_offset, self.binning_x), (1, roi.y_offset, self.binning_y)):
+            for matrix in (self.K, self.P):
+                matrix[row, row] /= binning
+                matrix[row, 2] = (matrix[row, 2] - offset) / binning
+
+    def project3dToPixel(self, point: Point) -> tuple[float, float]:
+        """Return the rectified pixel at which a point (x, y, z) is seen; not a number for one beside the camera."""
+        x, y, w = (self.P @ _matrix([*point[:3], 1.0], 4, 1)).A1.tolist()
+        return (x / w, y / w) if w else (math.nan, math.nan)
+
+    def projectPixelTo3dRay(self, uv: Point) -> tuple[float, float, float]:
+        """Return the unit vector from the camera through a rectified pixel."""
+        x, y = (uv[0] - self.cx()) / self.fx(), (uv[1] - self.cy()) / self.fy()
+        norm = math.sqrt(x * x + y * y + 1)
+        return x / norm, y / norm, 1.0 / norm
+
+    def projectPixelTo3d(self, uv: Point, depth: float) -> tuple[float, float, float]:
+        """Return the point seen at a rectified pixel in the depth z."""
+        return (uv[0] - self.cx()) / self.fx() * depth, (uv[1] - self.cy()) / self.fy() * depth, depth
+
+    def rectifyImage(self, raw: Any, rectified: Any) -> None:
+        """Write the rectified picture of `raw` into the array `rectified`."""
+        cv2 = _opencv("PinholeCameraModel.rectifyImage")
+        self.mapx, self.mapy = cv2.initUndistortRectifyMap(
+            self.K, self.D, self.R, self.P, (self.width, self.height), cv2.CV_32FC1
+        )
+        cv2.remap(raw, self.mapx, self.mapy, cv2.INTER_CUBIC, rectified)
+
+    def rectifyPoint(self, uv_raw: Point) -> Any:
+        """Return the rectified pixel of a raw one."""
+        import numpy as np
+
+        cv2 = _opencv("PinholeCameraModel.rectifyPoint")
+        raw = np.array([[list(uv_raw)]], dtype="float64")
+        return cv2.undistortPoints(raw, self.K, self.D, R=self.R, P=self.P)[0, 0]
+
+    def getDeltaU(self, deltaX: float, Z: float) -> float:
+        """Return the pixels that a length across the picture takes in the depth Z."""
+        return math.inf if Z == 0 else self.fx() * deltaX / Z
+
+    def getDeltaV(self, deltaY: float, Z: float) -> float:
+        """Return the pixels that a length down the picture takes in the depth Z."""
+        return math.inf if Z == 0 else self.fy() * deltaY / Z
+
+    def getDeltaX(self, deltaU: float, Z: float) -> float:
+        """Return the length that pixels across the picture stand for in the depth Z."""
+        return Z * deltaU / self.fx()
+
+    def getDeltaY(self, deltaV: float, Z: float) -> float:
+        """Return the length that pixels down the picture stand for in the depth Z."""
+        return Z * deltaV / self.fy()
+
+    def fullResolution(self) -> tuple[int, int] | None:
+        """Return width and height."""
+        return self.resolution
+
+    def intrinsicMatrix(self) -> Any:
+        """Return K for binning and region of interest."""
+        return self.K
+
+    def distortionCoeffs(self) -> Any:
+        """Return D as a column, None without distortion."""
+        return self.D
+
+    def rotationMatrix(self) -> Any:
+        """Return R."""
+        return self.R
+
+    def projectionMatrix(self) -> Any:
+        """Return P for binning and region of interest."""
+        return self.P
+
+    def fullIntrinsicMatrix(self) -> Any:
+        """Return K for the full resolution."""
+        return self.full_K
+
+    def fullProjectionMatrix(self) -> Any:
+        """Return P for the full resolution."""
+        return self.full_P
+
+    def cx(self) -> float:
+        """Return the centre across, in pixels."""
+        return float(self.P[0, 2])
+
+    def cy(self) -> float:
+        """Return the centre down, in pixels."""
+        return float(self.P[1, 2])
+
+    def fx(self) -> float:
+        """Return the focal length across, in pixels."""
+        return float(self.P[0, 0])
+
+    def fy(self) -> float:
+        """Return the focal length down, in pixels."""
+        return float(self.P[1, 1])
+
+    def Tx(self) -> float:
+        """Return the first element of P's last column."""
+        return float(self.P[0, 3])
+
+    def Ty(self) -> float:
+        """Return the second element of P's last column."""
+        return float(self.P[1, 3])
+
+    def fovX(self) -> float:
+        """Return the field of view across, in radians."""
+        return 2 * math.atan(self.width / (2 * self.fx()))
+
+    def fovY(self) -> float:
+        """Return the field of view down, in radians."""
+        return 2 * math.atan(self.height / (2 * self.fy()))
+
+    def tfFrame(self) -> Any:
+        """Return the frame of the camera."""
+        return self.tf_frame
+
+
+class StereoCameraModel:
+    """Two cameras side by side; points are in the frame of the left one."""
+
+    def __init__(self) -> None:
+        self.left = PinholeCameraModel()
+        self.right = PinholeCameraModel()
+        self.Q: Any = None
+
+    def fromCameraInfo(self, left_msg: Any, right_msg: Any) -> None:
+        """Take the parameters of both cameras."""
+        self.left.fromCameraInfo(left_msg)
+        self.right.fromCameraInfo(right_msg)
+        right = self.right
+        self.Q = _matrix([1, 0, 0, -right.cx(), 0, 1, 0, -right.cy(), 0, 0, 0, right.fx(), 0, 0, 1, 0], 4, 4)
+        self.Q[3, 2] = -right.fx() / right.Tx()
+
+    def project3dToPixel(self, point: Point) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Return the rectified pixels at which both cameras see a point."""
+        return self.left.project3dToPixel(point), self.right.project3dToPixel(point)
+
+    def projectPixelTo3d(self, left_uv: Point, disparity: float) -> tuple[float, float, float]:
+        """Return the point that the left camera sees at a pixel and the right one `disparity` pixels beside it."""
+        x, y, z, w = (self.Q @ _matrix([left_uv[0], left_uv[1], disparity, 1.0], 4, 1)).A1.tolist()
+        return (x / w, y / w, z / w) if w else (0.0, 0.0, 0.0)
+
+    def getZ(self, disparity: float) -> float:
+        """Return the depth in which a point has a disparity, infinite for none."""
+        return math.inf if disparity == 0 else -self.right.Tx() / disparity
+
+    def getDisparity(self, Z: float) -> float:
+        """Return the disparity of a point in the depth Z."""
+        return math.inf if Z == 0 else -self.right.Tx() / Z
+
+    def tfFrame(self) -> Any:
+        """Return the frame of the left camera."""
+        return self.left.tfFrame()
+
+
+def _matrix(numbers: Sequence[float], rows: int, columns: int) -> Any:
+    import numpy as np
+
+    with warnings.catch_warnings():
+        warnings.simplefilter(
+            "ignore", PendingDeprecationWarning
+        )  # of numpy.matrix, which is image_geometry's choice
+        return np.matrix(np.array(list(numbers), dtype="float64").reshape(rows, columns))
+
+
+def _opencv(what: str) -> Any:
+    try:
+        import cv2
+    except ImportError:
+        raise unsupported(f"{what} without OpenCV (pip install opencv-python)") from None
+    return cv2
+
+
+def __getattr__(name: str) -> Any:
+    """Name what is missing."""
+    raise refuse("image_geometry", name)

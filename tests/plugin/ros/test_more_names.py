@@ -1,0 +1,214 @@
+"""Names that nodes import now and then: cameras, transformations, message classes by name, lazy transports, loggers."""
+
+from __future__ import annotations
+
+import math
+import sys
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from pytest_tarl.errors import NodeError, UnsupportedApiError
+from pytest_tarl.ros import message_type
+from pytest_tarl.ros import transformations as tf
+from pytest_tarl.ros.image_geometry import PinholeCameraModel, StereoCameraModel
+from tests.plugin.ros.conftest import Start, heard
+
+
+def camera(kind: str = "sensor_msgs/CameraInfo", tx: float = 0.0) -> object:
+    made = message_type(kind)()
+    values = {"K": [100.0, 0, 32, 0, 120, 24, 0, 0, 1], "R": [1.0, 0, 0, 0, 1, 0, 0, 0, 1], "D": [],
+              "P": [100.0, 0, 32, tx, 0, 120, 24, 0, 0, 0, 1, 0]}  # fmt: skip
+    for name, numbers in values.items():
+        setattr(made, name if hasattr(made, name) else name.lower(), [float(number) for number in numbers])
+    made.width, made.height, made.header.frame_id = 64, 48, "lens"
+    return made
+
+
+@pytest.mark.parametrize("kind", ["sensor_msgs/CameraInfo", "sensor_msgs/msg/CameraInfo"])
+def test_camera_projects_points_and_back(kind: str) -> None:
+    model = PinholeCameraModel()
+    model.fromCameraInfo(camera(kind))
+    assert model.project3dToPixel((0.5, -0.25, 2.0)) == pytest.approx((57.0, 9.0))
+    ray = np.array(model.projectPixelTo3dRay((57.0, 9.0)))
+    assert np.linalg.norm(ray) == pytest.approx(1)
+    assert ray / ray[2] * 2 == pytest.approx([0.5, -0.25, 2.0])
+    assert all(map(math.isnan, model.project3dToPixel((1, 1, 0))))
+    assert (model.fovX(), model.getDeltaX(10, 2.0), model.tfFrame()) == (2 * math.atan(0.32), 0.2, "lens")
+    assert isinstance(model.intrinsicMatrix(), np.matrix)
+    assert model.distortionCoeffs() is None
+
+
+def test_camera_with_binning_and_region() -> None:
+    info = camera()
+    info.binning_x = info.binning_y = 2  # type: ignore[attr-defined]
+    info.roi.x_offset, info.roi.width, info.roi.height = 8, 32, 48  # type: ignore[attr-defined]
+    model = PinholeCameraModel()
+    model.fromCameraInfo(info)
+    assert (model.fx(), model.cx(), model.cy()) == (50.0, 12.0, 12.0)
+    assert model.fullIntrinsicMatrix()[0, 0] == 100.0
+
+
+def test_two_cameras_see_depth() -> None:
+    model = StereoCameraModel()
+    model.fromCameraInfo(camera(), camera(tx=-20.0))
+    (u, v), (u_right, _) = model.project3dToPixel((0.5, -0.25, 2.0))
+    assert model.getZ(u - u_right) == pytest.approx(2.0)
+    assert model.getDisparity(2.0) == pytest.approx(u - u_right)
+    x, _, z = model.projectPixelTo3d((u, v), u - u_right)
+    assert (x, z) == pytest.approx((0.5, 2.0))
+
+
+def test_matrices_are_taken_apart_and_put_together() -> None:
+    parts = ([1.5, 0.5, 2.0], [0.1, -0.2, 0.3], [0.4, -0.5, 0.6], [1, 2, 3])
+    matrix = tf.compose_matrix(*parts)
+    scale, shear, angles, translation, perspective = tf.decompose_matrix(matrix)
+    for found, given in zip((scale, shear, angles, translation), parts, strict=True):
+        assert list(found) == pytest.approx(given)
+    assert list(perspective) == [0, 0, 0, 1]
+    mirror = tf.reflection_matrix([1, 2, 3], [0, 1, 1])
+    assert tf.is_same_transform(mirror @ mirror, tf.identity_matrix())
+    assert tf.is_same_transform(tf.reflection_matrix(*tf.reflection_from_matrix(mirror)), mirror)
+    turn = tf.rotation_matrix(1.2, [1, 2, 3], [4, 5, 6])
+    assert tf.is_same_transform(tf.rotation_matrix(*tf.rotation_from_matrix(turn)), turn)
+    flat = tf.projection_matrix([0, 0, 1], [0, 0, 1])
+    assert list(flat @ [5, 6, 7, 1]) == [5, 6, 1, 1]
+    points = np.random.default_rng(1).normal(size=(3, 6))
+    moved = turn @ np.vstack([points, np.ones(6)])
+    assert tf.is_same_transform(tf.superimposition_matrix(points, moved), turn)
+    assert "compose_matrix" in tf.__all__
+    with pytest.raises(ValueError, match="not orthogonal"):
+        tf.shear_matrix(1, [1, 0, 0], [0, 0, 0], [1, 1, 0])
+
+
+def test_classes_by_the_names_of_types(start: Start) -> None:
+    ros = start("""
+        import rospy
+        import roslib.message
+        from genpy.dynamic import generate_dynamic
+        from genpy.message import fill_message_args, get_printable_message_args, strify_message, struct_I
+        from roslib import message
+        TEXT = "own_msgs/Inner one\\n" + "=" * 80 + "\\nMSG: own_msgs/Inner\\nint32 x\\n"
+        pose = roslib.message.get_message_class("geometry_msgs/PoseStamped")()
+        fill_message_args(pose, [{"header": {"stamp": "now"}, "pose": {"position": [1.0, 2.0, 3.0]}}],
+                          keys={"now": rospy.Time(4)})
+        names = get_printable_message_args(pose.pose.position)
+        nobody = message.get_message_class("no_msgs/Such"), message.get_service_class("std_srvs/Empty").__name__
+        made = generate_dynamic("own_msgs/Outer", TEXT)
+        x = made["own_msgs/Outer"]().one.x
+        size = struct_I.size
+        try:
+            fill_message_args(pose, [{"heading": 1}])
+        except message.MessageException as error:
+            said = str(error)
+    """)
+    found = ros.namespace
+    assert (found["pose"].pose.position.y, found["pose"].header.stamp.secs, found["names"]) == (
+        2.0,
+        4,
+        "x y z",
+    )
+    assert (found["nobody"], found["x"], found["size"]) == ((None, "Empty"), 0, 4)
+    assert found["said"] == "No field name [heading]"
+
+
+def test_tf2_has_the_messages_that_it_imports(start: Start) -> None:
+    source = (
+        "import {0}\nfrom tf2_ros import TransformStamped\nhas = hasattr(TransformStamped(), '_slot_types')"
+    )
+    assert start(source.format("rospy")).namespace["has"] is True
+
+
+def test_tf2_has_the_messages_of_ros2(start: Start) -> None:
+    source = (
+        "import rclpy\nfrom tf2_ros import TransformStamped\nhas = hasattr(TransformStamped(), '_slot_types')"
+    )
+    assert start(source).namespace["has"] is False
+
+
+def test_parts_of_a_message_package_need_no_import_of_their_own(start: Start) -> None:
+    ros = start("""
+        import rospy
+        import std_msgs
+        found = std_msgs.msg.String("a").data
+        missing = hasattr(std_msgs, "action")
+    """)
+    assert (ros.namespace["found"], ros.namespace["missing"]) == ("a", False)
+
+
+def test_lazy_transport_subscribes_since_the_world_listens(start: Start) -> None:
+    ros = start("""
+        import rospy
+        from std_msgs.msg import Float64
+        from topic_tools import LazyTransport
+
+        class Doubler(LazyTransport):
+            def __init__(self):
+                super().__init__()
+                self.pub = self.advertise("~output", Float64, queue_size=1)
+
+            def subscribe(self):
+                self.sub = rospy.Subscriber("~input", Float64, lambda m: self.pub.publish(2 * m.data))
+
+            def unsubscribe(self):
+                self.sub.unregister()
+
+        rospy.init_node("doubler")
+        Doubler()
+        rospy.spin()
+    """)
+    got = heard(ros, "/doubler/output")
+    ros.bus.publish("/doubler/input", message_type("std_msgs/Float64")(3.0))
+    ros.step(0.1)
+    assert [one.data for one in got] == [6.0]
+
+
+def test_loggers_from_the_inner_modules_of_rclpy(start: Start) -> None:
+    ros = start("""
+        import rclpy
+        from rclpy.impl.logging_severity import LoggingSeverity
+        from rclpy.impl.rcutils_logger import RcutilsLogger
+        rclpy.init()
+        logger = rclpy.create_node("n").get_logger()
+        found = isinstance(logger, RcutilsLogger), int(LoggingSeverity.WARN)
+    """)
+    assert ros.namespace["found"] == (True, 30)
+
+
+def test_numpy_truth_values_fit_bool_of_ros1(start: Start) -> None:
+    ros = start("""
+        import numpy as np
+        import rospy
+        from std_msgs.msg import Bool
+        rospy.init_node("n")
+        rospy.Publisher("on", Bool, queue_size=1).publish(np.float64(1) > 0)
+    """)
+    assert ros.bus.latest("/on").data is True
+
+
+def test_what_the_test_puts_into_sys_modules_is_imported(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = ModuleType("roslib.scriptutil")
+    own.ask = lambda: "own"  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "roslib.scriptutil", own)
+    ros = start("import rospy\nfrom roslib import scriptutil\nimport roslib.scriptutil as same\n")
+    assert ros.namespace["scriptutil"] is ros.namespace["same"] is own
+    with pytest.raises((NodeError, UnsupportedApiError), match=r"roslib\.names is not in the in-process ROS"):
+        start("from roslib import names\n", ros=ros)
+
+
+def test_parts_of_a_standin_can_be_imported_from_it(start: Start) -> None:
+    ros = start("from sensor_msgs_py import point_cloud2\nfrom tf import transformations\nimport rclpy\n")
+    assert ros.namespace["point_cloud2"].__name__ == "sensor_msgs_py.point_cloud2"
+
+
+@pytest.mark.parametrize(
+    "name", ["pcl_msgs/PointIndices", "control_msgs/PointHeadActionGoal", "control_msgs/JointTrajectoryControllerState",
+             "pcl_msgs/msg/PolygonMesh", "control_msgs/action/PointHead", "rcl_interfaces/srv/GetLoggerLevels",
+             "laser_assembler/AssembleScans2", "audio_common_msgs/AudioData"],
+)  # fmt: skip
+def test_more_types_are_known(name: str) -> None:
+    found = message_type(name)
+    assert found.__name__ == name.rpartition("/")[2]
