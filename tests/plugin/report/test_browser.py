@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from pytest_tarl.report.html import render
+from website import assets
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 BROWSER = next((found for name in BROWSERS if (found := shutil.which(name))), None)
@@ -58,6 +59,16 @@ document.body.dataset.found = JSON.stringify(found);
 })();</script></body>"""
 
 
+AUDIT = """<script>(async () => {
+const pause = time => new Promise(done => setTimeout(done, time));
+for (let i = 0; i < 100 && !document.documentElement.dataset.report; i++) await pause(50);
+const result = await axe.run(document, {runOnly: ["wcag2a", "wcag2aa"]});
+document.body.dataset.found = JSON.stringify({
+  violations: result.violations.map(one => one.id + ": " + one.nodes.map(node => node.html.slice(0, 200)).join(" ")),
+  passed: result.passes.map(one => one.id)});
+})();</script></body>"""
+
+
 @dataclass(frozen=True)
 class Seen:
     """What the browser showed: the probe's findings and the lines of its console."""
@@ -74,9 +85,11 @@ def browser() -> str:
     return BROWSER
 
 
-def opened(browser: str, text: str, directory: Path, width: int = 1280, *flags: str) -> Seen:
+def opened(
+    browser: str, text: str, directory: Path, width: int = 1280, *flags: str, probe: str = PROBE
+) -> Seen:
     page = directory / "page.html"
-    page.write_text(text.replace("</body>", PROBE), encoding="utf-8")
+    page.write_text(text.replace("</body>", probe), encoding="utf-8")
     command = [
         browser,
         *QUIET.split(),
@@ -202,3 +215,15 @@ def test_a_browser_that_cannot_draw_says_so_in_place_of_the_figures(browser, shu
     seen = opened(browser, broken, tmp_path)
     assert seen.found["report"] == "failed"
     assert len(seen.console) == 1
+
+
+@pytest.mark.parametrize("flags", [(), (DARK,)], ids=["light", "dark"])
+def test_the_page_is_accessible(browser, shuttle, tmp_path, flags):
+    if not assets.available(assets.TESTED_WITH):
+        pytest.skip("run `make docs-assets` once: axe-core is not in build/assets")
+    axe = (assets.KEPT / "axe" / "axe.min.js").read_text("utf-8").replace("</script>", "<\\/script>")
+    found = opened(
+        browser, render(shuttle), tmp_path, 1280, *flags, probe=f"<script>{axe}</script>{AUDIT}"
+    ).found
+    assert found["violations"] == []
+    assert "color-contrast" in found["passed"]
