@@ -32,6 +32,7 @@ SMALLEST = {
     "recording": ["--quick"],
     "ros": ["--seconds", "0.05"],
     "same_world": ["--comparisons", "1", "--workers", "1", "--found", "{tmp}/found.json"],
+    "same_world_resampled": ["one_off_damage", "--episodes", "240", "--splits", "1"],
     "worlds": ["pipe_crawler", "--episodes", "2"],
     "picture": ["--target", "{tmp}/picture.svg"],
 }

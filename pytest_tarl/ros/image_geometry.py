@@ -12,6 +12,7 @@ import copy
 import math
 import warnings
 from collections.abc import Sequence
+from importlib import import_module
 from typing import Any
 
 from pytest_tarl.ros.missing import refuse, unsupported
@@ -221,10 +222,9 @@ def _matrix(numbers: Sequence[float], rows: int, columns: int) -> Any:
 
 def _opencv(what: str) -> Any:
     try:
-        import cv2
+        return import_module("cv2")
     except ImportError:
         raise unsupported(f"{what} without OpenCV (pip install opencv-python)") from None
-    return cv2
 
 
 def __getattr__(name: str) -> Any:
