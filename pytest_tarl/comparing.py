@@ -106,6 +106,7 @@ def run_online(
             {"offline": offline.judgements, "online": online.judgements},
         ),
         sizes=_sizes(designation, drift, recorded.sample.seeds),
+        purpose=designation.purpose,
         permanent=drift is not None and designation.drifts[drift].permanent,
     )
     return Online(comparison, recorded, learned)

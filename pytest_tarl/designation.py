@@ -42,6 +42,7 @@ class Designation:
         None  # of missions in a bag; or a class of such
     )
     requirements: Requirements = NOTHING_REQUIRED
+    purpose: str = ""  # first paragraph of the test's docstring
 
 
 def designation(

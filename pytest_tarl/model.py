@@ -351,4 +351,5 @@ class Comparison:
     stated: Mapping[str, Guarantee] = field(default_factory=dict)  # of the worlds that `totals` names
     formulas: tuple[FormulaRow, ...] = ()
     sizes: Mapping[str, Sizes] = field(default_factory=dict)  # by part of the drift, where it has a range
+    purpose: str = ""  # what the test is for and what earns reward: the first paragraph of its docstring
     permanent: bool = False  # whether the drift is for good, so that the designed world is the old one

@@ -6,11 +6,12 @@ logged and that only the item's own fixtures are torn down: wider-scoped ones li
 
 from __future__ import annotations
 
+import inspect
 import signal
 import threading
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Any
@@ -74,7 +75,13 @@ def designated(item: pytest.Item) -> Designation | None:
     marker = item.get_closest_marker("tarl")
     if marker is None:
         return None
-    return designation(item.nodeid, marker.args, marker.kwargs, said(item.nodeid, item.config.rootpath))
+    marked = designation(item.nodeid, marker.args, marker.kwargs, said(item.nodeid, item.config.rootpath))
+    return replace(marked, purpose=_first_paragraph(inspect.getdoc(getattr(item, "function", None))))
+
+
+def _first_paragraph(docstring: str | None) -> str:
+    """Return the first paragraph of a docstring in one line, empty without one."""
+    return " ".join((docstring or "").strip().partition("\n\n")[0].split())
 
 
 @contextmanager

@@ -213,7 +213,8 @@ def _largest_change(figure: Mapping[str, Any]) -> str:
         return "No cell was visited in both worlds."
     change, title, (line, code, _), name = max(found, key=lambda one: abs(one[0]))
     where = typeset(f"{name}, {title}" if title else name)
-    return f"The largest change, {typeset(words.signed(change))}, is at line {line}, {words.one_line(code)}: {where}."
+    amount = typeset(words.signed(change))
+    return f"The largest change, {amount}, is at {where}, in line {line} (“{words.one_line(code)}”)."
 
 
 def _curves_in_words(curves: Iterable[Mapping[str, Any]]) -> str:

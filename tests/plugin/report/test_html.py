@@ -3,6 +3,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import pytest
@@ -199,3 +200,14 @@ def test_data_cannot_end_its_script_and_survives():
 )
 def test_ranges_and_signs_are_typeset(plain, set_in_type):
     assert typeset(plain) == set_in_type
+
+
+def test_the_page_says_what_the_test_is_for_and_names_the_paper_in_a_footnote_only(shuttle):
+    page = render(replace(shuttle, purpose="Bring one parcel <from G1> to G2."))
+    assert '<p class="purpose">Bring one parcel &lt;from G1&gt; to G2.</p>' in page
+    body = page[page.index("<body>") : page.index('<script type="application/json"')]
+    before, _, footnote = body.partition('<p class="footnote">')
+    assert "Eq." not in before
+    assert "Figure " not in before
+    assert "paper" not in re.sub(r'class="[^"]*"', "", before)
+    assert "Figures 2 to 5" in footnote
