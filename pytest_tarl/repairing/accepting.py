@@ -10,6 +10,7 @@ from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
 from pytest_tarl.repairing.between import WEAK, Between, further
+from pytest_tarl.repairing.centring import centred
 from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.repairing.placing import Placing
@@ -124,6 +125,10 @@ class Examiner:
             return known
         if self._goes_further(candidate):
             return self.ledger.enter(Tried(candidate, "a smaller step breaks it", ()))
+        candidate = centred(candidate, trials, self.mutants.mutate, self.order.goal, self.order.reference)
+        known = self.ledger.alike(candidate)
+        if known is not None:
+            return known
         placed = self.placing(candidate, trials)
         if placed is None:
             self._refuse(Refused(candidate, "not at its definition"))

@@ -29,6 +29,7 @@ from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import BudgetSpentError, Strategy, label
 
 CONSTANTS = 2 / 3  # of the budget, where changes of structure are to have the rest
+RESERVE = 1 / 6  # of the budget, that constants get beside it when they have come far
 NAMED_FROM = 3  # episodes from which a candidate that fits a part of a range is named
 
 
@@ -108,6 +109,8 @@ def _search(
     """Run one search; once a repair is accepted, for its curve only."""
     share = CONSTANTS if mutants.order.options.structure and method == "sweep" else 1.0
     trials = purse.phase(mutants, method, watch, share)
+    if share < 1.0:
+        trials.reserve, trials.worth = round(RESERVE * (purse.episodes - purse.spent)), mutants.order.goal
     strategy = strategies.strategy(mutants, method, searched, trials)
     try:
         if found.accepted is None:

@@ -20,6 +20,7 @@ Wanted = tuple["Candidate", int]  # an episode: a candidate and the seed to run 
 
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
 CONFIRMATIONS = 5  # further seeds that a promising candidate must hold on
+FAR = 0.6  # share of the wanted gain that is worth more episodes
 PAIRED = 2  # seeds on which a candidate is compared with one that fell short
 
 
@@ -96,6 +97,8 @@ class Trials:
     budget: int
     beside: int = 0
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
+    reserve: int = 0  # episodes beyond the budget, for what has come far ...
+    worth: Goal | None = None  # ... on the way to this goal
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
@@ -154,8 +157,19 @@ class Trials:
         return len(self.totals) + self.beside
 
     def _afford(self) -> None:
+        if self.spent >= self.budget and self.worth is not None and self._come_far(self.worth):
+            self.budget, self.reserve = self.budget + self.reserve, 0
         if self.spent >= self.budget:
             raise BudgetSpentError
+
+    def _come_far(self, goal: Goal) -> bool:
+        """Tell whether a candidate that was run on several seeds gained most of what is wanted."""
+        before = {pair.seed: pair.total for pair in goal.pairs}
+        gains: dict[Candidate, list[float]] = {}
+        for (candidate, seed), outcome in self._known.items() if self.reserve else ():
+            if seed in before:
+                gains.setdefault(candidate, []).append(outcome.total - before[seed])
+        return any(len(each) >= PAIRED and fmean(each) >= FAR * goal.wanted for each in gains.values())
 
 
 def label(candidate: Candidate) -> str:

@@ -34,7 +34,9 @@ FLIPPED = 3  # units that gained when made smaller, and so may have the wrong si
 REFINEMENTS = 3  # of one operand in a row ...
 PROMISING = 0.4  # ... while it gains at least this share of the loss ...
 REFINED = 8  # ... and runs that refine one operand in all
-FINEST = 1.1  # ratio of two factors between which there is nothing to find
+FINEST = 1.1  # ratio of two factors between which there is nothing to find ...
+ALMOST = 0.9  # ... unless one gains this share of the loss: then its window may be narrower, down to ...
+NARROWEST = 1.02
 PLAINER_ROUNDS = 2  # of refinement, of each constant that reads plainer than what was found ...
 PLAINER = 12  # ... and runs after which none is looked for any more
 SLACK = 0.1  # share of the loss that may be lost on the way further out
@@ -247,12 +249,13 @@ class Sweep:
         factor = max(gains, key=gains.__getitem__)
         if gains[factor] <= 0:
             return
+        finest = NARROWEST if gains[factor] >= ALMOST * self.goal.wanted else FINEST
         ordered = [min(gains) / OUTWARD**2, *sorted(gains), max(gains) * OUTWARD**2]
         place = ordered.index(factor)
         around = [
             one
             for one in (ordered[place - 1], ordered[place + 1])
-            if max(factor, one) > FINEST * min(factor, one)
+            if max(factor, one) > finest * min(factor, one)
         ]
         between = [round(sqrt(factor * neighbour), 3) for neighbour in around]
         self._expect([(*best, one) for one in between], pair)

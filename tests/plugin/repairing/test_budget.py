@@ -14,7 +14,7 @@ from pytest_tarl.model import Guard
 from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.repairing.budget import Purse
 from pytest_tarl.searching.accept import Outcome
-from pytest_tarl.searching.search import BudgetSpentError, Candidate
+from pytest_tarl.searching.search import BudgetSpentError, Candidate, Goal, Pair, Trials
 from tests.plugin.searching.test_search import GAIN
 from tests.plugin.tank import ONLINE, RECORD, changed, result
 
@@ -50,6 +50,18 @@ def test_phases_never_spend_more_than_the_purse_holds(
             pass
         purse.settle(trials)
         assert ran + charged == purse.spent <= budget
+
+
+@pytest.mark.parametrize(("gained", "episodes"), [(7.0, 13), (5.0, 10)])
+def test_constants_that_have_come_far_get_a_reserve(gained: float, episodes: int) -> None:
+    pairs = tuple(Pair(seed, 0.0) for seed in range(40))
+    goal = Goal(pairs, near=9.5, enough=10.0, online=0.0)
+    trials = Trials(lambda *_: Outcome(gained, passed=True), 10, reserve=3, worth=goal)
+    for seed in range(episodes):
+        trials(Candidate((Mutation(GAIN, 3.0),), Guard()), seed)
+    with pytest.raises(BudgetSpentError):
+        trials(Candidate((Mutation(GAIN, 3.0),), Guard()), episodes)
+    assert len(trials.totals) == episodes
 
 
 SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")

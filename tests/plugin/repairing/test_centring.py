@@ -1,0 +1,71 @@
+"""A candidate that loses much of its margin gets a better value before its test; others stay as they are."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import log
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pytest_tarl.patching.mutate import Mutation, mutations
+from pytest_tarl.repairing.between import factor
+from pytest_tarl.repairing.centring import THIN, centred
+from pytest_tarl.searching.accept import Outcome, Reference
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate, Goal, Pair, Trials
+from tests.plugin.searching.test_search import operand
+
+REFERENCE = Reference((10.0, 10.0), 1.0, 0.5, 0.0)
+GOAL = Goal(tuple(Pair(seed, 0.0) for seed in range(5)), near=9.0, enough=9.5, online=0.0, passing=True)
+LITERAL = operand(3, "2.0", 2.0)
+NAMED = replace(operand(4, "GAIN", 2.0), definition=operand(1, "2.0", 2.0).span)
+
+
+def world(best: float, width: float) -> Trials:
+    """Return a world in which the factor `best` earns ten, and less the further a value is away."""
+
+    def run(candidate: Candidate, seed: int) -> Outcome:
+        (mutation,) = candidate.mutations
+        found = factor(mutation) or 0.0
+        total = 10.0 - (log(found / best) / width) ** 2 if found else 0.0
+        return Outcome(total, total > 8.9)
+
+    return Trials(run, 100)
+
+
+@settings(max_examples=40)
+@given(st.floats(0.3, 3.0), st.floats(0.85, 1.18), st.sampled_from([LITERAL, NAMED]))
+def test_a_value_moves_towards_the_middle_until_it_keeps_half_of_the_margin(
+    best: float, off: float, constant: object
+) -> None:
+    trials = world(best, 0.3)
+    mutation = mutations(constant, best * off)  # type: ignore[arg-type]
+    assert mutation is not None
+    found = Candidate((mutation,), ALWAYS)
+    before = trials(found, 0).total
+    moved = centred(found, trials, mutations, GOAL, REFERENCE)
+    after = trials(moved, 0).total
+    assert after >= before
+    if before >= 9.0:
+        assert after >= 10.0 - THIN * REFERENCE.margin
+    if before >= 10.0 - THIN * REFERENCE.margin:
+        assert moved == found
+        assert trials.spent <= 3
+
+
+def test_what_fails_on_a_known_seed_is_left_as_it_is() -> None:
+    trials = world(4.0, 0.1)
+    found = Candidate((Mutation(LITERAL, 2.2),), ALWAYS)
+    assert centred(found, trials, mutations, GOAL, REFERENCE) == found
+    assert trials.spent == 1
+
+
+@pytest.mark.parametrize("value", [-2.0, True])
+def test_a_sign_and_a_boolean_have_no_neighbours(value: float) -> None:
+    constant = operand(5, "False", False) if value is True else LITERAL
+    found = Candidate((Mutation(constant, value),), ALWAYS)
+    trials = Trials(lambda _, __: Outcome(9.4, passed=True), 100)
+    assert centred(found, trials, mutations, GOAL, REFERENCE) == found
+    assert trials.spent == 3
