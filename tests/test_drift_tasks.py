@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 BENCHMARKS = Path(__file__).parent.parent / "benchmarks"
-JUDGING = ("drift_judging", "drift_judging_2")
+JUDGING = ("drift_judging", "drift_judging_2", "drift_structure")
 TASKS = sorted(
     test.parent for folder in ("drift", *JUDGING) for test in BENCHMARKS.glob(f"{folder}/*/test_*.py")
 )

@@ -1,0 +1,37 @@
+#!/usr/bin/env python3
+"""Fill a tank that is drawn from: a relay switches the pump."""
+
+import rospy
+from std_msgs.msg import Bool, Float64
+
+LEVEL = 0.6  # m, below which the pump runs
+reading = None
+relay = None
+
+
+def on_level(msg):
+    """Take the level and switch."""
+    global reading
+    reading = msg.data
+    switch()
+
+
+def switch():
+    """Switch the relay."""
+    running = False
+    if reading < LEVEL:
+        running = True
+    relay.publish(Bool(running))
+
+
+def main():
+    """Run the node."""
+    global relay
+    rospy.init_node("pump")
+    relay = rospy.Publisher("relay", Bool, queue_size=1)
+    rospy.Subscriber("level", Float64, on_level)
+    rospy.spin()
+
+
+if __name__ == "__main__":
+    main()
