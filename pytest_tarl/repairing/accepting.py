@@ -9,9 +9,10 @@ from statistics import fmean
 from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
-from pytest_tarl.repairing.between import WEAK, Between, further
+from pytest_tarl.repairing.between import WEAK, Between, further, stronger
 from pytest_tarl.repairing.centring import centred
 from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
+from pytest_tarl.repairing.missed import Missed
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.repairing.placing import Placing
 from pytest_tarl.repairing.ranges import Ranged, over_the_range
@@ -26,6 +27,7 @@ WORLDS = 3  # in which a test runs episodes: drifted, designed, and designed wit
 OLD_WORLD = 8  # episodes that show what a repair for good earns in the old world
 MOST = 5  # candidates that are tested ...
 SHARE = 2  # ... and how many of them may be of the same operands while others wait
+POWERS = (1.5, 2.0)  # of the factors of a candidate at the edge of its window
 SCREENED = 20  # candidates that are run on fresh seeds
 
 
@@ -51,9 +53,8 @@ class Examiner:
         self.waiting: list[
             Candidate
         ] = []  # they held on known seeds, and their operands have had their share
-        self._missed: list[
-            tuple[int, float]
-        ] = []  # seeds that refused candidates lost on, what is near there
+        self._missed = Missed()
+        self._pushed: set[tuple[frozenset[Operand], Guard]] = set()
         self._bisected: set[tuple[frozenset[Operand], Guard]] = set()
         self.tested = 0
         self._ran = 0  # episodes of the test that is going on
@@ -82,20 +83,40 @@ class Examiner:
         return self._of_those_waiting()
 
     def _under_guards(self, candidate: Candidate, trials: Trials) -> Accepted | None:
-        """Examine a candidate under every guard, then what lies between it and the original."""
+        """Examine a candidate under every guard, then what lies beyond it, and between it and the original."""
+        edges: list[Candidate] = []  # that held on known seeds and not on fresh ones
         for guard in self.guards:
             examined = self._examined(replace(candidate, guard=guard), trials)
             if isinstance(examined, Accepted):
                 return examined
             if self._exhausted():
                 return None
+            if examined.fresh and examined.reason in WEAK:
+                edges.append(examined.candidate)
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
                 break  # where the guard is as wide as the search had it, no other one makes more of it
+        for edge in edges:
+            accepted = self._beyond(edge, trials)
+            if accepted is not None or self._exhausted():
+                return accepted
         for guard in dict.fromkeys((candidates.ALWAYS, candidate.guard)):
             accepted = self._milder(replace(candidate, guard=guard), trials)
             if accepted is not None or self._exhausted():
                 return accepted
+        return None
+
+    def _beyond(self, candidate: Candidate, trials: Trials) -> Accepted | None:
+        """Go on in the direction of a candidate that fails here and there: it is at the edge of its window."""
+        place = (operands(candidate), candidate.guard)
+        for power in POWERS if place not in self._pushed else ():
+            self._pushed.add(place)
+            moved = stronger(candidate, power, self.mutants.mutate)
+            examined = self._examined(moved, trials) if moved is not None else None
+            if isinstance(examined, Accepted):
+                return examined
+            if examined is None or not examined.fresh or examined.reason not in WEAK or self._exhausted():
+                return None
         return None
 
     def _milder(self, candidate: Candidate, trials: Trials) -> Accepted | None:
@@ -186,27 +207,8 @@ class Examiner:
         if found.accepted:
             return Accepted(candidate, self._with_old_world(found, candidate), others)
         self._refuse(Refused(candidate, reason, fmean(totals), len(totals)))
-        self._learn(found)
+        self._missed.learn(found, self.order.goal, self.order.reference)
         return tried
-
-    def _learn(self, found: Acceptance) -> None:
-        """Remember missions that a refused candidate lost: what comes later is held against them before its test."""
-        goal = self.order.goal
-        slack = self.order.reference.mean - goal.near
-        for seed, outcome, designed in zip(found.seeds, found.drifted, found.designed, strict=False):
-            near = min(designed, self.order.reference.mean) - slack
-            if outcome.total < near or goal.lost(outcome):
-                self._missed.append((seed, near))
-
-    def _misses(self, candidate: Candidate, trials: Trials) -> bool:
-        """Tell whether a candidate loses most of the latest missions that refused ones lost."""
-        lost, asked = 0, self._missed[-QUICK:]
-        for seed, near in asked:
-            outcome = trials(candidate, seed)
-            lost += outcome.total < near or self.order.goal.lost(outcome)
-            if 2 * lost > len(asked):
-                return True
-        return False
 
     def _with_old_world(self, found: Acceptance, candidate: Candidate) -> Acceptance:
         """Add what a repair earns in the world that is gone, to be shown; it decides nothing."""
@@ -231,7 +233,7 @@ class Examiner:
         for pair in goal.pairs[:QUICK]:
             if not goal.reached(trials(candidate, pair.seed), pair.seed):
                 return "gain too small"
-        if self._misses(candidate, trials):
+        if self._missed.again(candidate, trials, goal):
             return "gain too small"
         for pair in goal.controls:
             outcome = trials(candidate, pair.seed)

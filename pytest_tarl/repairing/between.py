@@ -72,6 +72,23 @@ class Between:
         return True
 
 
+def stronger(
+    candidate: Candidate, power: float, mutate: Callable[[Operand, float], Mutation | None]
+) -> Candidate | None:
+    """Return a candidate with its factors raised to a power; None where one is a sign, or no factor away from 1."""
+    moved: list[Mutation] = []
+    for mutation in candidate.mutations:
+        searched = mutation.form is not None and bool(mutation.form.parameter)
+        by = float(mutation.value) if searched else factor(mutation)
+        if by is None or by <= 0.0 or by == 1.0:
+            return None
+        made = replace(mutation, value=by**power) if searched else mutate(mutation.operand, by**power)
+        if made is None:
+            return None
+        moved.append(made)
+    return replace(candidate, mutations=tuple(moved))
+
+
 def further(candidate: Candidate, other: Candidate) -> bool:
     """Tell whether a candidate moves each of its operands the same way as another one, and no less far."""
     mine, its = ({m.operand: factor(m) for m in one.mutations} for one in (candidate, other))
