@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from pytest_tarl import seeds
 from pytest_tarl.errors import RecordingError, SettingsError
@@ -112,19 +112,25 @@ class Tarl:
         argv: Sequence[str] = (),
         parameters: Mapping[str, Any] | None = None,
         entry: str | None = None,
+        launch: str | Literal[False] | None = None,
     ) -> None:
         """Start a node: a file relative to the test's folder, run as a program. Raises NodeError when it fails.
 
         `entry` names the function that an entry point of `setup.py` calls, where there is one: `entry="main"` for
         `driver = robot.driver:main`. `argv` as on its command line, remappings included; `parameters` are added to
-        those of all nodes.
+        those of all nodes. Those that the test does not state come from the launch file of the workspace that starts
+        the script: from `launch` if that names one, from none with `launch=False`.
         """
         path = (self._folder / script).resolve()
         if not path.is_file():
             raise SettingsError(f"tarl.start: there is no file {script!r} in {self._folder}.")
         self.drives_ros = True
         self.ros.use_definitions_around(path.parent)
-        self.ros.parameters.update(parameters or {})
+        self.ros.give(parameters or {})
+        if launch is not False:
+            from pytest_tarl.ros.launched import given
+
+            self.ros.launch(given(path, None if launch is None else (self._folder / launch).resolve()))
         imports = self._imports
 
         def program() -> None:

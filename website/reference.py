@@ -23,6 +23,7 @@ COMMANDS = (
     ("tarl", ("suggest",)),
     ("tarl", ("observe",)),
     ("tarl", ("watch",)),
+    ("tarl", ("workspace",)),
     ("tarl-lint", ()),
 )
 PUBLIC = {

@@ -89,6 +89,14 @@ def parser() -> Parser:
     _add_patches(commands)
     for command in commands.choices.values():
         command.set_defaults(parser=command, needs=missing_extra)
+    workspace = commands.add_parser(
+        "workspace", help="list the packages of a ROS workspace, as TARL reads them"
+    )
+    workspace.add_argument("folder", type=Path, nargs="?", default=Path(), help="default: this folder")
+    workspace.add_argument(
+        "--format", choices=("text", "json"), default="text", help="default: text, a table"
+    )
+    workspace.set_defaults(run=_workspace, parser=workspace, needs=_nothing)
     lsp = commands.add_parser("lsp", help="run the language server for editors, on standard streams")
     lsp.set_defaults(run=_lsp, parser=lsp, needs=missing_server)
     return parser
@@ -98,6 +106,22 @@ def _summary(arguments: argparse.Namespace) -> int:
     from pytest_tarl.commands.summary import markdown
 
     sys.stdout.write(printable(markdown(arguments.results)))
+    return 0
+
+
+def _nothing(_: str) -> str | None:
+    """Say that a command needs nothing beyond the linter."""
+    return None
+
+
+def _workspace(arguments: argparse.Namespace) -> int:
+    from pytest_tarl.commands import workspace
+
+    found = workspace.described(arguments.folder)
+    if arguments.format == "json":
+        sys.stdout.write(workspace.document(found))
+    else:
+        _print(workspace.table(found))
     return 0
 
 

@@ -12,6 +12,7 @@ from pytest_tarl.realros.lockstep import WireScheduler
 from pytest_tarl.ros.bus import Bus, Topic
 from pytest_tarl.ros.episode import Ros
 from pytest_tarl.ros.hosttime import virtual_host_time
+from pytest_tarl.ros.launched import Given
 from pytest_tarl.ros.messages import find_class
 from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.snapshot import stamp_if_unset, translate, type_name
@@ -90,6 +91,12 @@ class RealRos(Ros):
         self.lockstep = WireScheduler()
         self.scheduler = self.lockstep
         self.lockstep.enter = self.enter
+
+    def launch(self, given: Given) -> None:
+        """Give all nodes the parameters of a launch file: on a real ROS they have no names before they run."""
+        super().launch(given)
+        for name, value in {**given.shared, **{f"~{key}": one for key, one in given.private.items()}}.items():
+            self.parameters.setdefault(name, value)
 
     def enter(self, process: Process) -> None:
         """Prepare for a task of a process to go on."""

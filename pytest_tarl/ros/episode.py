@@ -12,6 +12,7 @@ from pytest_tarl.errors import NodeError
 from pytest_tarl.ros.argv import command_line
 from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.install import standins_installed
+from pytest_tarl.ros.launched import NOTHING, Given
 from pytest_tarl.ros.messages import workspace
 from pytest_tarl.ros.process import Network, Process
 from pytest_tarl.ros.scheduler import Spinning, running_task
@@ -35,6 +36,8 @@ class Ros(Network):
     ) -> None:
         super().__init__(self._run, parameters or {}, remappings or {}, watchdog_limit)
         self.uninstalled = UninstalledFinder()
+        self._launched = NOTHING  # for the node that is started next
+        self._launch_notes: list[str] = []
         self.closed = False
 
     @property
@@ -65,7 +68,19 @@ class Ros(Network):
     @property
     def notes(self) -> tuple[str, ...]:
         """What the user should know of how the nodes were started."""
-        return self.uninstalled.notes()
+        return (*self._launch_notes, *self.uninstalled.notes())
+
+    def give(self, parameters: Mapping[str, Any]) -> None:
+        """Give more parameters to every node that is started from now on."""
+        self.parameters.update(parameters)
+        if "parameter_server" in self.__dict__:
+            self.parameter_server.take(parameters)
+
+    def launch(self, given: Given) -> None:
+        """Give the node that is started next the parameters of a launch file, where the test does not state them."""
+        self._launched = given
+        if given.note:
+            self._launch_notes.append(given.note)
 
     def use_definitions_around(self, folder: Path) -> None:
         """Know the message, service and action files of the workspace that `folder` is in."""
@@ -74,6 +89,9 @@ class Ros(Network):
     def start(self, run: Callable[[], None], *, name: str, argv: Sequence[str] = ()) -> None:
         """Run a node's main program until it first waits. Raises NodeError where it ends in an exception."""
         process = Process(self, name, (name, *argv))
+        process.launched, self._launched = self._launched, NOTHING
+        for key, value in process.launched.shared.items():
+            self.parameter_server.fill(key, value)
         self.processes.append(process)
         with command_line(process.argv):
             self._run(process.run, run)

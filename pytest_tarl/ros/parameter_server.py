@@ -17,6 +17,10 @@ class ParameterServer:
     def __init__(self, given: Mapping[str, Any]) -> None:
         self._root: dict[str, Any] = {}
         self._private: dict[str, Any] = {}  # given by the test for every node
+        self.take(given)
+
+    def take(self, given: Mapping[str, Any]) -> None:
+        """Take parameters from the test."""
         for name, value in given.items():
             if not name.startswith("~"):
                 self.set(absolute(name), value)
@@ -50,6 +54,14 @@ class ParameterServer:
                 branch[key] = {}
             branch = branch[key]
         branch[keys[-1]] = deepcopy(value)
+
+    def fill(self, name: str, value: Any) -> None:
+        """Set a value, or what a dict holds of a subtree, only where nothing is set."""
+        if isinstance(value, dict) and value:
+            for key, inner in value.items():
+                self.fill(f"{name}/{key}", inner)
+        elif self.get(name, _ABSENT) is _ABSENT:
+            self.set(name, value)
 
     def delete(self, name: str) -> bool:
         """Remove a parameter or a subtree; tell whether it was there."""

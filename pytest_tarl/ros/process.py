@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from pytest_tarl.errors import NodeError, StuckNodeError, TarlError, UnsupportedApiError
 from pytest_tarl.ros import blame
 from pytest_tarl.ros.bus import Bus
+from pytest_tarl.ros.launched import NOTHING
 from pytest_tarl.ros.parameter_server import ParameterServer
 from pytest_tarl.ros.scheduler import Scheduler, Spinning, Task, current_task, running_task
 from pytest_tarl.ros.services import ServiceDirectory
@@ -68,6 +69,7 @@ class Process:
         self.ended = False
         self._closing = False
         self._refused = 0
+        self.launched = NOTHING  # what a launch file gives the node
         self.label = name  # what messages call it: the node's name once it has one
         self.errors: list[NodeError] = []  # what went wrong while it was being ended
         self._parts: dict[Any, Any] = {}

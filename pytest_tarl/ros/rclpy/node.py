@@ -74,6 +74,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         self.context.nodes.append(self)
         given = {parameter.name: parameter.value for parameter in parameter_overrides or ()}
         overrides = {
+            **self._overrides(self.process.launched.private),
             **self._overrides(self.process.ros.parameters),
             **self._overrides(self._command_line.parameters),
         }

@@ -44,6 +44,8 @@ class RospyNode:
         self.initialised = True
         server = self.process.ros.parameter_server
         server.enter_node(self.name)
+        for key, value in self.process.launched.private.items():
+            server.fill(f"{self.name}/{key}", value)
         for key, value in self.command_line.parameters.items():
             server.set(names.expand(key, self.name), value)
 

@@ -9,7 +9,9 @@ from textwrap import dedent
 
 import pytest
 
-from pytest_tarl.errors import NodeError, UnsupportedApiError
+from pytest_tarl.errors import NodeError, SettingsError, UnsupportedApiError
+from pytest_tarl.ros import Ros
+from pytest_tarl.ros.launched import NOTHING, Given, given
 from pytest_tarl.ros.messages import workspace
 from tests.plugin.ros.conftest import Start
 
@@ -120,3 +122,126 @@ def test_modules_are_not_guessed(packages: Path, start: Start) -> None:
             smoothing = None
     """)
     assert ros.namespace["smoothing"] is None
+
+
+NODE1 = """
+    import rospy
+    rospy.init_node("drive")
+    found = {name: rospy.get_param("~" + name, None) for name in ("kp", "limits/top", "limits/low", "rate")}
+    shared = rospy.get_param("/robot/mass", None)
+"""
+NODE2 = """
+    import rclpy
+    rclpy.init()
+    node = rclpy.create_node("drive")
+    found = {name: node.declare_parameter(name, 0.0 if name == "kp" else 0).value for name in ("kp", "limits.top")}
+"""
+LAUNCH1 = """
+    <launch>
+      <param name="robot/mass" value="12.5"/>
+      <node pkg="arm_base" type="node.py" name="other_name">
+        <rosparam file="$(find arm_base)/config/arm.yaml"/>
+        <param name="rate" value="{rate}"/>
+      </node>
+    </launch>
+    """
+LAUNCH2 = """
+    from launch import LaunchDescription
+    from launch_ros.actions import Node
+    from launch_ros.substitutions import FindPackageShare
+    def generate_launch_description():
+        return LaunchDescription([Node(package="arm_base", executable="node.py", name="drive",
+            parameters=[[FindPackageShare("arm_base"), "/config/ros2.yaml"], {"limits": {"top": 4}}])])
+    """
+
+
+@pytest.fixture
+def launches(packages: Path) -> Path:
+    """Put the node of the fixture `start` into the package arm_base, with two launch files for it."""
+    write(
+        packages,
+        {
+            "package.xml": "<package><name>arm_base</name></package>",
+            "config/arm.yaml": "kp: 1.5\nlimits: {top: 3, low: 1}\n",
+            "config/ros2.yaml": """
+                drive:
+                  ros__parameters: {kp: 2.5, limits: {top: 3}}
+                other:
+                  ros__parameters: {kp: 9.0}
+                """,
+            "launch/one.launch": LAUNCH1.format(rate=5),
+        },
+    )
+    (packages / "arm_base/package.xml").unlink()
+    workspace.forget()
+    return packages
+
+
+def started(start: Start, folder: Path, source: str, given: Given, **parameters: object) -> dict[str, object]:
+    ros = Ros(parameters=parameters)
+    with ros.installed():
+        ros.launch(given)
+        start(source, ros=ros)
+        ros.close()
+    return ros.namespace  # type: ignore[attr-defined,no-any-return]
+
+
+def test_parameters_come_from_the_launch_file_where_the_test_states_none(
+    launches: Path, start: Start
+) -> None:
+    found = given(launches / "node.py")
+    assert found.note == "parameters of other_name come from one.launch (arm.yaml)."
+    namespace = started(start, launches, NODE1, found, **{"kp": 7, "~limits/low": 0})
+    assert namespace["found"] == {"kp": 7, "limits/top": 3, "limits/low": 0, "rate": 5}
+    assert namespace["shared"] == 12.5
+
+
+def test_parameters_of_ros2_come_from_launch_files_in_python(launches: Path, start: Start) -> None:
+    write(launches, {"launch/one.launch.py": LAUNCH2})
+    (launches / "launch/one.launch").unlink()
+    workspace.forget()
+    found = given(launches / "node.py")
+    assert found.note == "parameters of drive come from one.launch.py (ros2.yaml)."
+    assert started(start, launches, NODE2, found)["found"] == {"kp": 2.5, "limits.top": 4}
+    assert started(start, launches, NODE2, found, kp=3.0)["found"] == {"kp": 3.0, "limits.top": 4}
+
+
+def test_launch_files_that_disagree_give_nothing_and_are_told(launches: Path) -> None:
+    write(launches, {"launch/two.launch": LAUNCH1.format(rate=9)})
+    workspace.forget()
+    found = given(launches / "node.py")
+    assert (found.private, found.shared) == ({}, {})
+    assert found.note.startswith(
+        "node.py is started with different parameters by launch files (one.launch, two.launch)"
+    )
+    assert given(launches / "node.py", launches / "launch/two.launch").private["rate"] == 9
+    assert given(launches / "smoothing.py") == NOTHING
+    with pytest.raises(SettingsError, match=r"one\.launch starts no node from smoothing\.py"):
+        given(launches / "smoothing.py", launches / "launch/one.launch")
+    with pytest.raises(SettingsError, match="there is no launch file"):
+        given(launches / "node.py", launches / "launch/three.launch")
+
+
+def test_a_node_started_later_gets_the_parameters_of_its_own_start(start: Start) -> None:
+    ros = start("import rospy\nrospy.init_node('a')\nrospy.set_param('~x', 1)\n")
+    ros.give({"gain": 2})
+    start("import rospy\nrospy.init_node('b')\nfound = rospy.get_param('~gain')\n", ros=ros)
+    assert ros.namespace["found"] == 2
+
+
+def test_start_takes_the_launch_file_or_none(launches: Path, pytester: pytest.Pytester) -> None:
+    test = """
+        import pytest
+        from pytest_tarl import Sensor
+
+        @pytest.mark.parametrize("launch", ["launch/two.launch", False, None])
+        @pytest.mark.tarl(nodes=["node.py"], sensors=[Sensor("x", low=0, high=1, bins=2)])
+        def test_it(tarl, launch):
+            tarl.start("node.py", launch=launch)
+        """
+    node = NODE1 + "    print('RATE', found['rate'])\n"
+    write(launches, {"launch/two.launch": LAUNCH1.format(rate=9), "node.py": node, "test_it.py": test})
+    quiet = ("-p", "no:randomly", "-p", "no:asyncio", "-p", "no:rerunfailures")
+    result = pytester.runpytest("-q", "-s", *quiet, str(launches / "test_it.py"))
+    result.assert_outcomes(passed=3)
+    result.stdout.fnmatch_lines(["*RATE 9*", "*RATE None*", "*RATE None*"])

@@ -1,0 +1,48 @@
+"""The values of a launch file that was read: nodes, their names, remappings and parameters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from tarl_lint.workspace.model import Problem
+
+Scalar = str | int | float | bool
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """A parameter, or several as YAML. `name` is absolute or begins with `~`; for YAML it is the name above them.
+
+    `file` is where the value stands: the launch file, or the YAML file that it loads.
+    """
+
+    name: str
+    file: Path
+    value: Scalar | None = None
+    yaml: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LaunchedNode:
+    """A node that a launch file starts. `settings` are its private parameters, in the order in which they are set."""
+
+    package: str
+    executable: str
+    name: str
+    namespace: str
+    file: Path
+    line: int
+    remaps: tuple[tuple[str, str], ...] = ()
+    settings: tuple[Setting, ...] = ()
+    arguments: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Launch:
+    """A launch file with what it includes. `settings` are the parameters outside of nodes."""
+
+    file: Path
+    nodes: tuple[LaunchedNode, ...] = ()
+    settings: tuple[Setting, ...] = ()
+    problems: tuple[Problem, ...] = ()

@@ -1,0 +1,242 @@
+"""Read ROS 1 launch files: nodes with namespaces, remappings and parameters. Nothing is started, no command is run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Final
+from xml.etree.ElementTree import Element, TreeBuilder
+from xml.parsers import expat
+
+from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
+from tarl_lint.workspace.model import Problem, Workspace
+from tarl_lint.workspace.substitutions import Scope, SymbolicError, scalar
+
+DEEPEST: Final = 20  # files that include each other
+LARGEST: Final = 1_000_000  # bytes of a launch, text or YAML file
+MOST: Final = 5_000  # elements of a launch file with all that it includes
+_LINE: Final = "\0line"  # no attribute of XML has this name
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Where an element stands: its file's names, and what groups around it say."""
+
+    scope: Scope
+    namespace: str = "/"
+    remaps: tuple[tuple[str, str], ...] = ()
+    private: tuple[Setting, ...] = ()  # of all nodes that follow
+    depth: int = 0
+
+
+@dataclass
+class _Reader:
+    workspace: Workspace
+    nodes: list[LaunchedNode] = field(default_factory=list)
+    settings: list[Setting] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
+    seen: int = 0
+
+    def file(self, path: Path, arguments: Mapping[str, str | None], place: _Place | None) -> None:
+        """Read a launch file with the arguments that it is given."""
+        root = self._parsed(path)
+        if root is not None:
+            scope = Scope(self.workspace, path, dict(arguments))
+            here = _Place(scope) if place is None else replace(place, scope=scope, depth=place.depth + 1)
+            self.elements(root, here)
+
+    def elements(self, parent: Iterable[Element], place: _Place) -> None:
+        """Read the elements of a launch file or group, in order."""
+        for element in parent:
+            self.seen += 1
+            if self.seen > MOST:
+                return
+            try:
+                if self._holds(element, place):
+                    place = self._element(element, place)
+            except SymbolicError as reason:
+                self._problem(element, place, f"<{element.tag}>: {reason}")
+
+    def _element(self, element: Element, place: _Place) -> _Place:
+        """Read one element; return the place of those that follow."""
+        text = place.scope.text
+        if element.tag == "arg":
+            return self._argument(element, place)
+        if element.tag == "remap":
+            return replace(
+                place, remaps=(*place.remaps, (text(element.get("from", "")), text(element.get("to", ""))))
+            )
+        if element.tag == "group":
+            namespace = _joined(place.namespace, text(element.get("ns", "")))
+            self.elements(element, replace(place, namespace=namespace))
+        elif element.tag == "include":
+            self._include(element, place)
+        elif element.tag == "node":
+            self._node(element, place)
+        elif element.tag in ("param", "rosparam"):
+            setting = self._setting(element, place, place.namespace)
+            if setting is not None and setting.name.startswith("~"):
+                return replace(place, private=(*place.private, setting))
+            self.settings += [setting] if setting is not None else []
+        return place
+
+    def _argument(self, element: Element, place: _Place) -> _Place:
+        name = element.get("name", "")
+        if name in place.scope.arguments and "value" not in element.attrib:
+            return place  # given from outside
+        stated = element.get("value", element.get("default"))
+        value: str | None = None
+        try:
+            value = None if stated is None else place.scope.text(stated)
+        except SymbolicError as reason:
+            self._problem(element, place, f"<arg name={name!r}>: {reason}")
+        arguments = {**place.scope.arguments, name: value}
+        return replace(place, scope=replace(place.scope, arguments=arguments))
+
+    def _include(self, element: Element, place: _Place) -> None:
+        path = Path(place.scope.text(element.get("file", "")))
+        if place.depth >= DEEPEST or not path.is_file():
+            raise SymbolicError(
+                f"{path.name} does not exist" if place.depth < DEEPEST else "files include each other"
+            )
+        given: dict[str, str | None] = {}
+        if element.get("pass_all_args", "").lower() in ("true", "1"):
+            given = dict(place.scope.arguments)
+        for one in element:
+            if one.tag == "arg" and self._holds(one, place):
+                try:
+                    given[one.get("name", "")] = place.scope.text(one.get("value", one.get("default", "")))
+                except SymbolicError as reason:
+                    given[one.get("name", "")] = None
+                    self._problem(one, place, f"<arg name={one.get('name')!r}>: {reason}")
+        namespace = _joined(place.namespace, place.scope.text(element.get("ns", "")))
+        self.file(path, given, replace(place, namespace=namespace))
+
+    def _node(self, element: Element, place: _Place) -> None:
+        text = place.scope.text
+        package, executable, name = (text(element.get(key, "")) for key in ("pkg", "type", "name"))
+        inner, settings = place, list(place.private)
+        for one in element:
+            try:
+                if not self._holds(one, place):
+                    continue
+                if one.tag == "remap":
+                    inner = self._element(one, inner)
+                elif one.tag in ("param", "rosparam"):
+                    setting = self._setting(one, place, "~")
+                    settings += [setting] if setting is not None else []
+            except SymbolicError as reason:
+                self._problem(one, place, f"<{one.tag}> of {name}: {reason}")
+        namespace = _joined(place.namespace, text(element.get("ns", "")))
+        try:
+            arguments = text(element.get("args", ""))
+        except SymbolicError as reason:
+            arguments = ""
+            self._problem(element, place, f"args of {name}: {reason}")
+        line = int(element.get(_LINE, "0"))
+        self.nodes.append(
+            LaunchedNode(
+                package,
+                executable,
+                name,
+                namespace,
+                place.scope.file,
+                line,
+                inner.remaps,
+                tuple(settings),
+                arguments,
+            )
+        )
+
+    def _setting(self, element: Element, place: _Place, above: str) -> Setting | None:
+        text = place.scope.text
+        if element.tag == "rosparam":
+            return self._yaml(element, place, above)
+        name = _parameter(above, text(element.get("name", "")))
+        if "command" in element.attrib:
+            raise SymbolicError(f"{name} is what a command prints on the robot")
+        kind = element.get("type", "auto")
+        if "textfile" in element.attrib:
+            return Setting(name, place.scope.file, self._read(Path(text(element.attrib["textfile"]))))
+        value = text(element.get("value", ""))
+        if kind == "yaml":
+            return Setting(name, place.scope.file, yaml=value)
+        return Setting(name, place.scope.file, scalar(value, kind))
+
+    def _yaml(self, element: Element, place: _Place, above: str) -> Setting | None:
+        text = place.scope.text
+        if element.get("command", "load") != "load":
+            return None
+        name = text(element.get("ns", "")) + "/" + text(element.get("param", ""))
+        path = Path(text(element.attrib["file"])) if "file" in element.attrib else place.scope.file
+        content = self._read(path) if "file" in element.attrib else element.text or ""
+        if element.get("subst_value", "").lower() in ("true", "1"):
+            content = text(content)
+        return Setting(_parameter(above, name.strip("/")), path, yaml=content)
+
+    def _holds(self, element: Element, place: _Place) -> bool:
+        """Tell whether `if` and `unless` let an element count; one whose condition is unknown counts."""
+        for key, wanted in (("if", True), ("unless", False)):
+            if key in element.attrib:
+                try:
+                    return scalar(place.scope.text(element.attrib[key]), "bool") is wanted
+                except SymbolicError as reason:
+                    self._problem(element, place, f"{key} of <{element.tag}>: {reason}")
+        return True
+
+    def _read(self, path: Path) -> str:
+        try:
+            if path.stat().st_size > LARGEST:
+                raise SymbolicError(f"{path.name} has more than {LARGEST:,} bytes")
+            return path.read_text("utf-8", errors="replace")
+        except OSError as error:
+            raise SymbolicError(f"{path} cannot be read: {error.strerror}") from None
+
+    def _parsed(self, path: Path) -> Element | None:
+        try:
+            return _tree(self._read(path))
+        except SymbolicError as reason:
+            self.problems.append(Problem(path, 0, str(reason)))
+        except (expat.ExpatError, AssertionError) as error:
+            self.problems.append(Problem(path, getattr(error, "lineno", 0), f"it is not XML: {error}"))
+        return None
+
+    def _problem(self, element: Element, place: _Place, reason: str) -> None:
+        self.problems.append(Problem(place.scope.file, int(element.get(_LINE, "0")), reason))
+
+
+def read_xml(path: Path, workspace: Workspace, arguments: Mapping[str, str] | None = None) -> Launch:
+    """Return what a ROS 1 launch file starts, with the defaults of the arguments that are not given."""
+    reader = _Reader(workspace)
+    reader.file(path, dict(arguments or {}), None)
+    return Launch(path, tuple(reader.nodes), tuple(reader.settings), tuple(reader.problems))
+
+
+def _tree(text: str) -> Element:
+    """Return the root element; the line of each element is its attribute `_LINE`. Entities are refused."""
+    builder, parser = TreeBuilder(), expat.ParserCreate()
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        builder.start(tag, {**attributes, _LINE: str(parser.CurrentLineNumber)})
+
+    def refuse(*_: Any) -> None:
+        raise SymbolicError("it declares entities")
+
+    parser.StartElementHandler, parser.EndElementHandler = start, builder.end
+    parser.CharacterDataHandler, parser.EntityDeclHandler = builder.data, refuse
+    parser.Parse(text.encode(), True)
+    return builder.close()
+
+
+def _joined(namespace: str, name: str) -> str:
+    """Return a namespace within another one; an absolute name stands for itself."""
+    whole = name if name.startswith("/") else f"{namespace}/{name}"
+    return "/" + "/".join(part for part in whole.split("/") if part)
+
+
+def _parameter(above: str, name: str) -> str:
+    """Return the name of a parameter: private within a node, or with `~`; else absolute."""
+    if name.startswith("~") or (above == "~" and not name.startswith("/")):
+        return "~" + name.lstrip("~").strip("/")
+    return _joined(above if above != "~" else "/", name)

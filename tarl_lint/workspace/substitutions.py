@@ -1,0 +1,107 @@
+"""Substitution arguments of ROS 1 launch files: `$(find …)`, `$(arg …)`, `$(eval …)`, `$(optenv …)`, `$(dirname)`."""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from tarl_lint.workspace.expressions import Evaluator, Library, Unknown
+from tarl_lint.workspace.launch_model import Scalar
+from tarl_lint.workspace.model import Workspace
+
+_ARGUMENT: Final = re.compile(r"\$\(((?:[^()]|\([^()]*\))*)\)")
+_TRUTH: Final = {"true": True, "false": False}
+
+
+class SymbolicError(Exception):
+    """A text depends on what only the robot knows; the message is the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What a text may name: the arguments of its file (None for one without a value), its folder, the packages."""
+
+    workspace: Workspace
+    file: Path
+    arguments: Mapping[str, str | None]
+
+    def text(self, text: str) -> str:
+        """Return a text with its arguments replaced. Raises SymbolicError where one has no value."""
+        if text.startswith("$(eval ") and text.endswith(")"):
+            return str(self._evaluated(text[len("$(eval ") : -1]))
+        return _ARGUMENT.sub(lambda found: self._replaced(found[1].split()), text)
+
+    def _replaced(self, words: list[str]) -> str:
+        command, *rest = words or [""]
+        if command == "find" and len(rest) == 1:
+            return self._found(rest[0])
+        if command == "arg" and len(rest) == 1:
+            return self._argument(rest[0])
+        if command == "optenv" and rest:
+            return " ".join(rest[1:])
+        if command == "dirname":
+            return str(self.file.parent)
+        if command == "anon" and rest:
+            return rest[0]
+        raise SymbolicError(f"$({' '.join(words)}) is known on the robot only")
+
+    def _found(self, package: str) -> str:
+        known = self.workspace.package(package)
+        if known is None:
+            raise SymbolicError(f"the package {package} is not in the workspace")
+        return str(known.folder)
+
+    def _argument(self, name: str) -> str:
+        value = self.arguments.get(name)
+        if value is None:
+            raise SymbolicError(f"the argument {name} has no value")
+        return value
+
+    def _evaluated(self, expression: str) -> Any:
+        try:
+            tree = ast.parse(expression.strip(), mode="eval")
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            raise SymbolicError(f"$(eval {expression}) is no expression of Python") from None
+        names: dict[str, Any] = {key: scalar(one) for key, one in self.arguments.items() if one is not None}
+        names |= {"true": True, "false": False, "pi": math.pi, "e": math.e, "find": self._found}
+        names |= {"arg": lambda name: scalar(self._argument(name)), "optenv": _otherwise}
+        names["dirname"] = lambda: str(self.file.parent)
+        value = Evaluator({}).value(tree.body, names)
+        if isinstance(value, Unknown | Library):
+            raise SymbolicError(f"$(eval {expression}) is not constant")
+        return value
+
+
+def _otherwise(_: str, default: str = "") -> str:
+    """Return the default of an environment variable, which is known on the robot only."""
+    return default
+
+
+def scalar(text: str, kind: str = "auto") -> Scalar:
+    """Return a value in the type that `param` states: `int`, `double`, `bool`, `str`; by its look with `auto`.
+
+    Raises SymbolicError for a text that is not of its type.
+    """
+    stripped = text.strip()
+    try:
+        if kind in ("str", "string"):
+            return text
+        if kind == "int":
+            return int(stripped)
+        if kind in ("double", "float"):
+            return float(stripped)
+        if kind in ("bool", "boolean"):
+            return {"true": True, "1": True, "false": False, "0": False}[stripped.lower()]
+    except (ValueError, KeyError):
+        raise SymbolicError(f"{text!r} is not of type {kind}") from None
+    with contextlib.suppress(ValueError):
+        return int(stripped)
+    with contextlib.suppress(ValueError):
+        return float(stripped)
+    return _TRUTH.get(stripped.lower(), text)

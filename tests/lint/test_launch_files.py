@@ -1,0 +1,168 @@
+"""Launch files read as text: nodes with namespaces, remappings, parameters, and what only the robot knows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from tarl_lint.workspace.launch_model import Launch
+from tarl_lint.workspace.launch_py import read_python
+from tarl_lint.workspace.launch_xml import read_xml
+from tarl_lint.workspace.read import read
+
+
+def launched(tmp_path: Path, text: str, name: str = "bringup.launch", **arguments: str) -> Launch:
+    base = tmp_path / "arm_base"
+    (base / "config").mkdir(parents=True, exist_ok=True)
+    (base / "package.xml").write_text("<package><name>arm_base</name></package>")
+    (base / "config/arm.yaml").write_text("kp: $(arg gain)\nlimits: {top: 3}\n")
+    (base / "config/ros2.yaml").write_text("/**:\n  ros__parameters:\n    kp: 2.0\n")
+    (base / "part.launch").write_text(
+        '<launch><arg name="arm"/><arg name="rate" default="5"/>'
+        '<node pkg="arm_base" type="part" name="part_$(arg arm)"><param name="rate" value="$(arg rate)"/></node>'
+        "</launch>"
+    )
+    path = base / name
+    path.write_text(dedent(text))
+    workspace = read(tmp_path)
+    return read_python(path, workspace) if name.endswith(".py") else read_xml(path, workspace, arguments)
+
+
+def settings(found: Launch, number: int = 0) -> list[tuple[str, object]]:
+    return [(one.name, one.yaml if one.value is None else one.value) for one in found.nodes[number].settings]
+
+
+ROS1 = """\
+<launch>
+  <arg name="gain" default="0.5"/>
+  <arg name="robot"/>
+  <arg name="twice" value="$(eval 2 * gain)"/>
+  <param name="use_sim_time" value="true"/>
+  <rosparam ns="shared" file="$(find arm_base)/config/arm.yaml" subst_value="true"/>
+  <remap from="scan" to="/front/scan"/>
+  <group ns="left" if="$(eval gain &lt; 1)">
+    <param name="~speed" value="1"/>
+    <remap from="odom" to="odometry"/>
+    <node pkg="arm_base" type="drive" name="drive" ns="inner" args="--fast $(anon x)">
+      <remap from="cmd" to="/cmd_vel"/>
+      <param name="twice" value="$(arg twice)"/>
+      <param name="label" type="str" value="7"/>
+      <rosparam param="list">[1, 2]</rosparam>
+      <param name="model" command="xacro $(find arm_base)/arm.xacro"/>
+      <param name="who" value="$(arg robot)"/>
+    </node>
+  </group>
+  <group unless="$(arg missing)"><node pkg="arm_base" type="watch" name="watch"/></group>
+  <group unless="true"><node pkg="arm_base" type="never" name="never"/></group>
+  <include file="$(dirname)/part.launch" ns="right"><arg name="arm" value="b"/></include>
+  <include file="$(find elsewhere)/x.launch"/>
+  <node pkg="arm_base" type="$(env KIND)" name="k"/>
+</launch>
+"""
+
+
+def test_ros1_launch_files_are_read(tmp_path: Path) -> None:
+    found = launched(tmp_path, ROS1)
+    assert [(one.name, one.namespace, one.executable) for one in found.nodes] == [
+        ("drive", "/left/inner", "drive"), ("watch", "/", "watch"), ("part_b", "/right", "part"),
+    ]  # fmt: skip
+    drive = found.nodes[0]
+    assert drive.remaps == (("scan", "/front/scan"), ("odom", "odometry"), ("cmd", "/cmd_vel"))
+    assert (drive.arguments, drive.line) == ("--fast x", 11)
+    assert settings(found) == [("~speed", 1), ("~twice", 1.0), ("~label", "7"), ("~list", "[1, 2]")]
+    assert [(one.name, one.value) for one in found.settings] == [("/use_sim_time", True), ("/shared", None)]
+    assert found.settings[1].yaml == "kp: 0.5\nlimits: {top: 3}\n"
+    assert settings(found, 2) == [("~rate", 5)]
+
+
+def test_what_is_known_on_the_robot_only_is_told_with_its_line(tmp_path: Path) -> None:
+    assert [(one.line, one.reason) for one in launched(tmp_path, ROS1).problems] == [
+        (16, "<param> of drive: ~model is what a command prints on the robot"),
+        (17, "<param> of drive: the argument robot has no value"),
+        (20, "unless of <group>: the argument missing has no value"),
+        (23, "<include>: the package elsewhere is not in the workspace"),
+        (24, "<node>: $(env KIND) is known on the robot only"),
+    ]
+
+
+def test_arguments_are_given_from_outside(tmp_path: Path) -> None:
+    found = launched(tmp_path, ROS1, robot="husky", gain="2.0")
+    assert [one.name for one in found.nodes] == ["watch", "part_b"]
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("<launch><node></launch>", "it is not XML"),
+        ('<!DOCTYPE l [<!ENTITY a "b">]><launch/>', "it declares entities"),
+        ('<launch><include file="$(dirname)/bringup.launch"/></launch>', "files include each other"),
+        ("<launch><param name='a' value='$(eval __import__(\"os\").getcwd())'/></launch>", "is not constant"),
+    ],
+)
+def test_files_that_cannot_be_read_are_told(tmp_path: Path, text: str, reason: str) -> None:
+    found = launched(tmp_path, text)
+    assert not found.nodes
+    assert any(reason in one.reason for one in found.problems)
+
+
+ROS2 = """\
+import os
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, GroupAction, OpaqueFunction
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node, PushRosNamespace
+from launch_ros.substitutions import FindPackageShare
+
+SIDES = ["left", "right"]
+
+
+def generate_launch_description():
+    share = get_package_share_directory("arm_base")
+    gain = LaunchConfiguration("gain")
+    files = PathJoinSubstitution([FindPackageShare("arm_base"), "config", "ros2.yaml"])
+    ld = LaunchDescription([DeclareLaunchArgument("gain", default_value="0.5", description="how strong")])
+    for side in SIDES:
+        ld.add_action(GroupAction([
+            PushRosNamespace(side),
+            Node(package="arm_base", executable="drive", name=[side, "_drive"], remappings=[("cmd", "/cmd_vel")],
+                 parameters=[files, {"kp": gain, "limits": {"top": 3}, "on": True}]),
+        ]))
+    ld.add_action(Node(package="arm_base", executable="watch", parameters=[os.path.join(share, "config/ros2.yaml"),
+                                                                          {"home": os.environ["HOME"]}]))
+    ld.add_action(OpaqueFunction(function=lambda context: []))
+    return ld
+"""
+
+
+def test_ros2_launch_files_in_python_are_interpreted(tmp_path: Path) -> None:
+    found = launched(tmp_path, ROS2, "bringup.launch.py")
+    assert [(one.name, one.namespace, one.executable, one.remaps) for one in found.nodes] == [
+        ("left_drive", "/left", "drive", (("cmd", "/cmd_vel"),)),
+        ("right_drive", "/right", "drive", (("cmd", "/cmd_vel"),)),
+        ("", "/", "watch", ()),
+    ]
+    yaml = "/**:\n  ros__parameters:\n    kp: 2.0\n"
+    assert settings(found) == [("~", yaml), ("~kp", "0.5"), ("~limits.top", 3), ("~on", True)]
+    assert settings(found, 2) == [("~", yaml)]
+    assert {(one.line, one.reason) for one in found.problems} == {
+        (23, "the parameter home is not constant"),
+        (25, "`OpaqueFunction(function=lambda context: [])` is not followed"),
+    }
+
+
+def test_an_argument_that_names_itself_ends(tmp_path: Path) -> None:
+    text = """
+        from launch import LaunchDescription
+        from launch.actions import DeclareLaunchArgument
+        from launch.substitutions import LaunchConfiguration
+        from launch_ros.actions import Node
+
+        def generate_launch_description():
+            ns = LaunchConfiguration("ns", default="a")
+            return LaunchDescription([DeclareLaunchArgument("ns", default_value=ns),
+                                      Node(package="arm_base", executable="drive", namespace=ns)])
+    """
+    assert [one.namespace for one in launched(tmp_path, text, "x.launch.py").nodes] == ["/a"]
