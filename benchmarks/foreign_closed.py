@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +39,10 @@ def warm_up() -> None:
     from pytest_tarl.ros import message_type
 
     message_type("std_msgs/msg/String"), message_type("std_msgs/String")
+    os.environ["MPLBACKEND"] = "Agg"
+    for library in ("cv2", "matplotlib.pyplot", "scipy", "yaml"):
+        with contextlib.suppress(ImportError):
+            import_module(library)
 
 
 def close_all_but(folder: Path) -> None:

@@ -36,7 +36,7 @@ def given(script: Path, launch: Path | None = None) -> Given:
     workspace = next((one for one in workspaces() if script.is_relative_to(one.root)), None)
     if workspace is None:
         return NOTHING
-    launches = _launches(workspace.root) if launch is None else (_read(launch, workspace),)
+    launches = _launches(workspace, script) if launch is None else (_read(launch, workspace),)
     starts = [
         (one, node) for one in launches for node in one.nodes if node.file == one.file or launch is not None
     ]
@@ -149,12 +149,20 @@ def _yaml(setting: Setting) -> Any:
         raise SettingsError(f"{setting.file} is not YAML: {' '.join(str(problem).split())}") from None
 
 
-@cache
-def _launches(root: Path) -> tuple[Launch, ...]:
-    """Return all launch files of a workspace."""
-    workspace = next(one for one in workspaces() if one.root == root)
+def _launches(workspace: Workspace, script: Path) -> tuple[Launch, ...]:
+    """Return the launch files that may start a script: those with its name, or that of a program which it is."""
+    named = {one.name for package in workspace.packages for one in package.executables if one.path == script}
+    words = [name.encode() for name in sorted({script.name, *named})]
     files = [file for package in workspace.packages for file in package.launch_files]
-    return tuple(_read(file, workspace) for file in files)
+    return tuple(_read(file, workspace) for file in files if any(word in _bytes(file) for word in words))
+
+
+@cache
+def _bytes(file: Path) -> bytes:
+    try:
+        return file.read_bytes()
+    except OSError:
+        return b""
 
 
 def _read(file: Path, workspace: Workspace) -> Launch:

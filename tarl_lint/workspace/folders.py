@@ -13,12 +13,16 @@ _BUILT: Final = frozenset({"build", "install", "log", "devel", "logs"})
 _NEVER: Final = frozenset({"__pycache__", "node_modules", "site-packages", "dist-packages"})
 
 
-def folders(root: Path) -> Iterator[tuple[Path, list[str]]]:
-    """Yield the folders that hold sources, with their files, sorted; what building leaves is skipped."""
+def folders(root: Path, kept: frozenset[Path] = frozenset()) -> Iterator[tuple[Path, list[str]]]:
+    """Yield the folders that hold sources, with their files, sorted; what building leaves is skipped.
+
+    A folder with a marker such as COLCON_IGNORE is skipped too, unless one of the folders `kept` is in it.
+    """
     for looked, (folder, names, files) in enumerate(os.walk(root)):
         if looked >= LIMIT:
             return
-        if looked and not set(MARKERS).isdisjoint(files):
+        ignored = looked and not set(MARKERS).isdisjoint(files)
+        if ignored and not any(one.is_relative_to(folder) for one in kept):
             names.clear()
             continue
         names[:] = sorted(name for name in names if _holds_sources(folder, name))
@@ -29,6 +33,12 @@ def _holds_sources(folder: str, name: str) -> bool:
     if name.startswith(".") or name in _NEVER:
         return False
     return name not in _BUILT or Path(folder, name, "__init__.py").is_file()
+
+
+def is_ignored(folder: Path, root: Path) -> bool:
+    """Tell whether a folder, or one around it below the root, has a marker such as COLCON_IGNORE."""
+    around = [one for one in (folder, *folder.parents) if one != root and one.is_relative_to(root)]
+    return any((one / marker).exists() for one in around for marker in MARKERS)
 
 
 def workspace_root(path: Path) -> Path | None:

@@ -40,10 +40,13 @@ class _Found:
             self.scripts.append(path)
 
 
-def read(root: Path) -> Workspace:
-    """Return the description of the workspace below a folder. Nothing is executed, nothing is written."""
+def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
+    """Return the description of the workspace below a folder. Nothing is executed, nothing is written.
+
+    Packages that a marker such as COLCON_IGNORE hides are left out, unless one of the folders `kept` is in them.
+    """
     found: dict[Path, _Found] = {}
-    for folder, files in folders(root.resolve()):
+    for folder, files in folders(root.resolve(), kept):
         if "package.xml" in files:
             found[folder] = _Found(folder, declared=True)
         owner = next((found[one] for one in (folder, *folder.parents) if one in found), None)

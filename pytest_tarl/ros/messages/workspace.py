@@ -6,18 +6,25 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from tarl_lint.workspace.folders import workspace_root
+from tarl_lint.workspace.folders import is_ignored, workspace_root
 from tarl_lint.workspace.model import Package, Workspace
 from tarl_lint.workspace.read import read
 
 _SEARCHED: list[Path] = []  # like sys.path: it grows with the folders that nodes are started from
 
+_KEPT: set[Path] = set()  # folders of nodes in packages that the build tool is told to ignore
+
 
 def search(folder: Path) -> None:
     """Know the packages of the workspace of `folder` too: the repository or the ROS packages around it."""
     root = workspace_root(folder.resolve())
-    if root is not None and not any(root.is_relative_to(known) for known in _SEARCHED):
+    if root is None:
+        return
+    if not any(root.is_relative_to(known) for known in _SEARCHED):
         _SEARCHED.append(root)
+        forget()
+    if folder.resolve() not in _KEPT and is_ignored(folder.resolve(), root):
+        _KEPT.add(folder.resolve())
         forget()
 
 
@@ -30,7 +37,7 @@ def forget() -> None:
 @cache
 def workspaces() -> tuple[Workspace, ...]:
     """Return the descriptions of the workspaces, in the order in which nodes were started from them."""
-    return tuple(read(root) for root in _SEARCHED)
+    return tuple(read(root, frozenset(_KEPT)) for root in _SEARCHED)
 
 
 @cache

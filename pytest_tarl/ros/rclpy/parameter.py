@@ -6,12 +6,59 @@ from array import array
 from enum import IntEnum
 from typing import Any
 
+from pytest_tarl.ros import params_files
 from pytest_tarl.ros.messages import find_class
 
 _FIELDS = {
     1: "bool_value", 2: "integer_value", 3: "double_value", 4: "string_value", 5: "byte_array_value",
     6: "bool_array_value", 7: "integer_array_value", 8: "double_array_value", 9: "string_array_value",
 }  # fmt: skip
+
+
+def parameter_dict_from_yaml_file(
+    parameter_file: str,
+    use_wildcard: bool = False,
+    target_nodes: list[str] | None = None,
+    namespace: str = "",
+) -> dict[str, Any]:
+    """Return rcl_interfaces/Parameter messages by name from a YAML file, of all nodes or of `target_nodes`.
+
+    `use_wildcard` adds what stands under `/**`. Raises RuntimeError where the file, or a node in it, is missing.
+    """
+    content = params_files.read(parameter_file)
+    wanted = [f"/{name.strip('/')}" for name in target_nodes or ()]
+    found: dict[str, Any] = {}
+    keys = {f"/{str(key).strip('/')}": key for key in content}
+    if use_wildcard and "/**" in keys:
+        found.update(_named_values(content["/**"], namespace))
+    missing = sorted(set(wanted) - keys.keys())
+    if missing:
+        raise RuntimeError(
+            f"Param file does not contain any parameters for {missing},only for nodes: {sorted(keys)}"
+        )
+    for name, key in keys.items():
+        if name != "/**" and (not wanted or name in wanted):
+            found.update(_named_values(content[key], namespace))
+    if not found:
+        raise RuntimeError("Param file does not contain any parameters")
+    return {name: Parameter(name, value=value).to_parameter_msg() for name, value in found.items()}
+
+
+def _named_values(section: Any, above: str) -> dict[str, Any]:
+    """Return the values of a node's section by full name, with dots between the parts."""
+    found: dict[str, Any] = {}
+    if not isinstance(section, dict) or "ros__parameters" not in section:
+        raise RuntimeError("YAML file is not a valid ROS parameter file")
+    pending = [(above, section["ros__parameters"])]
+    while pending:
+        prefix, values = pending.pop(0)
+        for key, value in values.items():
+            name = f"{prefix}.{key}" if prefix else str(key)
+            if isinstance(value, dict):
+                pending.append((name, value))
+            else:
+                found[name] = value
+    return found
 
 
 class ParameterType(IntEnum):

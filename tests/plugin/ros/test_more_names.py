@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -212,3 +213,30 @@ def test_parts_of_a_standin_can_be_imported_from_it(start: Start) -> None:
 def test_more_types_are_known(name: str) -> None:
     found = message_type(name)
     assert found.__name__ == name.rpartition("/")[2]
+
+
+def test_parameter_files_are_read_for_other_nodes(start: Start, tmp_path: Path) -> None:
+    (tmp_path / "p.yaml").write_text(
+        "/**:\n  ros__parameters: {debug: true}\n"
+        "arm:\n  ros__parameters: {gain: 2.5, limits: {top: 3}}\n"
+        "leg:\n  ros__parameters: {names: [a, b]}\n"
+    )
+    ros = start(f"""
+        import rclpy
+        from rclpy.parameter import Parameter, parameter_dict_from_yaml_file
+        rclpy.init()
+        path = {str(tmp_path / "p.yaml")!r}
+
+        def read(*args, **kwds):
+            found = parameter_dict_from_yaml_file(*args, **kwds)
+            return {{name: Parameter.from_parameter_msg(one).value for name, one in found.items()}}
+
+        found = read(path), read(path, True, ["/arm"]), read(path, target_nodes=["leg"])
+        try:
+            read(path, False, ["/hand"])
+        except RuntimeError as error:
+            said = str(error)
+    """)
+    arm, leg = {"gain": 2.5, "limits.top": 3}, {"names": ["a", "b"]}
+    assert ros.namespace["found"] == ({**arm, **leg}, {"debug": True, **arm}, leg)
+    assert ros.namespace["said"].startswith("Param file does not contain any parameters for ['/hand']")

@@ -105,6 +105,18 @@ def test_a_configuration_without_file_is_named(packages: Path, start: Start) -> 
         start("import rospy\nfrom arm_base.cfg import LegConfig\n")
 
 
+def test_a_node_in_an_ignored_package_knows_its_messages(
+    packages: Path, start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(workspace, "_KEPT", set())
+    write(packages, {"arm_base/CATKIN_IGNORE": "", "arm_tools/COLCON_IGNORE": ""})
+    workspace.forget()
+    assert not workspace.packages()
+    workspace.search(packages / "arm_base/src")
+    assert set(workspace.packages()) == {"arm_base"}
+    assert start("import rospy\nfrom arm_base.msg import Reading\n").namespace["Reading"](1.0).value == 1.0
+
+
 def test_a_module_that_nobody_installs_is_found_and_told(packages: Path, start: Start) -> None:
     ros = start("import smoothing\nfound = smoothing.WEIGHT\n")
     assert ros.namespace["found"] == 0.25
