@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Attempt, Escape, Frame
 from tarl_lint.memory.values import BOTTOM, Nodes, join
 from tarl_lint.models.ros import publications
@@ -39,11 +40,18 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
 
 
 def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
-    """Let what comes after a call depend on whether the called function raises, when somebody takes that."""
+    """Let what comes after a call depend on whether the called function raises, as after a `raise` of its own.
+
+    Where nobody takes it, assertions do not count, nor calls in a loop: what comes after the loop would depend on
+    how often it runs.
+    """
     statement = caller.statement
-    if statement is None or not any(t.handled for f in ctx.stack for t in f.tries):
+    if statement is None:
         return
+    handled = any(t.handled for f in ctx.stack for t in f.tries)
     for escape in frame.escapes:
+        if not handled and (caller.jumps or _bare(escape.statement)):
+            continue
         known = caller.function.raising.setdefault(statement.id, {})
         if escape.name not in known and caller.cls is None:
             known[escape.name] = None
@@ -53,6 +61,11 @@ def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
         if escape.decision is not None:
             ctx.graph.depend(decision, (escape.decision,))
         leave(ctx, Escape(caller, statement, escape.name, escape.value, decision), caller)
+
+
+def _bare(statement: ir.Stmt) -> bool:
+    """Tell whether a statement raises without naming what, as an assertion does."""
+    return isinstance(statement, ir.Raise) and statement.value is None
 
 
 def _takes(attempt: Attempt, raises: str, named: bool) -> bool:
