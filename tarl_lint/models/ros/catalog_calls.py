@@ -19,8 +19,21 @@ from tarl_lint.models.ros import publications, services, subscriptions
 
 def ros_call(ctx: Interpreter, it: Invocation) -> Value:
     """Do what the catalog says about a call."""
+    if "**" in it.arguments[1]:
+        it.arguments = it.arguments[0], _unpacked_keywords(ctx, it)
     action = ACTIONS.get(it.fact.kind)
     return action(ctx, it) if action is not None else UNKNOWN  # a callback of what nothing is known of
+
+
+def _unpacked_keywords(ctx: Interpreter, it: Invocation) -> dict[str, Value]:
+    """Return the keywords of a call with those that a `**mapping` among them passes, as far as the catalog asks."""
+    fact, named = it.fact, dict(it.arguments[1])
+    for _, name in (fact.topic, fact.type, fact.callback, fact.extra):
+        for obj in named["**"].pts if name and name not in it.arguments[1] else ():
+            stored = ctx.store.get((obj, item_field(name)))
+            if stored is not None:
+                named[name] = join(named.get(name, BOTTOM), stored)
+    return named
 
 
 def _timer(ctx: Interpreter, it: Invocation) -> Value:
