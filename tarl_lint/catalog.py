@@ -255,6 +255,7 @@ STATE_BY_CALLBACKS: Final = (
 )  # fmt: skip
 
 NODES: Final = frozenset(["rclpy.node.Node", "rclpy.lifecycle.Node", "rclpy.lifecycle.LifecycleNode"])
+TESTS: Final = frozenset(["unittest.TestCase", "unittest.case.TestCase"])  # which a test runner makes
 NODE_BASES: Final = NODES | frozenset(
     [
         "object", "Exception",

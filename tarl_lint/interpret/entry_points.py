@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
+
 from tarl_lint import catalog
 from tarl_lint.interpret import calls
 from tarl_lint.interpret.call_contexts import ROOT_CALL
@@ -71,15 +73,19 @@ def _node_class(ctx: Interpreter, statement: ir.Class, program: ir.Program, star
     for cls in _values(ctx, ctx.module_objects[program.name], statement.name):
         if cls.kind != "class" or cls.key in ctx.made:
             continue
-        wanted = not _has_made_heir(ctx, cls) if starting and registers(statement) else _last_node(ctx, cls)
+        if starting and registers(statement):
+            wanted = not _has_made_heir(ctx, cls)
+        else:
+            tests = starting and ".publish(" in ctx.modules[program.path].text
+            wanted = _last_node(ctx, cls, catalog.NODES | (catalog.TESTS if tests else frozenset()))
         if wanted:
             _start(ctx, cls, "node", program.path)
             ctx.guests.add(cls)
 
 
-def _last_node(ctx: Interpreter, cls: Obj) -> bool:
-    """Tell whether a class is a node by what it inherits, and nothing inherits from it."""
-    if not isinstance(cls.info, ClassInfo) or _external(cls.info).isdisjoint(catalog.NODES):
+def _last_node(ctx: Interpreter, cls: Obj, bases: Set[str]) -> bool:
+    """Tell whether a class inherits from one of a library that is made by others, and nothing inherits from it."""
+    if not isinstance(cls.info, ClassInfo) or _external(cls.info).isdisjoint(bases):
         return False
     return not any(o.kind == "class" and o is not cls and cls in lineage(o) for o in ctx.objects.values())
 
