@@ -54,6 +54,7 @@ class Interpreter:
         self.frames: dict[Hashable, Frame] = {}
         self.frame_numbers: dict[Hashable, int] = {}
         self.stack: list[Frame] = []
+        self.senders: dict[Obj, object] = {}  # objects of libraries that publish → what is known of them
         self.delivered: frozenset[Obj] = frozenset()  # messages that ROS hands over in this run
         self.vacant: set[Key] = set()  # variables and fields that None is stored in
         self.optional: set[Key] = set()  # those that get what may be None or not

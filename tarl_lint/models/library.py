@@ -42,6 +42,7 @@ from tarl_lint.models import (
 )
 from tarl_lint.models.containers import CONTAINERS, QUEUES, is_device
 from tarl_lint.models.futures import READERS
+from tarl_lint.models.ros import senders
 from tarl_lint.models.ros.endpoints import Publisher
 from tarl_lint.models.smach import LATER
 from tarl_lint.models.strings import TEXT_METHODS
@@ -119,11 +120,15 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
         if keyword in catalog.WRITTEN_KEYWORDS and keyword in arguments[1]:
             news = containers.through_statement(ctx, Value(deps), frame, call, keyword)
             containers.change(ctx, arguments[1][keyword], news, [expr], frame)
+    if written is None and dropped(frame, call):
+        containers.fill_empty(ctx, arguments, deps, frame, call)
     if catalog.scalar(qualified):
         same = qualified == "builtins.float" and len(arguments[0]) == 1
         return Value(deps, arguments[0][0].pts if same else frozenset())
     made = new_object(ctx, arguments, deps, frame, call, fields=name[:1].isupper())
     callables.hold(ctx, made.pts, held)
+    if name[:1].isupper():
+        senders.note(ctx, qualified, made, arguments, frame, call)
     if qualified.startswith("io.") or (ctx.config.named and name[:1].isupper()):
         for obj in made.pts:
             obj.name = qualified  # settings may speak of its methods; from io.* comes what was written
@@ -171,8 +176,8 @@ def call_method(
         return ctx.ops.call_library(ctx, f"{target.name}.{name}", arguments, frame, call)
     if name == "__new__" and kind in ("super", "class"):
         return _blank_object(ctx, Invocation(name, base, arguments, frame, call))
-    if target is not None and isinstance(target.info, Publisher) and name == "publish":
-        return ctx.ops.send(ctx, Invocation(name, base, arguments, frame, call), target.info)
+    if target is not None and name == "publish" and (sender := senders.sender(ctx, target)) is not None:
+        return ctx.ops.send(ctx, Invocation(name, base, arguments, frame, call), sender)
     if target is not None and kind in ("server", "goal"):
         return ctx.ops.serve(ctx, target, Invocation(name, base, arguments, frame, call))
     if name == "registerCallback" and kind in ("filter", "synchronizer"):
@@ -212,6 +217,9 @@ def _unknown_method(
     if learnt and base.pts and all(map(changeable, base.pts)) and changes(name, dropped=dropped(frame, call)):
         containers.insert_elements(ctx, base, [Value(learnt)], frame, call)
     written = catalog.METHODS_WRITING.get(name)
+    if written is None and dropped(frame, call):
+        deps = ctx.use(base) | call_contexts.all_used(ctx, arguments)
+        containers.fill_empty(ctx, arguments, deps, frame, call)
     if written is not None and written < len(arguments[0]):
         news = containers.through_statement(
             ctx, Value(ctx.use(base) | call_contexts.all_used(ctx, arguments)), frame, call
@@ -329,6 +337,7 @@ STANDING = frozenset(
 BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(CONTAINERS, containers.new_container),
     **dict.fromkeys(QUEUES, containers.new_queue),
+    "eval": reflection.evaluated,
     "dict": records.new_mapping,
     "OrderedDict": records.new_mapping,
     "defaultdict": records.new_mapping,

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from tarl_lint.interpret import expressions
+import ast
+from collections.abc import Sequence
+
+from tarl_lint.interpret import call_contexts, expressions
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.ir import nodes as ir
@@ -10,6 +13,8 @@ from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Obj, Value, join_all, lineage, pointer
 from tarl_lint.models import containers
+
+OURS = frozenset(["instance", "class", "closure", "module"])
 
 
 def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
@@ -75,6 +80,27 @@ def set_attribute(ctx: Interpreter, it: Invocation) -> Value:
         if not plain[1].texts():
             updates.add_element(ctx, plain[0], value)
     return UNKNOWN
+
+
+def evaluated(ctx: Interpreter, it: Invocation) -> Value:
+    """Return what `eval` may give: data of the local variables that it may name."""
+    deps = call_contexts.all_used(ctx, it.arguments)
+    if len(it.arguments[0]) == 1:
+        named = _names(it.arguments[0][0].texts())
+        for name in [n for n in it.frame.fields if named is None or n in named]:
+            value = ctx.store.get((it.frame, name))
+            if value is not None and not any(o.kind in OURS for o in value.pts):
+                deps |= ctx.use(value)
+    return Value(deps)
+
+
+def _names(texts: Sequence[str]) -> set[str] | None:
+    """Return the names in expressions, None where they are not known."""
+    try:
+        trees = [ast.parse(text.strip(), mode="eval") for text in texts]
+    except SyntaxError:
+        return set()
+    return {n.id for tree in trees for n in ast.walk(tree) if isinstance(n, ast.Name)} if trees else None
 
 
 def _beginning(expr: ir.Expr) -> str:

@@ -1,0 +1,36 @@
+"""Objects of libraries that publish what they are given, though nothing in the files says how."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Arguments
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import Obj, Value
+from tarl_lint.models.ros.endpoints import Publisher
+
+SIGNS: Final = ("~", "/")  # with which names of topics begin
+
+
+def note(
+    ctx: Interpreter, qualified: str, made: Value, arguments: Arguments, frame: Frame, call: ir.Call
+) -> None:
+    """Remember an object whose class was given the name of a topic first: its `publish` publishes there."""
+    names = sorted(t for t in arguments[0][0].texts() if t.startswith(SIGNS)) if arguments[0] else []
+    if names:
+        launched = ctx.config.launched
+        topics = {launched.get(name.lstrip("/"), name) for name in names}
+        for obj in made.pts:
+            ctx.senders[obj] = Publisher(topics=topics, api=qualified, path=frame.program.path, pos=call.pos)
+
+
+def sender(ctx: Interpreter, obj: Obj) -> Publisher | None:
+    """Return what is known of an object that publishes: a publisher, noted, or held by a base class."""
+    if isinstance(obj.info, Publisher):
+        return obj.info
+    found = ctx.senders.get(obj)
+    if found is None and obj.kind == "lib" and isinstance(obj.key, tuple) and obj.key[:1] == ("inherited",):
+        found = ctx.senders[obj] = Publisher(api=f"{obj.name}.publish")
+    return found if isinstance(found, Publisher) else None
