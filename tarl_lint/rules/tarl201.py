@@ -14,8 +14,9 @@ Only state that some code guards with a lock is reported, and only if the access
 
 A single read of a value that is only ever replaced is harmless, because Python replaces it atomically. Not reported are
 flags that are set to constants, checks before the lock is taken (whether a value exists, its length, whether to
-return), methods of objects that may do their own locking, and code that runs before the threads start. If a function
-is called with the lock in one place and without it in another, the message names the call without it.
+return), methods of objects that may do their own locking, code that runs before the threads start, and callbacks of
+which only one is registered, in opposite branches of an `if`. If a function is called with the lock in one place and
+without it in another, the message names the call without it.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from typing import Final
 from tarl_lint.evidence import Evidence
 from tarl_lint.model import Finding
 from tarl_lint.prefilter.one_sided import Side
+from tarl_lint.rules.races.alternatives import never_both
 from tarl_lint.rules.races.locksets import MADE, Harm, Locking, Use, unguarded
 
 CODE: Final = "TARL201"
@@ -158,7 +160,8 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
             continue
         told: set[tuple[str, str]] = set()
         for use, spot in sorted(unguarded(uses), key=lambda found: (found[1].path, found[1].pos)):
-            other = _conflict(use, [u for u in uses if u.locks and harm.between(state, use, u)])
+            others = [u for u in uses if u.locks and not never_both(evidence, use.thread, u.thread)]
+            other = _conflict(use, [u for u in others if harm.between(state, use, u)])
             if other is None or (spot.path, spot.function) in told:
                 continue
             told.add((spot.path, spot.function))

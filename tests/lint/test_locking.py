@@ -230,3 +230,37 @@ def test_a_function_that_ros_and_others_call_is_named_itself_in_its_own_file(tmp
     result = run(Options(paths=(tmp_path,), cache=False), Config(root=tmp_path, select=("TARL201",)))
     (finding,) = result.findings
     assert (finding.span.path.rpartition("/")[2], finding.span.line) == ("node.py", 14)
+
+
+@pytest.mark.parametrize(("other", "count"), [("else", 0), ("if True", 1)])
+def test_callbacks_of_which_only_one_is_registered_share_nothing(tmp_path, other, count):
+    """A node that synchronises or polls registers one callback or the other, never both."""
+    path = tmp_path / "node.py"
+    path.write_text(
+        dedent(f"""
+        import threading
+        import rospy
+        from std_msgs.msg import Float64
+        class Node:
+            def __init__(self):
+                self.lock = threading.Lock()
+                self.seen = []
+                self.pub = rospy.Publisher("/out", Float64, queue_size=1)
+                if rospy.get_param("~poll", False):
+                    rospy.Timer(rospy.Duration(0.1), self.on_timer)
+                {other}:
+                    rospy.Subscriber("/in", Float64, self.on_value)
+            def on_value(self, msg):
+                self.add(msg.data)
+            def on_timer(self, event):
+                with self.lock:
+                    self.add(1.0)
+            def add(self, x):
+                self.seen.append(x)
+                self.pub.publish(sum(self.seen))
+        Node()
+        rospy.spin()
+        """)
+    )
+    result = run(Options(paths=(tmp_path,), cache=False), Config(select=("TARL201",)))
+    assert len(result.findings) == count
