@@ -36,6 +36,8 @@ STANDINS: Mapping[str, str] = {  # what a node imports → what it gets
     "genpy.rostime": "genpy",
     "genpy.message": "roslib_message",
     "genpy.dynamic": "genpy_dynamic",
+    "rosbag": "rosbag",
+    "rosbag.bag": "rosbag",
     "roslib": "roslib",
     "roslib.message": "roslib_message",
     "rospy.client": "rospy",
@@ -130,7 +132,7 @@ STANDINS: Mapping[str, str] = {  # what a node imports → what it gets
 }
 _TALKING = ("rospy", "rclpy", "genpy", "roslib", "message_filters", "tf", "tf_transformations", "tf2_ros", "tf2_py",
             "tf2_geometry_msgs", "actionlib", "dynamic_reconfigure", "sensor_msgs_py", "ros_numpy", "rosgraph",
-            "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools")  # fmt: skip
+            "rosnode", "rosparam", "rosservice", "rostopic", "topic_tools", "rosbag")  # fmt: skip
 _MISSING = ("roslaunch", "moveit_commander", "image_transport", "tf2_sensor_msgs", "tf2_kdl",
             "nav2_simple_commander")  # fmt: skip
 _STANDALONE = (

@@ -49,6 +49,19 @@ class Message:
             value = given.get(name)
             setattr(self, name, defaults[name]() if value is None else value)
 
+    def serialize(self, buff: Any) -> None:
+        """Write the message as bytes into a file."""
+        from pytest_tarl.ros.messages.ros1_wire import serialize
+
+        buff.write(serialize(self))
+
+    def deserialize(self, data: bytes) -> Message:
+        """Take the values of all fields from bytes; return the message."""
+        from pytest_tarl.ros.messages.ros1_wire import deserialize
+
+        self.__setstate__(deserialize(type(self), data).__getstate__())
+        return self
+
     def __getstate__(self) -> list[Any]:
         return [getattr(self, name) for name in self.__slots__]
 

@@ -1,0 +1,148 @@
+"""ROS 1 messages as bytes, as topics and bags carry them: little-endian fields in order, lengths as uint32.
+
+Format: https://wiki.ros.org/msg, "Array handling" and "Primitive types".
+"""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+from pytest_tarl.ros.messages import ros1
+from pytest_tarl.ros.messages.definitions import Definition, find_message
+from pytest_tarl.ros.messages.times import Duration, Time
+
+_CODES = {
+    "bool": "?", "byte": "b", "char": "B", "int8": "b", "uint8": "B", "int16": "h", "uint16": "H", "int32": "i",
+    "uint32": "I", "int64": "q", "uint64": "Q", "float32": "f", "float64": "d",
+}  # fmt: skip
+_TIMES = {"time": (Time, "<II"), "duration": (Duration, "<ii")}
+_LENGTH = struct.Struct("<I")
+
+
+class WireError(ValueError):
+    """Bytes are not a message of the type."""
+
+
+def serialize(message: Any) -> bytes:
+    """Return a message as bytes. Raises FieldError for a field whose value its type does not allow."""
+    parts: list[bytes] = []
+    copied = getattr(
+        type(message), "_tarl_copy", None
+    )  # messages of an installed ROS are checked as they are written
+    _write_message(message if copied is None else copied(message), parts)
+    return b"".join(parts)
+
+
+def deserialize(kind: Any, data: bytes) -> Any:
+    """Return the message of a class that bytes hold. Raises WireError where they are too few, or too many."""
+    try:
+        message, end = _read_message(kind, data, 0)
+    except (struct.error, UnicodeDecodeError) as problem:
+        raise WireError(f"the bytes are no {kind._type}: {problem}") from problem
+    if end != len(data):
+        raise WireError(f"{len(data) - end} bytes are left after a {kind._type}")
+    return message
+
+
+def full_text(kind: Any) -> str:
+    """Return the definition of a message type with those of all types in it, as bags keep it."""
+    texts: dict[str, str] = {}
+    pending = [kind._type]
+    while pending:
+        name = pending.pop(0)
+        definition = find_message("ros1", *name.split("/"))
+        if name not in texts and definition is not None:
+            texts[name] = _text(definition)
+            pending += [field.base for field in definition.fields if not field.primitive]
+    first, *others = texts.items()
+    return first[1] + "".join(f"{'=' * 80}\nMSG: {name}\n{text}" for name, text in others)
+
+
+def _text(definition: Definition) -> str:
+    lines = [constant.text for constant in definition.constants]
+    lines += [f"{field.text} {field.name}" for field in definition.fields]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _write_message(message: Any, parts: list[bytes]) -> None:
+    for name, kind in zip(message.__slots__, message._slot_types, strict=True):
+        _write(getattr(message, name), kind, parts)
+
+
+def _write(value: Any, kind: str, parts: list[bytes]) -> None:
+    base, bracket, size = kind.partition("[")
+    if not bracket:
+        _write_one(value, base, parts)
+        return
+    if size == "]":
+        parts.append(_LENGTH.pack(len(value)))
+    if base in _CODES:
+        parts.append(
+            bytes(value) if isinstance(value, bytes) else struct.pack(f"<{len(value)}{_CODES[base]}", *value)
+        )
+        return
+    for one in value:
+        _write_one(one, base, parts)
+
+
+def _write_one(value: Any, base: str, parts: list[bytes]) -> None:
+    if base in _CODES:
+        parts.append(struct.pack(f"<{_CODES[base]}", value))
+    elif base == "string":
+        data = value.encode()
+        parts += [_LENGTH.pack(len(data)), data]
+    elif base in _TIMES:
+        parts.append(struct.pack(_TIMES[base][1], value.secs, value.nsecs))
+    else:
+        _write_message(value, parts)
+
+
+def _read_message(kind: Any, data: bytes, at: int) -> tuple[Any, int]:
+    message = kind()
+    for name, slot in zip(kind.__slots__, kind._slot_types, strict=True):
+        value, at = _read(slot, data, at)
+        setattr(message, name, value)
+    return message, at
+
+
+def _read(kind: str, data: bytes, at: int) -> tuple[Any, int]:
+    base, bracket, size = kind.partition("[")
+    if not bracket:
+        return _read_one(base, data, at)
+    count = int(size.rstrip("]") or 0)
+    if size == "]":
+        (count,), at = _LENGTH.unpack_from(data, at), at + _LENGTH.size
+    if count > len(data):  # every element takes a byte at least, but for empty messages
+        raise WireError(f"an array of {count} elements does not fit {len(data)} bytes")
+    if base in ("uint8", "char"):
+        if at + count > len(data):
+            raise WireError("an array ends after its bytes")
+        return data[at : at + count], at + count
+    if base in _CODES:
+        numbers = struct.Struct(f"<{count}{_CODES[base]}")
+        return numbers.unpack_from(data, at), at + numbers.size
+    found = []
+    for _ in range(count):
+        one, at = _read_one(base, data, at)
+        found.append(one)
+    return found, at
+
+
+def _read_one(base: str, data: bytes, at: int) -> tuple[Any, int]:
+    if base in _CODES:
+        (value,) = struct.unpack_from(f"<{_CODES[base]}", data, at)
+        return value, at + struct.calcsize(_CODES[base])
+    if base == "string":
+        (count,), at = _LENGTH.unpack_from(data, at), at + _LENGTH.size
+        if at + count > len(data):
+            raise WireError("a text ends after its bytes")
+        return data[at : at + count].decode(errors="replace"), at + count
+    if base in _TIMES:
+        made, form = _TIMES[base]
+        return made(*struct.unpack_from(form, data, at)), at + 8
+    package, _, short = base.partition("/")
+    kind = ros1.message_class(package, short) or ros1.CARRIED.get(base)
+    if kind is None:
+        raise WireError(f"message type {base} is not known")
+    return _read_message(kind, data, at)
