@@ -17,7 +17,8 @@ from tests.plugin.ros.conftest import Start
 
 KINDS = ["nav_msgs/Odometry", "sensor_msgs/LaserScan", "sensor_msgs/Image", "sensor_msgs/PointCloud2", "std_msgs/Empty",
          "trajectory_msgs/JointTrajectory", "diagnostic_msgs/DiagnosticArray", "sensor_msgs/CameraInfo",
-         "std_msgs/Bool", "visualization_msgs/MarkerArray", "std_msgs/Duration", "std_msgs/Int64MultiArray"]  # fmt: skip
+         "std_msgs/Bool", "visualization_msgs/MarkerArray", "std_msgs/Duration",
+         "std_msgs/Int64MultiArray"]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
