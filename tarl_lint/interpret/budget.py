@@ -9,11 +9,11 @@ from __future__ import annotations
 MAX_CALLS = 24  # nested calls that are told apart; deeper ones are taken for library calls
 LOOKS = 20  # looks into objects, elements read and edges added that take as long as a statement
 MAX_FRAMES = 20_000  # activations of a program
-MAX_STATEMENTS = 10_000  # executed in one run of a root; then calls are taken for library calls
-MANY = 5_500  # statements in one run of a root, after which no function runs often
+MAX_STATEMENTS = 25_000  # executed in one run of a root; then calls are taken for library calls
+MANY = 3_000  # statements in one run of a root, after which calls of functions that ran often share a context
 OFTEN = 8  # runs of one function in one run of a root that is as long as that
 PATIENCE = (
-    40_000  # statements of a program; then what did not run yet runs once, and at twice as many nothing more
+    80_000  # statements of a program; then what did not run yet runs once, and at twice as many nothing more
 )
 LEISURE = 200  # statements of a call into modules that take no part, when no data goes in
 ALL_LEISURE = 1_000  # statements of all such calls in one run of a root

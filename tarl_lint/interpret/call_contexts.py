@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
-
-from tarl_lint.interpret import literals, nullness, replay
-from tarl_lint.interpret.budget import ALL_LEISURE, LEISURE, MANY, MAX_CALLS, MAX_FRAMES, OFTEN
+from tarl_lint.interpret import context_selection, literals, nullness, replay, shared_contexts
+from tarl_lint.interpret.budget import ALL_LEISURE, LEISURE
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Arguments
 from tarl_lint.ir import nodes as ir
@@ -28,39 +26,6 @@ def all_used(ctx: Interpreter, arguments: Arguments) -> Nodes:
     for value in (*plain, *named.values()):
         deps |= ctx.use(value)
     return deps
-
-
-def make_frame(
-    ctx: Interpreter, closure: Obj, caller: Frame, call: ir.Call, receiver: Hashable, owner: Obj | None
-) -> Frame | None:
-    """Return the activation for this call, None when it would be one too many."""
-    if not isinstance(closure.info, tuple):
-        return None
-    function, outer, program, cls = closure.info
-    runs = ctx.activations.get(function, 0) + 1
-    if len(ctx.stack) > MAX_CALLS or [f.function for f in ctx.stack].count(function) > 1:
-        return None
-    if ctx.worked > ctx.limit or (ctx.worked > MANY and runs > OFTEN):
-        ctx.cut[ctx.program] = None
-        ctx.store.reads.whole = False
-        return None
-    statement = caller.statement.id if caller.statement is not None else -1
-    key = (caller.id, statement, call.slot, closure.key, receiver, *caller.turn)
-    frame = ctx.frames.get(key)
-    if frame is None:
-        made = ctx.frames_of[ctx.program] = ctx.frames_of.get(ctx.program, 0) + 1
-        if made > MAX_FRAMES:
-            ctx.cut[ctx.program] = None
-            ctx.store.reads.whole = False
-            return None
-        frame = Frame(key, len(ctx.frames) + 1, function, program, ctx.module_objects[program.name])
-        ctx.frames[key] = frame
-        frame.caller, frame.call, frame.slot, frame.outer = caller, caller.statement, call.slot, outer
-        frame.base = ctx.branches(caller, caller.statement) | frozenset(ctx.guards)
-        frame.call_pos = call.pos
-        frame.owner = owner or cls
-        frame.answer = caller.answer if caller.statement is None and caller.caller is None else None
-    return frame
 
 
 def invoke(
@@ -91,12 +56,13 @@ def invoke(
 def _invoke(
     ctx: Interpreter, closure: Obj, arguments: Arguments, caller: Frame, call: ir.Call, owner: Obj | None
 ) -> Value:
-    receiver = arguments[0][0].pts if owner is not None and arguments[0] else None
-    frame = make_frame(ctx, closure, caller, call, receiver, owner)
+    frame = context_selection.make_frame(ctx, closure, arguments, caller, call, owner)
     if frame is None:
         return _again(ctx, closure, arguments)
     ctx.called.add((frame.function.module, frame.function.pos[0]))
     passed = pass_arguments(ctx, arguments, caller, call)
+    if frame.shared:
+        passed = shared_contexts.enter(ctx, frame, caller, passed)
     _note_arguments(ctx, frame, arguments, caller, call)
     frame.guards |= frozenset(ctx.guards)
     frame.root_waits = caller.root_waits

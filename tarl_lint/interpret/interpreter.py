@@ -80,6 +80,7 @@ class Interpreter:
         self.edges_of: dict[str, int] = {}  # edges that the runs of each program made
         self.nodes_of: dict[str, int] = {}  # nodes that they made
         self.frames_of: dict[str, int] = {}  # activations of each program
+        self.widened: set[Hashable] = set()  # calls that share a context with others
         self.cut: dict[str, None] = {}  # programs of which not everything was followed
         self.limit = MAX_STATEMENTS
         self.idled = 0  # of it in calls that can matter little

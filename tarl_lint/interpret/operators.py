@@ -51,7 +51,7 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
     if said is not None:
         return said
     if expr.operator in ("+=", "|=") and values[0].pts:
-        return sizes.grown(ctx, expr.operator, values)
+        return sizes.grown(ctx, expr, values, frame)
     if expr.operator in COMBINING and any(v.pts for v in values):
         made = sizes.combined(ctx, expr, values, frame)
         if made is not None:

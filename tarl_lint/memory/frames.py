@@ -53,11 +53,13 @@ class Frame(Obj):
         "module",
         "outer",
         "owner",
+        "passed",
         "program",
         "recorded",
         "result",
         "returns",
         "root_waits",
+        "shared",
         "slot",
         "statement",
         "tries",
@@ -96,6 +98,10 @@ class Frame(Obj):
         self.escapes: list[Escape] = []
         self.result = BOTTOM
         self.recorded: object = None  # the last run, to be replayed
+        self.shared = False  # by calls from several places, whose arguments are joined
+        self.passed: tuple[list[Value], dict[str, Value]] | None = (
+            None  # arguments of all calls that share it
+        )
         self.yielded = BOTTOM
         self.arguments: list[Value] = []
 
@@ -103,7 +109,7 @@ class Frame(Obj):
         """Let go of what may lead back here."""
         super().release()
         self.returns, self.jumps, self.tries, self.escapes, self.arguments = [], [], [], [], []
-        self.recorded = None
+        self.recorded = self.passed = None
 
     def owner_class(self) -> Obj | None:
         """Return the class whose body this is, None in functions."""

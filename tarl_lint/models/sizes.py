@@ -7,6 +7,7 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory import heap, recency, updates
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, KEYS, LENGTH, SENT, item_field
+from tarl_lint.memory.reachable_data import in_order
 from tarl_lint.memory.values import ABSENT, BOTTOM, NONE, UNKNOWN, Nodes, Obj, Value, join_all, pointer
 
 MAX_KNOWN = 16  # elements of a made sequence that are told apart
@@ -55,15 +56,21 @@ def concatenated(ctx: Interpreter, expr: ir.Operation, values: list[Value], fram
     return Value(values[0].deps | values[1].deps, frozenset([obj]))
 
 
-def grown(ctx: Interpreter, name: str, values: list[Value]) -> Value:
-    """Return what `a += b` or `a |= b` leaves in a container."""
+def grown(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:
+    """Return what `a += b` or `a |= b` leaves in a container.
+
+    The elements and their number pass through the statement: one node each, into however many containers they go.
+    """
     first, second = values
-    for obj in first.pts:
-        if obj.kind == "mapping" and name == "|=":
-            absorb(ctx, obj, second)
-        else:
-            updates.add_element(ctx, pointer(obj), heap.elements(ctx, second))
-            lengthen(ctx, obj, second)
+    tables = frozenset(o for o in first.pts if o.kind == "mapping" and expr.operator == "|=")
+    for obj in in_order(tables):
+        absorb(ctx, obj, second)
+    if others := first.pts - tables:
+        news = ctx.carry(heap.elements(ctx, second), ctx.node(frame, ("grown", expr.pos), "assign"))
+        updates.add_element(ctx, Value(first.deps, others), news)
+        longer = ctx.carry(Value(length(ctx, second)), ctx.node(frame, ("longer", expr.pos), "assign"))
+        for obj in in_order(others) if longer.deps else ():
+            decide_length(ctx, obj, longer.deps)
     return Value(first.deps | second.deps, first.pts)
 
 

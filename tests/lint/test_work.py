@@ -10,6 +10,7 @@ import pytest
 from tarl_lint import engine
 from tarl_lint.cli import main
 from tarl_lint.flows.reachability import Tracer
+from tarl_lint.interpret import fixpoint
 from tarl_lint.interpret.budget import LEISURE, MAX_GENERATIONS, PATIENCE
 from tarl_lint.interpret.fixpoint import Linker
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
@@ -109,7 +110,9 @@ def test_the_same_flows_are_found_with_and_without_what_comes_from_no_source():
     assert engine.trace([module], Config())[1] == engine.analyse([module], Config()) != ()
 
 
-def test_programs_that_are_not_followed_to_the_end_are_counted(in_directory, capsys):
+def test_programs_that_are_not_followed_to_the_end_are_counted(in_directory, capsys, monkeypatch):
+    monkeypatch.setattr(fixpoint, "PATIENCE", 20_000)
+    monkeypatch.setattr(fixpoint, "MAX_STATEMENTS", 5_000)
     in_directory({"node.py": node(chain(24, 6), subscriptions=30)})
     main(["--no-cache"])
     assert "Not analysed: parts of 1 large program (node.py as big)" in capsys.readouterr().out

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tarl_lint.interpret import call_contexts
+from tarl_lint.interpret import call_contexts, shared_contexts
 from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.interpret.invocation import Invocation
 from tarl_lint.ir import nodes as ir
@@ -90,6 +90,9 @@ def _entered(ctx: Interpreter, frame: Frame, node: int) -> None:
     """Let a node depend on what decides whether its function is called."""
     caller, call = frame.caller, frame.call
     if caller is None or call is None:
+        return
+    if frame.shared:
+        ctx.graph.depend(node, [n for n, _ in shared_contexts.conditions(ctx, frame)])
         return
     key = (frame.id, "entered")
     if key not in ctx.graph.numbers:

@@ -1,0 +1,71 @@
+"""Select the call context of a call: one of its own, or one that it shares where contexts are too many."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+
+from tarl_lint.interpret import shared_contexts
+from tarl_lint.interpret.budget import MANY, MAX_CALLS, MAX_FRAMES, OFTEN
+from tarl_lint.interpret.interpreter import Interpreter
+from tarl_lint.interpret.invocation import Arguments
+from tarl_lint.ir import nodes as ir
+from tarl_lint.memory.frames import Frame
+from tarl_lint.memory.values import Obj
+
+
+def make_frame(
+    ctx: Interpreter, closure: Obj, arguments: Arguments, caller: Frame, call: ir.Call, owner: Obj | None
+) -> Frame | None:
+    """Return the activation for this call, None when it would be one too many."""
+    if not isinstance(closure.info, tuple):
+        return None
+    function = closure.info[0]
+    runs = ctx.activations.get(function, 0) + 1
+    if len(ctx.stack) > MAX_CALLS or [f.function for f in ctx.stack].count(function) > 1:
+        return None
+    if ctx.worked > ctx.limit:
+        _cut(ctx)
+        return None
+    receiver = arguments[0][0].pts if owner is not None and arguments[0] else None
+    statement = caller.statement.id if caller.statement is not None else -1
+    own = (caller.id, statement, call.slot, closure.key, receiver, *caller.turn)
+    if ctx.worked > MANY and runs > OFTEN and shared_contexts.may_share(arguments):
+        ctx.widened.add(own)
+    ctx.store.reads.ask(ctx.widened.__contains__, own)
+    shares = own in ctx.widened
+    key = shared_contexts.shared_key(own, ctx.store.root.key, arguments) if shares else own
+    frame = ctx.frames.get(key)
+    if frame is None:
+        made = ctx.frames_of[ctx.program] = ctx.frames_of.get(ctx.program, 0) + 1
+        if made > MAX_FRAMES:
+            _cut(ctx)
+            return None
+        frame = _new_frame(ctx, closure, key, caller, call, owner)
+        frame.shared = shares
+        frame.base = (
+            shared_contexts.conditions(ctx, frame)
+            if shares
+            else ctx.branches(caller, caller.statement) | frozenset(ctx.guards)
+        )
+    return None if shares and frame in ctx.stack else frame
+
+
+def _new_frame(
+    ctx: Interpreter, closure: Obj, key: Hashable, caller: Frame, call: ir.Call, owner: Obj | None
+) -> Frame:
+    if not isinstance(closure.info, tuple):
+        raise TypeError(f"{closure!r} is no function")
+    function, outer, program, cls = closure.info
+    frame = Frame(key, len(ctx.frames) + 1, function, program, ctx.module_objects[program.name])
+    ctx.frames[key] = frame
+    frame.caller, frame.call, frame.slot, frame.outer = caller, caller.statement, call.slot, outer
+    frame.call_pos = call.pos
+    frame.owner = owner or cls
+    frame.answer = caller.answer if caller.statement is None and caller.caller is None else None
+    return frame
+
+
+def _cut(ctx: Interpreter) -> None:
+    """Note that not everything of the program is followed."""
+    ctx.cut[ctx.program] = None
+    ctx.store.reads.whole = False
