@@ -137,6 +137,10 @@ class Truth:
         if judged.get("skip"):
             self.counts["left out"] += 1
             return
+        if judged.get("uncalled"):
+            self.counts["in methods that nothing calls"] += 1
+            self.counts["in methods that nothing calls, reported"] += bool(flows)
+            return
         wanted = {Place.read(one["at"], call.path): one for one in judged["from"]}
         found = {_place(trees, flow.source.span.path, flow.source.span.line): flow for flow in flows}
         before = len(self.remarks)
@@ -203,7 +207,7 @@ def compare(options: argparse.Namespace) -> None:
     for remark in truth.remarks:
         print(remark)
     for name, count in sorted(truth.counts.items()):
-        print(f"{name:>28}: {count}")
+        print(f"{name:>40}: {count}")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
