@@ -104,6 +104,32 @@ def test_a_named_constant_is_changed_where_it_is_defined(
     assert where
 
 
+@pytest.mark.parametrize(
+    ("name", "text", "load", "line"),
+    [
+        ("gains.yaml", "pid:\n  gain: 2.0  # per metre\n", "yaml.safe_load(file)", "+  gain: "),
+        ("gains.json", '{"pid": {\n  "gain": 2.0\n}}\n', "json.load(file)", '+  "gain": '),
+    ],
+)
+def test_a_file_that_the_node_loads_is_changed(
+    worn: pytest.Pytester, name: str, text: str, load: str, line: str
+) -> None:
+    (worn.path / name).write_text(text)
+    before = f"""\
+import json
+import os
+
+import yaml
+
+with open(os.path.join(os.path.dirname(__file__), "{name}")) as file:
+    GAINS = {load}
+"""
+    node(worn, before=before, use='GAINS["pid"]["gain"]')
+    where, _, lines = repaired(worn)
+    assert where == f"{name}:2 gain"
+    assert line in lines
+
+
 DECLARED = """\
 import rclpy
 from rclpy.node import Node
