@@ -79,6 +79,8 @@ class Origins:
             seen.add(node)
             literal = self.graph.literals.get(node)
             if literal is not None:
+                if not self.graph.live.isdisjoint(self.graph.data[node]):
+                    return None  # a constant only as long as no message had come: `gain * self.error`
                 value, pos, path = literal
                 found.add(Origin(value if isinstance(value, (bool, int, float)) else None, path, pos))
                 continue

@@ -105,6 +105,39 @@ def test_a_parameter_that_callers_fill_differently_has_no_value(tmp_path):
     assert (operand.code, operand.value, operand.definition) == ("gain", None, None)
 
 
+def test_what_is_constant_until_the_first_message_is_no_operand(tmp_path):
+    analysis = analysed(
+        tmp_path,
+        node="""
+        import rospy
+        GAIN = 2.0
+        def bounded(value, most):
+            return most if value > most else value
+        class Steering:
+            def __init__(self):
+                self.error = 0.0
+                rospy.Subscriber("a", F, self.on)
+                self.out = rospy.Publisher("b", F)
+            def on(self, msg):
+                self.error = msg.data
+            def wanted(self):
+                turn = 0.0
+                if self.error:
+                    turn = -GAIN * self.error
+                    turn = bounded(turn, 1.5)
+                return (turn, 1.0)
+            def run(self):
+                while not rospy.is_shutdown():
+                    turn, speed = self.wanted()
+                    self.out.publish(turn)
+        Steering().run()
+        """,
+    )
+    found = {(o.code, o.value) for step in analysis.sites for o in analysis.operands(step.site)}
+    assert ("GAIN", 2.0) in found
+    assert not {code for code, _ in found} & {"turn", "value", "self.error"}
+
+
 def test_conditions_have_operands_too(tmp_path):
     analysis = analysed(
         tmp_path,
