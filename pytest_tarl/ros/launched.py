@@ -87,12 +87,18 @@ def _given(launch: Launch, node: LaunchedNode) -> Given:
     shared: dict[str, Any] = {}
     files: list[Path] = []
     for setting in (*launch.settings, *node.settings):
-        values = dict(_values(setting, node))
+        values = {_rooted(name, node): value for name, value in _values(setting, node)}
         (private if setting.name.startswith("~") else shared).update(values)
         files += [setting.file] if values and setting.file not in files else []
     sources = ", ".join(file.name for file in files if file != launch.file)
     note = f"parameters of {node.name or node.executable} come from {launch.file.name}"
     return Given(private, shared, f"{note} ({sources})." if sources else f"{note}.")
+
+
+def _rooted(name: str, node: LaunchedNode) -> str:
+    """Return a name within the node's namespace as a name within `/`, where the test starts the node."""
+    inside = name.startswith(f"{node.namespace.rstrip('/')}/") and node.namespace != "/"
+    return name.removeprefix(node.namespace.rstrip("/")) if inside else name
 
 
 def _values(setting: Setting, node: LaunchedNode) -> Iterator[tuple[str, Any]]:

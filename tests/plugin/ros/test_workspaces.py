@@ -218,6 +218,18 @@ def test_parameters_of_ros2_come_from_launch_files_in_python(launches: Path, sta
     assert started(start, launches, NODE2, found, kp=3.0)["found"] == {"kp": 3.0, "limits.top": 4}
 
 
+def test_parameters_of_the_namespace_follow_the_node(launches: Path) -> None:
+    text = """
+        <launch>
+          <param name="everywhere" value="1"/>
+          <group ns="left"><param name="side" value="l"/><node pkg="arm_base" type="node.py" name="drive"/></group>
+        </launch>
+        """
+    write(launches, {"launch/one.launch": text})
+    workspace.forget()
+    assert given(launches / "node.py").shared == {"/everywhere": 1, "/side": "l"}
+
+
 def test_launch_files_that_disagree_give_nothing_and_are_told(launches: Path) -> None:
     write(launches, {"launch/two.launch": LAUNCH1.format(rate=9)})
     workspace.forget()
