@@ -92,7 +92,7 @@ def test_reference_pages_hold_every_option_setting_and_schema() -> None:
     assert all(f"| `{key}` |" in reference.settings() for key in KEYS)
     assert all(f"`schemas/{path.name}`" in reference.schema_page() for path in schemas())
     helped = reference.commands()
-    assert helped.count("usage: tarl ") == 8
+    assert helped.count("usage: tarl ") == 9
     assert helped.count("usage: tarl-lint ") == 1
 
 
