@@ -49,11 +49,18 @@ def document(result: Result) -> dict[str, Any]:
         "notes": [plain(line) for line in summary.not_analysed(result)],
         "errors": [{"path": e.path, "line": e.line, "message": e.message} for e in result.errors],
         **incomplete(result),
+        **_outside(result),
         "steps": [_step(step) for step in steps],
         "sources": [_source(source) for source in sources],
         "sinks": [_sink(sink) for sink in sinks],
         "diagnostics": diagnostics,
     }
+
+
+def _outside(result: Result) -> dict[str, Any]:
+    """Return the analysed installed packages and the classes at which flows ended, each key only if there are any."""
+    found = {"followed": list(result.followed), "opaque": list(result.ended)}
+    return {key: names for key, names in found.items() if names}
 
 
 def _dumped(value: object) -> str:

@@ -103,6 +103,14 @@ def test_json2_keeps_to_its_schema(example, baseline):
     jsonschema.Draft202012Validator(SCHEMA).validate(json.loads(text_of("json2", Result())))
 
 
+def test_json2_names_followed_packages_and_classes_where_flows_end(example):
+    result = replace(everything(example), followed=("robot-base 1.4.0",), ended=("driver.base.Base",))
+    made = json.loads(text_of("json2", result))
+    jsonschema.Draft202012Validator(SCHEMA).validate(made)
+    assert (made["followed"], made["opaque"]) == (["robot-base 1.4.0"], ["driver.base.Base"])
+    assert not {"followed", "opaque"} & json.loads(text_of("json2", Result())).keys()
+
+
 def test_json2_says_the_same_as_json(example):
     result = everything(example)
     one, two = (json.loads(text_of(name, result)) for name in ("json", "json2"))
