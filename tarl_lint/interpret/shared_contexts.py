@@ -31,7 +31,7 @@ def shared_key(own: tuple[Hashable, ...], root: Hashable, arguments: Arguments) 
     `own` is the key that the call would have for itself: caller, statement, slot, function, receiver.
     """
     plain, named = arguments
-    return ("shared", root, len(plain), own[3], own[4], *sorted(named))
+    return ("shared", root, (len(plain), *sorted(named)), own[3], own[4])
 
 
 def conditions(ctx: Interpreter, frame: Frame) -> Branches:
