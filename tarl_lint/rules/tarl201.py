@@ -28,6 +28,7 @@ from tarl_lint.evidence import Evidence
 from tarl_lint.model import Finding
 from tarl_lint.prefilter.one_sided import Side
 from tarl_lint.rules.races.alternatives import never_both
+from tarl_lint.rules.races.guarded_names import always_or_never_guarded
 from tarl_lint.rules.races.locksets import MADE, Harm, Locking, Use, unguarded
 
 CODE: Final = "TARL201"
@@ -146,8 +147,8 @@ VALID: Final = (
 
 
 def ruled_out(side: Side) -> bool:
-    """Return whether the group creates no lock."""
-    return not any(map(MADE.search, side.texts))
+    """Return whether the group creates no lock, or guards every state by one wherever it is used, or nowhere."""
+    return not any(map(MADE.search, side.texts)) or always_or_never_guarded(side.modules)
 
 
 def findings(evidence: Evidence) -> Iterator[Finding]:

@@ -94,8 +94,23 @@ ACTIONS: Final = (
 
 
 def ruled_out(side: Side) -> bool:
-    """Return whether the group subscribes to nothing, or no function can be an idle callback."""
-    return not side.hears or all(acting(f) for m in side.modules for f in _functions(m.tree.body))
+    """Return whether the group subscribes to nothing, or no function that does nothing is handed on."""
+    if not side.hears:
+        return True
+    idle = [f for m in side.modules for f in _functions(m.tree.body) if not acting(f)]
+    return {f.name for f in idle}.isdisjoint(name for m in side.modules for name in _handed_on(m.tree))
+
+
+def _handed_on(tree: ast.Module) -> Iterator[str]:
+    """Yield the names that are used otherwise than by calling them, and the texts, which may name a method."""
+    called = {id(n.func) for n in walk(tree) if isinstance(n, ast.Call)}
+    for node in walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.value
+        elif isinstance(node, ast.Attribute) and id(node) not in called:
+            yield node.attr
+        elif isinstance(node, ast.Name) and id(node) not in called:
+            yield node.id
 
 
 def _functions(body: Sequence[ast.stmt]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:

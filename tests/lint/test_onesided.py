@@ -84,7 +84,6 @@ def test_nothing_is_found_in_the_cases_that_are_not_run():
         ("self.pub = rospy.Publisher", "self.pub, self.x = 1, rospy.Publisher"),
         ("import rospy", "import rospy\n    from rospy import Publisher as P\n    other = P('x', String)"),
         ("self.pub.publish", "self.pub = rospy.Publisher('other', String); self.pub.publish"),
-        ("import rospy", "import rospy, threading\n    lock = threading.Lock()"),
         ('self.pub.publish("hello")', 'self.pub.publish(rospy.wait_for_message("a", String))'),
         ("import rospy", "import rospy\n    rospy.Service('s', Empty, lambda request: 1)"),
     ],
@@ -96,6 +95,63 @@ def test_a_talker_that_may_be_a_hazard_or_hear_something_is_run(changed):
 def test_a_listener_whose_callback_may_do_nothing_is_run():
     assert not skipped(LISTENER.replace("rospy.loginfo(msg.data)", "last = msg.data"))
     assert skipped(LISTENER.replace("rospy.loginfo(msg.data)", "pass").replace("on(msg)", "on(_)"))
+
+
+LOCKED = """
+    import threading
+    import rospy
+    class Listener:
+        def __init__(self):
+            self.lock = threading.Lock()
+            self.last = None
+            rospy.Subscriber("chatter", String, self.on)
+        def on(self, msg):
+            with self.lock:
+                self.last = str(msg.data)
+            rospy.loginfo(msg.data)
+        def show(self):
+            with self.lock:
+                rospy.loginfo(self.last)
+    listener = Listener()
+    while not rospy.is_shutdown():
+        listener.show()
+    """
+
+
+def test_state_that_is_used_under_its_lock_everywhere_or_nowhere_needs_no_run():
+    assert skipped(LOCKED)
+    assert skipped(LOCKED.replace("with self.lock", "if True"))
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        (
+            "                rospy.loginfo(self.last)",
+            "                pass\n            rospy.loginfo(self.last)",
+        ),
+        (
+            "rospy.loginfo(self.last)",
+            "self.tell()\n        def tell(self):\n            rospy.loginfo(self.last)",
+        ),
+    ],
+)
+def test_state_that_may_be_used_without_its_lock_is_run(changed):
+    text = LOCKED.replace(*changed)
+    assert text != LOCKED
+    assert not skipped(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "run"),
+    [
+        ("def on(msg):\n    last = msg.data\nrospy.Subscriber('a', String, on)", True),
+        ("def on(msg):\n    last = msg.data\nrospy.Subscriber('a', String, getattr(me, 'on'))", True),
+        ("def on(msg):\n    last = msg.data\non(rospy.wait_for_message('a', String))", False),
+    ],
+)
+def test_a_function_that_does_nothing_is_no_callback_unless_it_is_handed_on(text, run):
+    assert skipped("import rospy\n" + text) is not run
 
 
 def test_hazards_that_nobody_wants_need_nothing_to_be_run():

@@ -1,0 +1,64 @@
+"""Names of state that is used with a lock and without one, from the syntax alone: only they can be a hazard."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+
+from tarl_lint.evidence import Outline
+from tarl_lint.read.source import Module
+from tarl_lint.rules.races.accesses import Access, accesses
+from tarl_lint.rules.races.held_locks import FUNCTIONS, locks_around
+from tarl_lint.trees import walk
+
+
+def always_or_never_guarded(modules: Sequence[Module]) -> bool:
+    """Return whether no attribute or global is used both under a lock and without one.
+
+    Uses during construction count as neither. Where code under a lock calls a function of the modules, which may use
+    anything, the answer is no.
+    """
+    outlines = [Outline(module.tree) for module in modules]
+    ours = {d.name for outline in outlines for d in outline.definitions}
+    if any(_last(call.func) in ours for outline in outlines for call in _under_locks(outline)):
+        return False
+    guarded: set[str] = set()
+    bare: set[str] = set()
+    for outline in outlines:
+        for access in _accesses(outline):
+            (guarded if access.locks else bare).add(access.name)
+        bare |= set(_at_module_level(outline.tree))
+    return guarded.isdisjoint(bare)
+
+
+def _under_locks(outline: Outline) -> Iterator[ast.Call]:
+    """Yield the calls that run while a lock is held."""
+    return (call for calls in outline.calls.values() for call in calls if locks_around(call, outline))
+
+
+def _accesses(outline: Outline) -> Iterator[Access]:
+    """Yield the accesses of all functions but `__init__` to attributes of anything named like a receiver."""
+    receivers = {_first(d) for d in outline.definitions if isinstance(d, FUNCTIONS)}
+    for function in walk(outline.tree):
+        if isinstance(function, FUNCTIONS) and getattr(function, "name", "") != "__init__":
+            for receiver in sorted(receivers | {"self"}):
+                yield from accesses(function, receiver, outline)
+
+
+def _at_module_level(tree: ast.Module) -> Iterator[str]:
+    """Yield the names that the module itself uses, which the main program may do at any time."""
+    pending: list[ast.AST] = [tree]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, ast.Name):
+            yield node.id
+        pending += [c for c in ast.iter_child_nodes(node) if not isinstance(c, FUNCTIONS)]
+
+
+def _first(function: ast.AST) -> str:
+    arguments = getattr(function, "args", None)
+    return arguments.args[0].arg if arguments is not None and arguments.args else "self"
+
+
+def _last(expr: ast.expr) -> str:
+    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""
