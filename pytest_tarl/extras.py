@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import sys
+from importlib.metadata import PackageNotFoundError, distribution
 from importlib.util import find_spec
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 NEEDED = ("greenlet", "libcst", "numpy", "pytest")
 SERVER = ("pygls",)
@@ -24,11 +28,31 @@ def missing_server(what: str) -> str | None:
     return _sentence(what, [name for name in SERVER if find_spec(name) is None], "lsp")
 
 
+def install_command(extra: str) -> str:
+    """Return the command that installs an extra, from the source tree that this tarl was installed from, if any."""
+    origin = _source_tree()
+    if origin is None:
+        return f'pip install "tarl[{extra}]"'
+    tree, editable = origin
+    return f'pip install {"--editable " if editable else ""}"{tree}[{extra}]"'
+
+
+def _source_tree() -> tuple[str, bool] | None:
+    """Return the local folder that pip installed tarl from, and whether the install is editable (PEP 610)."""
+    try:
+        record = json.loads(distribution("tarl").read_text("direct_url.json") or "{}")
+        url = urlsplit(record["url"])
+        editable = bool(record["dir_info"].get("editable"))
+    except (PackageNotFoundError, ValueError, KeyError, TypeError):
+        return None  # from an index, an archive or a repository
+    return (url2pathname(url.path), editable) if url.scheme == "file" else None
+
+
 def _sentence(what: str, missing: list[str], extra: str) -> str | None:
     if not missing:
         return None
     verb = "is" if len(missing) == 1 else "are"
-    return f'{what} needs {_listed(missing)}, which {verb} not installed: run pip install "tarl[{extra}]".'
+    return f"{what} needs {_listed(missing)}, which {verb} not installed: run {install_command(extra)}."
 
 
 def no_lock(what: str) -> str | None:

@@ -1,8 +1,12 @@
-"""The flags that TARL adds to pytest: names, types, and which of them start a TARL run."""
+"""The flags that TARL adds to pytest: names, types, which of them start a TARL run, and what a misspelt one means."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from difflib import get_close_matches
 from typing import Any, NamedTuple
+
+PREFIX = "--tarl-"
 
 
 class Flag(NamedTuple):
@@ -19,7 +23,7 @@ class Flag(NamedTuple):
     @property
     def key(self) -> str:
         """Return the name used by `options.options`."""
-        return self.name.removeprefix("--tarl-")
+        return self.name.removeprefix(PREFIX)
 
     @property
     def unset(self) -> Any:
@@ -131,3 +135,14 @@ FLAGS = (
     ),
     Flag("--tarl-strict", "with --tarl-online: fail tests without a recording", asks=True),
 )
+
+
+def misspelt(unknown: Iterable[str]) -> str | None:
+    """Return a sentence on the first of the unknown arguments that looks like a flag of TARL, None where none does."""
+    for word in unknown:
+        name = word.partition("=")[0]
+        if name.startswith(PREFIX):
+            close = get_close_matches(name, [flag.name for flag in FLAGS], 1)
+            meant = f": did you mean {close[0]!r}?" if close else "."
+            return f"There is no option {name}{meant} Run pytest --help for all options."
+    return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from pytest_tarl import held_interpreter, ini
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.extras import missing_extra, missing_packages
-from pytest_tarl.flags import FLAGS, Flag
+from pytest_tarl.flags import FLAGS, PREFIX, Flag, misspelt
 
 if TYPE_CHECKING:
     from pytest_tarl.episode import Tarl
@@ -29,6 +30,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     for flag in FLAGS:
         group.addoption(flag.name, **flag.declaration())
     ini.declare(parser)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_load_initial_conftests(parser: pytest.Parser, args: list[str]) -> Generator[None]:
+    """Suggest the flag that a misspelt one means, once all plugins and conftest files have declared theirs."""
+    yield
+    if any(word.startswith(PREFIX) for word in args):
+        sentence = misspelt(parser.parse_known_and_unknown_args(args)[1])
+        if sentence is not None:
+            raise pytest.UsageError(sentence)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -98,11 +109,15 @@ def pytest_runtest_makereport(
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-    """Add advice to the error of a test module that imports a ROS that is not installed."""
+def pytest_make_collect_report(
+    collector: pytest.Collector,
+) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """Show a user's mistake as a sentence, and add advice where a test module imports a ROS that is not installed."""
     report = yield
     call: pytest.CallInfo[Any] | None = getattr(report, "call", None)
-    if call is not None and call.excinfo is not None and not missing_packages():
+    if call is not None and call.excinfo is not None and _ours(call.excinfo.value):
+        report.longrepr = _at_line(call.excinfo, collector.config.rootpath)
+    elif call is not None and call.excinfo is not None and not missing_packages():
         from pytest_tarl.importhint import import_hint
 
         hint = import_hint(call.excinfo.value)
@@ -119,6 +134,17 @@ def _require_extra(what: str) -> None:
 
 def _ours(error: BaseException) -> bool:
     return type(error).__module__ == "pytest_tarl.errors"  # told by name: a plain run imports nothing of ours
+
+
+def _at_line(excinfo: pytest.ExceptionInfo[BaseException], root: Path) -> str:
+    """Return an error of ours, after the innermost line of the user's code that led to it."""
+    ours = Path(__file__).parent
+    lines = [entry for entry in excinfo.traceback if ours not in Path(entry.path).parents]
+    if not lines:
+        return str(excinfo.value)
+    path = Path(lines[-1].path)
+    shown = path.relative_to(root) if path.is_relative_to(root) else path
+    return f"{shown}:{lines[-1].lineno + 1}: {excinfo.value}"
 
 
 def _asked(config: pytest.Config) -> bool:

@@ -38,6 +38,11 @@ if TYPE_CHECKING:
 
 PLAIN_WIDTH = 80  # columns where there is no terminal to ask, as under `-p no:terminal`
 
+UNMARKED = (
+    "NOTHING WAS RUN: no collected test has the marker. With TARL's flags, pytest runs only tests with "
+    "@pytest.mark.tarl(nodes=[…], sensors=[…])."
+)
+
 
 class TarlSession:
     """The hooks of one run; registered only when a mode is asked for."""
@@ -53,6 +58,7 @@ class TarlSession:
         self._summary = Summary()
         self._ended: list[_Ended] = []  # tests that have run and are not told yet
         self._designated: tuple[pytest.Item, ...] = ()
+        self._unmarked = False  # whether tests were collected, but none with the marker
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
         """Make an id of every drift scenario: `test_delivers[mud]`, `[online]` without one."""
@@ -73,6 +79,7 @@ class TarlSession:
     def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Item]) -> None:
         """Deselect what TARL has nothing to do with."""
         marked = [item for item in items if item.get_closest_marker("tarl") is not None]
+        self._unmarked = bool(items) and not marked
         self._designated = tuple(marked)
         if self.options.drift is not None:
             self._check_drift(marked)
@@ -150,7 +157,7 @@ class TarlSession:
         if not self._has_terminal():
             return
         terminal = self.config.get_terminal_writer()
-        if warning := self._summary.warning():
+        if warning := UNMARKED if self._unmarked else self._summary.warning():
             terminal.line(warning, bold=True, red=True)
         if not self._summary.patches:
             return

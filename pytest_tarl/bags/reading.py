@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pytest_tarl.bags.channels import Channel, Recorded
 from pytest_tarl.bags.salvage import walk
 from pytest_tarl.errors import LogError
+from pytest_tarl.extras import install_command
 
 if TYPE_CHECKING:
     from rosbags.rosbag1 import Reader as Reader1
@@ -100,7 +101,7 @@ def _require() -> None:
     try:
         import rosbags.rosbag2  # noqa: F401
     except ImportError as error:
-        raise LogError('Bags are read with `rosbags`: run pip install "tarl[ros]".') from error
+        raise LogError(f"Bags are read with `rosbags`: run {install_command('ros')}.") from error
 
 
 def _unreadable() -> tuple[type[Exception], ...]:

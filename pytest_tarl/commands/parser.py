@@ -1,4 +1,4 @@
-"""Parse the command line of `tarl`. A mistake shows the help of its command and suggests the closest command."""
+"""Parse the command line of `tarl`. A mistake shows the usage of its command and a sentence."""
 
 from __future__ import annotations
 
@@ -9,14 +9,19 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
+NO_COMMAND = "the following arguments are required: COMMAND"
+
 
 class Parser(argparse.ArgumentParser):
     """A parser of a command, or of the words before it."""
 
     def error(self, message: str) -> NoReturn:
-        """Print the help and a sentence, and exit with 2."""
-        self.print_help(sys.stderr)
-        self.exit(2, f"\n{self.prog}: {sentence(message)}\n")
+        """Print the usage (of `tarl` alone: the list of commands) and a sentence, and exit with 2."""
+        if message == NO_COMMAND:
+            self.print_help(sys.stderr)
+        else:
+            self.print_usage(sys.stderr)
+        self.exit(2, f"\n{self.prog}: {sentence(message)} Run {self.prog} --help for more.\n")
 
     def parse_args(self, args: Sequence[str] | None = None) -> argparse.Namespace:  # type: ignore[override]
         """Parse the arguments. An unknown argument is an error of its command, not of `tarl`."""
@@ -32,9 +37,12 @@ def sentence(message: str) -> str:
     if wrong := re.match(r"argument COMMAND: invalid choice: '(.*)' \(choose from (.*)\)$", message):
         known = re.findall(r"[\w-]+", wrong[2])
         close = difflib.get_close_matches(wrong[1], known, 1)
-        return f"There is no command {wrong[1]!r}" + (f"; did you mean {close[0]!r}?" if close else ".")
+        return f"There is no command {wrong[1]!r}" + (f": did you mean {close[0]!r}?" if close else ".")
+    if message == NO_COMMAND:
+        return "Name one of the commands above, as in `tarl show .tarl/utility/NAME.npz`."
     if missing := re.match(r"the following arguments are required: (.*)$", message):
-        return f"{missing[1]} is missing."
+        *before, last = missing[1].split(", ")
+        return f"{', '.join(before)} and {last} are missing." if before else f"{last} is missing."
     if extra := re.match(r"unrecognized arguments: (.*)$", message):
         return f"It does not know {extra[1]!r}."
     return f"{message[:1].upper()}{message[1:]}."

@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.extras import install_command
 from pytest_tarl.formulas.said import NOTHING_SAID, Said
 
 NEWEST = (3, 12)  # for which the parser that rtamt is built on can be imported
@@ -55,7 +56,7 @@ def require_rtamt(where: str) -> None:
         )
     if find_spec("rtamt") is None:
         raise SettingsError(
-            f'{where}: formulas are read by rtamt, which is not installed: run pip install "tarl[stl]".'
+            f"{where}: formulas are read by rtamt, which is not installed: run {install_command('stl')}."
         )
 
 

@@ -119,6 +119,8 @@ def load(path: Path) -> Fixture:
         content = path.read_bytes()
     except FileNotFoundError:
         raise FixtureError(f"There is no utility fixture {path}.", advice) from None
+    except IsADirectoryError:
+        raise FixtureError(f"{path} is a folder.", "Name a file in it, such as NAME.npz.") from None
     except OSError as problem:
         raise FixtureError(
             f"The utility fixture {path} cannot be read: {problem.strerror}.", advice

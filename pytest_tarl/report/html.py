@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import TarlError
+from pytest_tarl.extras import install_command
 from pytest_tarl.files import advice_on, write_atomically
 from pytest_tarl.model import Comparison, ListComparison
 from pytest_tarl.report import formulas, guarantees, sizes, words
@@ -79,7 +80,7 @@ def _require() -> None:
     if missing:
         raise TarlError(
             f"The report page needs {' and '.join(missing)}, which is not installed: run "
-            'pip install "tarl[report]". Verdict and patch do not depend on it.'
+            f"{install_command('report')}. Verdict and patch do not depend on it."
         )
 
 

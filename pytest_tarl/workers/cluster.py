@@ -7,6 +7,7 @@ from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
 
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.extras import install_command
 from pytest_tarl.workers.pool import Pool, Post
 
 REACHED = 10  # seconds in which the scheduler has to answer
@@ -34,7 +35,7 @@ def joined(address: str) -> Iterator[tuple[Executor, int]]:
     try:
         from distributed import Client
     except ImportError:
-        raise SettingsError("--tarl-cluster needs Dask: pip install 'tarl[cluster]'.") from None
+        raise SettingsError(f"--tarl-cluster needs Dask: run {install_command('cluster')}.") from None
     try:
         client = Client(address, timeout=REACHED, set_as_default=False)
     except (OSError, ValueError) as problem:

@@ -66,6 +66,43 @@ def test_a_missing_marker_is_a_sentence_without_traceback(tank: pytest.Pytester)
     told.stdout.no_fnmatch_line("*repeating.py*")
 
 
+@pytest.mark.parametrize("flag", ["--tarl-rekord", "--tarl-onlin=1"])
+def test_a_misspelt_flag_is_told_the_closest_one(tank: pytest.Pytester, flag: str) -> None:
+    told = tank.runpytest(flag)
+    assert told.ret == pytest.ExitCode.USAGE_ERROR
+    meant = "--tarl-record" if "rek" in flag else "--tarl-online"
+    said = f"ERROR: There is no option {flag.partition('=')[0]}: did you mean '{meant}'? Run pytest --help*"
+    told.stderr.fnmatch_lines([said])
+
+
+def test_a_flag_of_a_conftest_file_is_no_misspelt_one(tank: pytest.Pytester) -> None:
+    tank.makeconftest("def pytest_addoption(parser):\n    parser.addoption('--tarl-recorder')\n")
+    tank.makepyfile(test_plain="def test_plain():\n    pass\n")
+    tank.runpytest("--tarl-recorder", "x", "test_plain.py").assert_outcomes(passed=1)
+
+
+@pytest.mark.parametrize("mode", [RECORD, ONLINE])
+def test_a_run_without_a_marked_test_says_that_nothing_was_run(
+    tank: pytest.Pytester, mode: tuple[str, ...]
+) -> None:
+    tank.makepyfile(test_plain="def test_plain():\n    pass\n")
+    told = tank.runpytest(*mode, "test_plain.py")
+    told.assert_outcomes(deselected=1)
+    told.stdout.fnmatch_lines(["NOTHING WAS RUN: *@pytest.mark.tarl(nodes=[[]…], sensors=[[]…])*"])
+
+
+@pytest.mark.parametrize("helper", [False, True])
+def test_a_mistake_outside_of_a_test_is_a_sentence_with_its_line(tank: pytest.Pytester, helper: bool) -> None:
+    wrong = "from pytest_tarl.ros import message_type\n\nScan = message_type('sensor_msgs/msg/Skan')\n"
+    tank.makepyfile(**({"laser": wrong, "test_laser": "import laser\n"} if helper else {"test_laser": wrong}))
+    told = tank.runpytest("test_laser.py")
+    told.assert_outcomes(errors=1)
+    told.stdout.fnmatch_lines(
+        [f"{'laser' if helper else 'test_laser'}.py:3: Message type sensor_msgs/Skan *"]
+    )
+    told.stdout.no_fnmatch_line("*definitions.py*")
+
+
 def test_a_verdict_is_the_reason_of_the_failure(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*ONLINE).stdout.fnmatch_lines(

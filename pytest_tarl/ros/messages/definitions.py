@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any, Literal
 
 from pytest_tarl.errors import UnsupportedApiError
+from pytest_tarl.extras import install_command
 from pytest_tarl.ros.messages.known import Part, known_types
 from pytest_tarl.ros.messages.workspace import workspace_types
 
@@ -240,7 +241,7 @@ def _store(kind: Kind) -> Mapping[str, Any]:
     except ImportError as error:
         raise UnsupportedApiError(
             "ROS message types were asked for, but neither ROS nor `rosbags`, which ships their definitions, is "
-            'installed in this environment: run `pip install "tarl[ros]"`.'
+            f"installed in this environment: run {install_command('ros')}."
         ) from error
     store = get_typestore(Stores.ROS1_NOETIC if kind == "ros1" else Stores.LATEST)
     return {name: definition for name, definition in store.fielddefs.items() if "/msg/" in name}

@@ -15,10 +15,15 @@ from pytest_tarl.commands.cli import main
 @pytest.mark.parametrize(
     ("words", "usage", "sentence"),
     [
-        (["dif", "a", "b"], "usage: tarl [-h]", "tarl: There is no command 'dif'; did you mean 'diff'?"),
+        (["dif", "a", "b"], "usage: tarl [-h]", "tarl: There is no command 'dif': did you mean 'diff'?"),
         (["qqq"], "usage: tarl [-h]", "tarl: There is no command 'qqq'."),
-        ([], "usage: tarl [-h]", "tarl: COMMAND is missing."),
+        (
+            [],
+            "usage: tarl [-h]",
+            "tarl: Name one of the commands above, as in `tarl show .tarl/utility/NAME.npz`.",
+        ),
         (["diff", "a"], "usage: tarl diff", "tarl diff: second is missing."),
+        (["watch"], "usage: tarl watch", "tarl watch: LOG and --fixture are missing."),
         (["diff", "a", "b", "c"], "usage: tarl diff", "tarl diff: It does not know 'c'."),
         (["show", "--site", "--x"], "usage: tarl show", "tarl show: fixture is missing."),
         (
@@ -28,7 +33,7 @@ from pytest_tarl.commands.cli import main
         ),
     ],
 )
-def test_a_mistake_shows_the_help_of_its_command(
+def test_a_mistake_shows_the_usage_of_its_command(
     words: list[str], usage: str, sentence: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as ended:
@@ -36,8 +41,9 @@ def test_a_mistake_shows_the_help_of_its_command(
     assert ended.value.code == 2
     said = capsys.readouterr().err
     assert said.startswith(usage)
-    assert "--help" in said
-    assert said.endswith(f"\n{sentence}\n")
+    command = sentence.partition(":")[0]
+    assert said.endswith(f"\n{sentence} Run {command} --help for more.\n")
+    assert ("positional arguments:" in said) == (words == [])  # the list of commands, for who names none
 
 
 @pytest.mark.parametrize("parser", ["pytest_tarl.commands.cli.parser", "tarl_lint.options.parser"])
@@ -50,3 +56,11 @@ def test_shells_complete_from_the_parsers(parser: str, tmp_path: Path) -> None:
     assert ("--format" if "lint" in parser else "revert") in made.stdout
     if bash := shutil.which("bash"):
         subprocess.run([bash, "-n", script], check=True)
+
+
+def test_a_folder_in_the_place_of_a_recording_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["show", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert said == f"tarl: {tmp_path} is a folder. Name a file in it, such as NAME.npz.\n"

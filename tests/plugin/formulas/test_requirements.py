@@ -265,7 +265,9 @@ def test_without_rtamt_a_sentence_says_how_to_get_it(
     from pytest_tarl.formulas import parsing
 
     monkeypatch.setattr(parsing, "find_spec", lambda name: None)
-    assert 'pip install "tarl[stl]"' in told(run(pytester, 'requires=["always wet"]'))
+    from pytest_tarl.extras import install_command
+
+    assert install_command("stl") in told(run(pytester, 'requires=["always wet"]'))
 
 
 def test_on_a_newer_python_a_sentence_says_which_ones_do(

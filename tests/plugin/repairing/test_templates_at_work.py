@@ -135,6 +135,7 @@ class World:
     """Thirty values a mission, and ten points less the share of the wanted commands by which those sent are off."""
 
     def __init__(self, name: str, folder: Path, body: str = "") -> None:
+        assert name in MENDED, f"add what a node mended by {name} sends to MENDED in this file"
         usual, self.mended = MENDED[name]
         self.bound = BOUNDS.get(name, 0.0)
         self.pair = name == "swapped_axes"

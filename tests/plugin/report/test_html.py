@@ -169,7 +169,7 @@ def test_a_missing_package_is_named_with_the_command_that_installs_it(shuttle, m
     found = importlib.util.find_spec
     monkeypatch.setattr(html, "find_spec", lambda name: None if name == "plotly" else found(name))
     with pytest.raises(
-        TarlError, match=r'needs plotly, which is not installed: run pip install "tarl\[report\]"'
+        TarlError, match=r'needs plotly, which is not installed: run pip install .*\[report\]"'
     ):
         render(shuttle)
 

@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pytest_tarl.errors import UnsupportedApiError
+from pytest_tarl.extras import install_command
 from pytest_tarl.ros import message_type
 from pytest_tarl.ros.messages import find_class, snapshot
 from pytest_tarl.ros.messages.definitions import find_message, parse, type_names
@@ -266,7 +267,7 @@ except Exception as error:
 """
     said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
     assert said.startswith("UnsupportedApiError")
-    assert 'pip install "tarl[ros]"' in said
+    assert install_command("ros") in said
 
 
 def test_package_imports_nothing_heavy_before_it_is_used() -> None:
