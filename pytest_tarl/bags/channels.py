@@ -1,4 +1,4 @@
-"""What every kind of bag consists of: channels that have a type, and messages in the order of their times."""
+"""The common contents of all bags: typed channels, and messages in the order of their times."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NamedTuple
 class Channel(NamedTuple):
     """A recorded topic. `type` is written as in ROS 2, `std_msgs/msg/Bool`, for bags of both generations.
 
-    `definition` is the text of the type, empty where the bag has none; `latched` tells whether it was kept for late
+    `definition` is the text of the type, empty if the bag has none; `latched` tells whether it was kept for late
     subscribers.
     """
 

@@ -1,4 +1,4 @@
-"""A message as `rosbags` reads it, as one of the class that a node subscribes to."""
+"""Convert messages from `rosbags` to the class that a node subscribes to."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def class_named(name: str, kind: Kind) -> type[Any] | None:
 
 
 def converted(recorded: Any, wanted: type[Any]) -> Any:
-    """Carry a recorded message over, field by field. Raises FieldError where the recorded type lacks a field."""
+    """Carry a recorded message over, field by field. Raise FieldError if the recorded type lacks a field."""
     made = wanted()
     kind: Kind = "ros1" if hasattr(wanted, "_slot_types") else "ros2"
     for name in field_names(wanted):
@@ -70,5 +70,5 @@ def _element(one: Any, kind: Kind) -> Any:
         return (Time if one.__msgtype__.endswith("Time") else Duration)(one.sec, one.nanosec)
     wanted = class_named(one.__msgtype__, kind)
     if wanted is None:
-        raise FieldError(f"nobody knows the type {one.__msgtype__}")
+        raise FieldError(f"the type {one.__msgtype__} is unknown")
     return converted(one, wanted)

@@ -1,4 +1,4 @@
-"""Open a bag of either generation, whole or cut off."""
+"""Open a bag of ROS 1 or ROS 2, complete or truncated."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ENDINGS = (".bag", ".bag.active", ".mcap", ".db3")
 class Bag:
     """A recorded mission: its channels by topic, and how to go through its messages.
 
-    `notes` are what the user should hear about it; going through it may add to them.
+    `notes` are sentences for the user; reading the messages may add to them.
     """
 
     path: Path
@@ -46,11 +46,11 @@ class Bag:
         except _unreadable() as problem:
             seconds = (last - self.start) / 1e9
             self.notes.append(
-                f"{self.path.name} cannot be read after {seconds:.1f} s ({problem}); what is before counts."
+                f"{self.path.name} cannot be read after {seconds:.1f} s ({problem}); earlier messages count."
             )
 
     def decode(self, topic: str, data: bytes) -> Any:
-        """Return a message as `rosbags` reads it. Raises KeyError for a type that nobody has defined."""
+        """Return a message as `rosbags` reads it. Raise KeyError for a type that nobody has defined."""
         name = self.channels[topic].type
         store = self._stores[0] if name in self._stores[0].fielddefs else self._stores[1]
         return (
@@ -79,12 +79,12 @@ class Bag:
 
 
 def opened(path: Path) -> Bag:
-    """Open a bag. Raises LogError where nothing of it can be read, with a sentence that says why."""
+    """Open a bag. Raise LogError if nothing of it can be read, with a sentence that says why."""
     if not path.exists():
-        raise LogError(f"There is no bag {path}.")
+        raise LogError(f"{path}: no such bag.")
     if not path.is_dir() and not path.name.endswith(ENDINGS):
         raise LogError(
-            f"{path} is no bag: --tarl-bag takes .bag, .mcap, .db3 and the folder of a ROS 2 recording."
+            f"{path} is not a bag: --tarl-bag takes .bag, .mcap, .db3 and the folder of a ROS 2 recording."
         )
     _require()
     kind: Kind = "ros1" if path.name.endswith((".bag", ".bag.active")) else "ros2"
@@ -151,7 +151,7 @@ def _channel(connection: Any) -> Channel:
 
 
 def _salvaged(path: Path, kind: Kind, reason: str) -> Bag:
-    """Open what is left of a bag. Raises LogError where that is nothing."""
+    """Open what is left of a bag. Raise LogError if that is nothing."""
     files = (
         [path] if not path.is_dir() else sorted(one for one in path.iterdir() if one.name.endswith(ENDINGS))
     )

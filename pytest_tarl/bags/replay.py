@@ -1,4 +1,4 @@
-"""A recorded mission in the place of the simulated world: its sensor topics go through the node, a monitor judges."""
+"""Replay a recorded mission in place of the simulated world: sensor topics go to the node, a monitor gives rewards."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ Monitor = Callable[["Moment"], Judgement]
 Judge = Callable[[Mapping[str, Any], Mapping[str, Any]], float]
 Close = Callable[[Judgement | None], None]
 NO_REWARDS = (
-    "A bag holds no rewards: give the marker monitor=, a function that reads the newest recorded messages, "
-    "moment.latest('/odom'), and returns the reward of a step."
+    "A bag holds no rewards: give the marker monitor=, a function of the newest recorded messages, "
+    "moment.latest('/odom'), that returns the reward of a step."
 )
-ALWAYS_THERE = {"/clock", "/rosout", "/parameter_events", "/tf", "/tf_static"}  # that nobody misses in a bag
+ALWAYS_THERE = {"/clock", "/rosout", "/parameter_events", "/tf", "/tf_static"}  # topics that a bag may lack
 
 
 class MissionReplayed(Skipped):
@@ -100,12 +100,12 @@ class Replay:
     ) -> None:
         """Replay the mission in steps of `dt` seconds; each from when `ready` on, which is asked, is closed.
 
-        `close` gets the monitor's judgement, None where formulas judge. `observe` is what the monitor may tell.
+        `close` gets the monitor's judgement, None if formulas judge. `observe` is what the monitor may tell.
         """
         step = nanoseconds(dt)
         if step <= 0:
             raise SettingsError(
-                "tarl.step(0) is how this test advances time; a bag is replayed in steps that last."
+                "The test calls tarl.step(0), but replaying a bag needs steps of positive length."
             )
         self.begun = True
         ros.bus.muted, moment, end = False, self._moment, self.bag.start + step
@@ -143,7 +143,7 @@ class Replay:
         ros.bus.publish(place.name, told, latch=channel.latched)
 
     def _class(self, ros: Ros, topic: str) -> type[Any]:
-        """Return the class of the messages that the nodes expect. Raises FieldError where they expect another type."""
+        """Return the class of the messages that the nodes expect. Raise FieldError if they expect another type."""
         name = self.bag.channels[topic].type
         expected = [
             one.message_type for one in ros.bus.topic(topic).subscriptions if one.message_type is not None
@@ -153,11 +153,11 @@ class Replay:
                 raise FieldError(f"the bag has {name} there, the node subscribes to it as {type_name(one)}")
         found = expected[0] if expected else class_named(name, self.bag.kind)
         if found is None:
-            raise FieldError(f"nobody here knows the type {name}")
+            raise FieldError(f"the type {name} is unknown here")
         return found
 
     def _conclude(self, ros: Ros) -> None:
-        """Tell what the nodes waited for in vain."""
+        """Add notes on topics that the nodes waited for in vain."""
         held = {absolute(topic) for topic in self.bag.channels}
         own = {place.name for place in ros.bus.topics() if place.publications}
         for topic in sorted(ros.subscribed - held - own - ALWAYS_THERE):
@@ -169,7 +169,7 @@ class Replay:
 
 
 def _sentence(problem: Exception) -> str:
-    return f"nobody has defined {problem.args[0]}" if isinstance(problem, KeyError) else str(problem)
+    return f"{problem.args[0]} is not defined" if isinstance(problem, KeyError) else str(problem)
 
 
 def _unheard(**values: Any) -> None:

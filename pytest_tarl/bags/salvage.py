@@ -1,4 +1,4 @@
-"""What can still be read of a bag that was cut off: its records from the first one to the last whole one.
+"""Read a truncated bag up to its last complete record.
 
 A recorder that is killed writes no index, and without one `rosbags` reads nothing. Formats: rosbag 2.0
 (wiki.ros.org/Bags/Format/2.0), MCAP (mcap.dev/spec), SQLite.
@@ -137,7 +137,7 @@ def _mcap_records(
 
 
 def _transient(profiles: str) -> bool:
-    """Tell whether the publisher of a ROS 2 topic kept its messages, from the text of its quality of service."""
+    """Return whether the publisher of a ROS 2 topic kept its messages, from the text of its quality of service."""
     flat = profiles.replace(" ", "")
     return "durability:1" in flat or "durability:transient_local" in flat
 
@@ -160,7 +160,7 @@ def _decompressor(compression: str) -> Any:
     for module, name in homes.get(compression, ()):
         with suppress(ImportError):
             return getattr(import_module(module), name)()
-    raise ValueError(f"nothing here reads {compression}")
+    raise ValueError(f"{compression} is not supported here")
 
 
 def _walk_db3(path: Path) -> Walk:

@@ -1,4 +1,4 @@
-"""What the linter found as the protocol has it: diagnostics with the statements of a flow, and code lenses."""
+"""Convert the linter's findings to the protocol: diagnostics with the statements of a flow, and code lenses."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _taint_list(flow: Flow, places: Places) -> list[types.DiagnosticRelatedInfor
 
 
 def lenses(result: Result, path: str, places: Places) -> list[types.CodeLens]:
-    """Return a line above each publish call of a file: whose data it sends, and what decides about it."""
+    """Return a code lens above each publish call of a file: the sources of its data and of its conditions."""
     by_call: dict[Span, list[Flow]] = defaultdict(list)
     for finding in (*result.findings, *result.silenced):
         if finding.flow is not None and finding.flow.sink.span.path == path:

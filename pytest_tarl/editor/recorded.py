@@ -1,4 +1,4 @@
-"""What the last comparisons say about lines: utility, its difference under a drift, rank, and accepted repairs.
+"""Results of the last comparisons by line: utility, its difference under a drift, rank, and accepted repairs.
 
 It is read from `.tarl/results/*.json`. Statements are found again by their identity, so moved lines keep their figures.
 """

@@ -1,4 +1,4 @@
-"""What a marker says of formulas: the signals that they may name, what is required, what the reward is."""
+"""The formulas of a marker: their signals, the requirements, and the reward by robustness."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ NOTHING_REQUIRED = Requirements()
 def requirements(
     where: str, given: Mapping[str, Any], sensors: Sequence[Sensor], said: Said = NOTHING_SAID
 ) -> Requirements:
-    """Check those arguments of a marker that are about formulas; `said` is what the test says of them elsewhere.
+    """Check the arguments of a marker on formulas; `said` holds the formulas and signals in the test's source.
 
     A name that a formula uses and that is neither sensor nor signal is one that the test observes. Raises
     SettingsError.
@@ -54,9 +54,7 @@ def requirements(
     formulas = _formulas(where, given.get("requires", ()), names, sensors, said)
     rewarding = _rewarding(where, given.get("reward"), formulas)
     if "robustness_cap" in given and not rewarding:
-        raise SettingsError(
-            f'{where}: robustness_cap goes with reward="robustness", and does nothing without it.'
-        )
+        raise SettingsError(f'{where}: robustness_cap needs reward="robustness".')
     cap = number_within(where, "robustness_cap", given.get("robustness_cap", CAP), float, 1e-9, 1e9)
     _check_lasting(where, given.get("lasts"), formulas)
     followed = "requires" in given or "signals" in given or said.requires
@@ -77,7 +75,7 @@ def _signals(where: str, given: Any, sensors: Sequence[Sensor]) -> tuple[Signal,
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise SettingsError(
-            f"{where}: the name {twice!r} is used twice among sensors and signals; give each its own."
+            f"{where}: the name {twice!r} is used twice among sensors and signals; give each its own name."
         )
     return signals
 
@@ -111,8 +109,8 @@ def check_texts(where: str, text: Any, sensors: Sequence[Sensor]) -> None:
     for sensor in sensors:
         if sensor.categories and isinstance(text, str) and re.search(rf"\b{sensor.name}\b", text):
             raise SettingsError(
-                f"{where}: the formula {text!r} names {sensor.name!r}, a sensor of texts; formulas compare "
-                f"numbers: declare a signal that tells what is asked, such as Signal('is_{sensor.categories[0]}', "
+                f"{where}: the formula {text!r} names {sensor.name!r}, a sensor with string values; formulas compare "
+                f"numbers: declare a signal for the condition, such as Signal('is_{sensor.categories[0]}', "
                 f"topic=…, field=lambda message: message.data == {sensor.categories[0]!r})."
             )
 
@@ -122,7 +120,7 @@ def _rewarding(where: str, given: Any, formulas: Sequence[Formula]) -> bool:
         return False
     if given != "robustness":
         raise SettingsError(
-            f'{where}: reward must be "robustness", or be left out and given by tarl.reward; got {given!r}.'
+            f'{where}: reward must be "robustness", or be omitted in favour of tarl.reward; got {given!r}.'
         )
     if not formulas:
         raise SettingsError(

@@ -24,12 +24,12 @@ class EpisodeFormulas:
         )
 
     def give(self, name: str, value: object) -> None:
-        """Let a signal have a value from now on. Raises SettingsError for what is no number."""
+        """Let a signal have a value from now on. Raise SettingsError for what is no number."""
         if self._judge is not None:
             self._judge.give(name, value, self._now())
 
     def require(self, formula: str, *, begun: bool) -> None:
-        """Require a formula; `begun` tells whether signals were given already. Raises SettingsError."""
+        """Require a formula; `begun` tells whether signals were given already. Raise SettingsError on failure."""
         check_texts("tarl.require", formula, self._sensors)
         if self._judge is None:
             if begun or self._now():
@@ -51,7 +51,7 @@ class EpisodeFormulas:
         """Judge the formulas of an episode whose body is over; only a `whole` one can fail by them.
 
         `alone` tells whether it is the only episode of a plain run, which must be long enough for every formula.
-        Raises RequirementError where one is violated.
+        Raise RequirementError if one is violated.
         """
         if self._judge is None:
             return
@@ -71,7 +71,7 @@ class EpisodeFormulas:
             raise RequirementError(violation)
 
     def rewards(self) -> list[float] | None:
-        """Return the reward of each step by the formulas; None where the test gives it."""
+        """Return the reward of each step by the formulas; None if the test gives it."""
         if not self._requirements.rewarding or self._judge is None:
             return None
         return self._judge.rewards(self._now(), self._requirements.cap)

@@ -61,7 +61,7 @@ class _Strict(ErrorListener):  # type: ignore[misc]
 
 
 def words(text: str) -> tuple[list[str], list[str]]:
-    """Return the names in a text and its other words. Raises ReadingError for characters that no formula has."""
+    """Return the names in a text and its other words. Raise ReadingError for characters that no formula has."""
     lexer = LtlLexer(InputStream(text))
     lexer.removeErrorListeners()
     lexer.addErrorListener(_Strict())
@@ -124,7 +124,7 @@ def _reason(text: str, problem: str) -> str:
 
 
 def _connected(node: AbstractNode) -> Any:
-    """Check a tree and write iff and xor by other connectives. Raises ReadingError."""
+    """Check a tree and write iff and xor by other connectives. Raise ReadingError on failure."""
     if isinstance(node, COUNTING):
         raise ReadingError(
             "next, prev, rise and fall count samples, and steps may differ in length: say it in seconds, such as "
@@ -150,7 +150,7 @@ def _check(node: Any) -> None:
 
 
 def _numeric(node: Any) -> Any:
-    """Return an atom. Raises ReadingError where formulas are compared, or nothing is."""
+    """Return an atom. Raise ReadingError if formulas are compared, or nothing is."""
     if any(isinstance(one, (*CONNECTIVES, *COUNTING, Iff, Xor)) for one in nodes(node)):
         raise ReadingError("it compares or computes with a formula: only numbers can be compared")
     if isinstance(node, Constant) or not signals(node):

@@ -1,4 +1,4 @@
-"""The formulas of one episode: which hold, what each is worth, and what the reward of a step is by them."""
+"""Evaluate the formulas of one episode: robustness, violations, and rewards of steps."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ NEGLIGIBLE = 1e-12  # a margin that is shown as 0
 
 
 class Judged(NamedTuple):
-    """What a formula came to in an episode: robustness, above 0 where it holds, and when it was lost, in s.
+    """What a formula came to in an episode: robustness, above 0 if it holds, and when it was lost, in s.
 
-    Robustness is NaN where the episode ended before the formula could be judged; `lost` is NaN where it was not lost.
+    Robustness is NaN if the episode ended before the formula could be judged; `lost` is NaN if it was not lost.
     """
 
     formula: str
@@ -30,12 +30,12 @@ class Judged(NamedTuple):
 
     @property
     def violated(self) -> bool:
-        """Tell whether the formula was judged and does not hold."""
+        """Return whether the formula was judged and does not hold."""
         return self.robustness <= 0
 
 
 class Judge:
-    """Follows the signals of one episode and judges its formulas when it is over."""
+    """Follow the signals of an episode, and evaluate its formulas at the end."""
 
     def __init__(self, names: Sequence[str], formulas: Sequence[Formula], said: Said = NOTHING_SAID) -> None:
         self.names = tuple(names)
@@ -46,22 +46,22 @@ class Judge:
         self._courses: dict[str, Course] = {}
 
     def give(self, name: str, value: Any, time: int) -> None:
-        """Let a signal have a value from an instant on. Raises SettingsError for what is no number."""
+        """Let a signal have a value from an instant on. Raise SettingsError for what is no number."""
         self.timeline.give(name, value, time)
 
     def require(self, text: str) -> None:
-        """Add a formula. Raises SettingsError for what is none."""
+        """Add a formula. Raise SettingsError for what is none."""
         added = formula("tarl.require", text, self.names, self.said)
         if added not in self.formulas:
             self.formulas.append(added)
 
     def conclude(self, end: int) -> tuple[Judged, ...]:
-        """Judge all formulas. Raises RecordingError where a signal was never given or no time has passed."""
+        """Judge all formulas. Raise RecordingError if a signal was never given or no time has passed."""
         self._check(end)
         return tuple(self._judged(one, end) for one in self.formulas)
 
     def unjudged(self, end: int) -> str:
-        """Return a sentence on a formula that the episode was too short for; empty where there is none."""
+        """Return a sentence on a formula that the episode was too short for; empty if there is none."""
         from pytest_tarl.formulas.reach import unjudged
 
         for one in self.formulas:
@@ -69,7 +69,7 @@ class Judge:
             if problem:
                 return (
                     f"The formula {one.text!r} can never be judged: {problem}, and the episode lasts "
-                    f"{end / NANOSECONDS:g} s. Shorten its bounds, or let the episode last."
+                    f"{end / NANOSECONDS:g} s. Shorten its bounds, or run a longer episode."
                 )
         return ""
 
@@ -91,7 +91,7 @@ class Judge:
         return [after - before for before, after in zip([0.0, *capped], capped, strict=False)]
 
     def violation(self, judged: Sequence[Judged]) -> str:
-        """Say which formulas do not hold, the one that was lost first in the first line; empty where all hold."""
+        """Describe the violated formulas, the earliest violation in the first line; empty if all hold."""
         broken = sorted((one for one in judged if one.violated), key=lambda one: one.lost)
         return "\n".join(self._sentence(one) for one in broken)
 
@@ -135,14 +135,14 @@ class Judge:
         if self.formulas and end == 0:
             raise RecordingError(
                 "No virtual time passed, so no formula can be judged: call tarl.step(dt) in each simulation step; "
-                "bounds are seconds of it."
+                "bounds are seconds of virtual time."
             )
         silent = self._silent()
         if silent is not None:
             one, name = silent
             raise RecordingError(
                 f"The formula {one.text!r} needs the signal {name!r}, which never had a value: call "
-                f"tarl.observe({name}=…) in each step, or look at its topic and field in the marker."
+                f"tarl.observe({name}=…) in each step, or check its topic and field in the marker."
             )
 
 

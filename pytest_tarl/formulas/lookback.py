@@ -1,4 +1,4 @@
-"""The formulas of missions that are over: judged by the changes of signals that a robot wrote down."""
+"""Evaluate formulas of finished missions from the logged changes of signals."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class LookedBack:
 def judgeable(missions: Sequence[Followed], requirements: Requirements) -> tuple[Formula, ...]:
     """Return the formulas whose signals every mission holds.
 
-    Raises LogError where the reward is by robustness and a formula is missing.
+    Raise LogError if the reward is by robustness and a formula is missing.
     """
     held = [{name for _, name, _ in one.changes} for one in missions if one.lasted]
     common = set.intersection(*held) if held and len(held) == len(missions) else set()
@@ -55,7 +55,7 @@ def judgeable(missions: Sequence[Followed], requirements: Requirements) -> tuple
 
 
 def looked_back(mission: Followed, known: Sequence[Formula], requirements: Requirements) -> LookedBack:
-    """Judge a mission as an episode is."""
+    """Evaluate the formulas of a mission like those of an episode."""
     if not known or not mission.lasted:
         return LookedBack()
     judge = Judge(requirements.names, known)
@@ -76,7 +76,7 @@ def left_out(log: str, known: Sequence[Formula], requirements: Requirements) -> 
         return ()
     return (
         (
-            f"{log} does not hold all signals of {', '.join(names)}: not judged there. Signals with a topic are "
-            "written down when the fixture was recorded with them."
+            f"{log} lacks signals of {', '.join(names)}, which is not judged. Observe again with a recording that "
+            "declares these signals with topics."
         ),
     )

@@ -1,4 +1,4 @@
-"""A formula as it is written in a marker or given to `tarl.require`, checked; what is wrong is told in a sentence."""
+"""Parse and check the formulas of a marker or of `tarl.require`; report mistakes in a sentence."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def formula(where: str, text: Any, names: Sequence[str], said: Said = NOTHING_SA
     `said` tells what else the test observes, so that the sentence on an unknown name can be of help.
     """
     if not isinstance(text, str) or not text.strip():
-        raise SettingsError(f"{where}: a formula is a text {EXAMPLE}, got {text!r}.")
+        raise SettingsError(f"{where}: a formula is a string {EXAMPLE}, got {text!r}.")
     require_rtamt(where)
     from pytest_tarl.formulas.grammar import ReadingError
 
@@ -51,17 +51,17 @@ def require_rtamt(where: str) -> None:
     """Raise SettingsError where formulas cannot be read here."""
     if sys.version_info[:2] > NEWEST:
         raise SettingsError(
-            f"{where}: formulas are read by rtamt, which runs on Python 3.10 to 3.12, and this is Python "
+            f"{where}: formulas need rtamt, which runs on Python 3.10 to 3.12; this is Python "
             f"{sys.version_info[0]}.{sys.version_info[1]}: run these tests there, or judge by tarl.reward and assert."
         )
     if find_spec("rtamt") is None:
         raise SettingsError(
-            f"{where}: formulas are read by rtamt, which is not installed: run {install_command('stl')}."
+            f"{where}: formulas need rtamt, which is not installed: run {install_command('stl')}."
         )
 
 
 class _UnknownError(Exception):
-    """A formula names what is no signal."""
+    """A formula names an unknown signal."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
@@ -77,7 +77,9 @@ def _formula(text: str, names: tuple[str, ...]) -> Formula:
     used, others = grammar.words(plain)
     reserved = next((name for name in names if name in others), None)
     if reserved is not None:
-        raise grammar.ReadingError(f"{reserved} is a word of the language, so no signal may have that name")
+        raise grammar.ReadingError(
+            f"{reserved} is a keyword of the formula language, so it cannot be a signal name"
+        )
     unknown = next((name for name in used if name not in names), None)
     if unknown is not None:
         raise _UnknownError(unknown)
@@ -92,20 +94,20 @@ def _unknown(name: str, names: Sequence[str], said: Said) -> str:
     from pytest_tarl.formulas.grammar import WORDS
 
     if "/" in name and name.partition("/")[0] in names:
-        return f"{name!r}, which is no signal; write a division with spaces, {name.replace('/', ' / ')}."
+        return f"{name!r}, which is not a signal; write a division with spaces, {name.replace('/', ' / ')}."
     known = [*dict.fromkeys((*names, *said.observed))]
     close = difflib.get_close_matches(name, [*known, *WORDS], 1)
     told = ", ".join(known) or "there is none"
     if close:
-        return f"{name!r}, which is no signal; did you mean {close[0]!r}? The signals are: {told}."
+        return f"{name!r}, which is not a signal; did you mean {close[0]!r}? The signals are: {told}."
     first = name.partition(".")[0]
     if said.computed:
         return (
-            f"{name!r}, which is no signal ({told}): the test computes names that it observes, which cannot be read "
-            f"from its source; declare this one in the marker, signals=[{first!r}]."
+            f"{name!r}, which is not a signal ({told}): the test computes names of tarl.observe, so TARL cannot read "
+            f"them from its source; declare this one in the marker, signals=[{first!r}]."
         )
     return (
-        f"{name!r}, which is no signal ({told}): it is no sensor, and no tarl.observe in the test's own modules gives "
-        f"it. Give its value by tarl.observe({first}=…), or read it from a message, signals=[Signal({first!r}, "
-        f"topic=…, field=…)]; if a module from elsewhere observes it, declare it, signals=[{first!r}]."
+        f"{name!r}, which is not a signal ({told}): it is not a sensor, and no tarl.observe in the test's modules "
+        f"sets it. Give its value by tarl.observe({first}=…), or read it from a message, signals=[Signal({first!r}, "
+        f"topic=…, field=…)]; if another module observes it, declare it, signals=[{first!r}]."
     )

@@ -1,4 +1,4 @@
-"""When parts of a formula are looked at: is there an instant of the episode at which each can be judged?"""
+"""Check that every part of a formula is evaluated at some instant within the episode."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ def unjudged(tree: Any, end: float = math.inf) -> str:
     A formula is judged at the beginning; what it holds, at the instants that its operators look at from there.
     """
     if not _temporal(tree):
-        return "it looks at the beginning of the episode only: put always or eventually before it"
+        return "it is evaluated at the beginning of the episode only: put always or eventually before it"
     return _unjudged(tree, (0.0, 0.0), end)
 
 
 def _unjudged(node: Any, span: Span, end: float) -> str:
     first, last = span[0], min(span[1], end)
     if first > end:
-        return f"a part of it is looked at after {first / NANOSECONDS:g} s at the earliest"
+        return f"a part of it is evaluated after {first / NANOSECONDS:g} s at the earliest"
     if last < 0 or (isinstance(node, PAST) and last == 0):
         return "a part of it looks back from the beginning of the episode: put always or eventually before it"
     spans = _spans(node, max(first, 0.0), last)

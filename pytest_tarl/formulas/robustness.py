@@ -46,14 +46,14 @@ class Course:
 
 
 def course(formula: Formula, signals: Mapping[str, Samples]) -> Course:
-    """Compute the atoms. Raises SettingsError where one has no value, as by a division by zero."""
+    """Compute the atoms. Raise SettingsError if one has no value, as by a division by zero."""
     visitor = Atoms(signals)
     try:
         return Course(formula, {id(atom): visitor.visit(atom) for atom in atoms(formula.tree)})
     except Exception as problem:  # rtamt raises plain ones
         raise SettingsError(
-            f"The formula {formula.text!r} has no value: {str(problem).rstrip('.')}. Correct the formula, or what is "
-            "given for its signals."
+            f"The formula {formula.text!r} has no value: {str(problem).rstrip('.')}. Correct the formula, or the "
+            "values of its signals."
         ) from problem
 
 
@@ -69,7 +69,7 @@ def running(course: Course, ends: Sequence[int]) -> list[float]:
 
 
 def lost_at(course: Course, instants: Sequence[int]) -> int | None:
-    """Return the first of the instants from which on nothing can satisfy the formula; None where something could.
+    """Return the first of the instants from which on nothing can satisfy the formula; None if something could.
 
     It is never too early: where atoms depend on each other, the loss may be noticed later than it could be.
     """

@@ -1,4 +1,4 @@
-"""What a test's own source says of formulas, beside its marker."""
+"""Formulas and signals in a test's source, besides its marker."""
 
 from __future__ import annotations
 

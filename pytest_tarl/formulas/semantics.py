@@ -82,7 +82,7 @@ class Atoms(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         return [[0, node.val]]
 
     def visitPredicate(self, node: Any, *args: Any, **kwargs: Any) -> Samples:  # noqa: N802
-        """Return a comparison, never zero: at equality its sign is its truth. Raises ArithmeticError for NaN."""
+        """Return a comparison, never zero: at equality its sign is its truth. Raise ArithmeticError for NaN."""
         equal = -TRUTH if str(node.operator) in STRICT else TRUTH
         found: Samples = super().visitPredicate(node, *args, **kwargs)
         if any(math.isnan(value) for _, value in found):

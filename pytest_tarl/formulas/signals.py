@@ -1,4 +1,4 @@
-"""Signals: named numbers over virtual time, each constant until the instant at which it is given anew."""
+"""Signals: named, piecewise constant numbers over virtual time."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Samples = list[list[Any]]  # [[time in ns, value], …] in order of time, as rta
 
 @dataclass(frozen=True)
 class Signal:
-    """A number that formulas may name and that is no sensor.
+    """A number for formulas that is not a sensor.
 
     With `topic` and `field` (dotted, or a function of the message) it is read from every message on the topic, those
     that the node publishes included. Without them the test gives it: `tarl.observe(gap=…)`.
@@ -40,7 +40,7 @@ class Signal:
         for given, what in ((self.topic, "topic"), (None if callable(self.field) else self.field, "field")):
             if given is not None and (not isinstance(given, str) or not given.strip("/.")):
                 raise SettingsError(
-                    f"Signal {self.name!r}: {what} must be a text such as topic='/odom', "
+                    f"Signal {self.name!r}: {what} must be a string such as topic='/odom', "
                     f"field='twist.twist.linear.x', got {given!r}."
                 )
 
@@ -104,14 +104,14 @@ class Timeline:
 
 
 def signal_value(name: str, value: Any) -> float:
-    """Return a value as formulas see it: booleans are 1 and -1. Raises SettingsError for what is no number."""
+    """Return a value as formulas see it: booleans are 1 and -1. Raise SettingsError for what is no number."""
     if isinstance(value, bool) or getattr(getattr(value, "dtype", None), "kind", "") == "b":
         return 1.0 if value else -1.0
     number = as_number(value)
     if number is None:
         raise SettingsError(
-            f"The signal {name!r} got {value!r}, which is no number: formulas compare numbers and booleans. Let a "
-            "function of the message make one of it: Signal(…, field=lambda message: …)."
+            f"The signal {name!r} got {value!r}, which is not a number: formulas compare numbers and booleans. "
+            "Convert it by a function of the message: Signal(…, field=lambda message: …)."
         )
     return number
 

@@ -1,1 +1,1 @@
-"""From taint lists to recorded events: numbered sites, instrumented code, one trace an episode."""
+"""Instrument code: from taint lists to numbered sites, instrumented code, and one trace per episode."""

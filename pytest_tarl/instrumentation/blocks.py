@@ -1,4 +1,4 @@
-"""Where blocks begin to run, and what functions receive."""
+"""Find the entry points of blocks, and the parameters of functions."""
 
 from __future__ import annotations
 
@@ -55,6 +55,6 @@ def _first_part(node: ast.stmt) -> ast.expr | ast.stmt:
 
 
 def _is_declaration(node: ast.stmt) -> bool:
-    """Tell whether no code runs for a statement: global, nonlocal, bare annotation."""
+    """Return whether no code runs for a statement: global, nonlocal, bare annotation."""
     bare = isinstance(node, ast.AnnAssign) and node.value is None
     return bare or isinstance(node, (ast.Global, ast.Nonlocal))

@@ -1,7 +1,7 @@
 """Compiled code of instrumented files, kept between runs below `.tarl/cache`.
 
 An entry is named after everything that its code depends on, carries a digest of its contents and is written
-to a temporary file that is then renamed. A damaged, foreign or unwritable entry costs a compilation, no more.
+to a temporary file that is then renamed. A damaged, foreign or unwritable entry only costs a compilation.
 """
 
 from __future__ import annotations

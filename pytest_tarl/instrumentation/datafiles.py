@@ -1,4 +1,4 @@
-"""Other text for files that a test or a node reads as data: parameters in YAML, launch and .cfg files."""
+"""Replace the text of files read as data by a test or a node: parameters in YAML, launch and .cfg files."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _SUFFIXES = (".yaml", ".yml", ".json", ".toml", ".xml", ".launch", ".cfg", ".lau
 
 
 def is_data(path: Path) -> bool:
-    """Tell whether a file holds parameters rather than a program of the node."""
+    """Return whether a file holds parameters rather than a program of the node."""
     return path.name.endswith(_SUFFIXES)
 
 
 @contextmanager
 def reading(overlay: Mapping[Path, str]) -> Iterator[None]:
-    """Let whoever opens one of the files for reading get the other text; nothing on the disk is changed."""
+    """Give readers of these files the replacement text, without changing the files on disk."""
     if not overlay:
         yield
         return

@@ -1,4 +1,4 @@
-"""Flat buffers of events → columns, vectorised."""
+"""Convert flat buffers of events to columns, vectorised."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The little pieces of syntax that recording is made of, and where they say they stand.
+"""Build the syntax nodes that record values, with their source positions.
 
 Every new node takes the place of code that runs at the same moment, so that line events, tracebacks and
 carets stay those of the program as written.

@@ -1,4 +1,4 @@
-"""Runs of plain arithmetic on local floats, which are recorded in one go.
+"""Record runs of plain arithmetic on local floats with a single call.
 
 Where every name that such a run reads holds a float when it begins, its statements cannot fail, run no code of the
 program and make floats only. So their events may be kept back to the end of the run, unseen, and cost a fraction.
@@ -134,7 +134,7 @@ def _whole(node: ast.expr) -> bool:
 
 
 def _divides(node: ast.expr) -> bool:
-    """Tell whether an expression is a number other than 0."""
+    """Return whether an expression is a number other than 0."""
     return isinstance(node, ast.Constant) and bool(node.value) and (_whole(node) or _float(node) is not None)
 
 

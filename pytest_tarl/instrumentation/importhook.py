@@ -1,4 +1,4 @@
-"""Node files → running code: instrumented, edited where a repair is tried, executed afresh each episode.
+"""Import node files: instrument them, apply candidate repairs, and execute them anew in each episode.
 
 The only file that touches `sys.meta_path`.
 """
@@ -38,7 +38,7 @@ _OURS = frozenset({"pytest_tarl", "tarl_lint"})
 
 
 class AlreadyImportedWarning(UserWarning):
-    """A node file was imported before the episode began, so that it runs as it is."""
+    """A node file was imported before the episode began, so it runs without instrumentation."""
 
 
 class NodeImports:
@@ -183,7 +183,7 @@ class NodeImports:
         return None
 
     def _asked_by_node(self, frame: FrameType | None) -> bool:
-        """Tell whether code of a node, or of a module that belongs to the episode, is on the stack."""
+        """Return whether code of a node, or of a module that belongs to the episode, is on the stack."""
         while frame is not None:
             space = frame.f_globals
             if space.get("__name__") in self._imported or any(space is known for known in self._namespaces):
@@ -210,8 +210,9 @@ class NodeImports:
     def _warn(self, early: Mapping[Path, str]) -> None:
         for path in sorted(early.keys() - self._executed):
             warnings.warn(
-                f"{path.name} was imported (as {early[path]}) before the episode began, so it ran as it is and "
-                "nothing was recorded in it: import it inside the test function, or start it with tarl.start.",
+                f"{path.name} was imported (as {early[path]}) before the episode began, so it ran without "
+                "instrumentation and nothing was recorded in it: import it inside the test function, or start it "
+                "with tarl.start.",
                 AlreadyImportedWarning,
                 stacklevel=2,
             )
@@ -235,7 +236,7 @@ class NodeImports:
                 delattr(outer, tail)
 
     def _belongs(self, module: ModuleType) -> bool:
-        """Tell whether a module is source of the node's own workspace, or of the tests' one."""
+        """Return whether a module is source of the node's own workspace, or of the tests' one."""
         spec = module.__dict__.get("__spec__")
         if spec is None or not isinstance(spec.loader, SourceFileLoader) or not spec.origin:
             return False

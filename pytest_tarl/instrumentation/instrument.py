@@ -1,4 +1,4 @@
-"""ast → ast with recording. Pure; the instrumented program computes exactly what the original computes."""
+"""Transform an ast into one that records. The instrumented program computes exactly what the original computes."""
 
 from __future__ import annotations
 
@@ -274,7 +274,7 @@ class _Recording(ast.NodeTransformer):
         return note_constant(value, number, at, inline=self._inline)
 
     def _rereadable(self) -> bool:
-        """Tell whether a plain name can be read again without running code: not so in a class body."""
+        """Return whether a plain name can be read again without running code: not so in a class body."""
         return self._scope[-1] != "class"
 
     def _before_or_around(

@@ -1,4 +1,4 @@
-"""Where a node's file is imported from and under which name, and the interpreter put back once it has run."""
+"""Find the import path and name of a node's file, and restore the interpreter after the node has run."""
 
 from __future__ import annotations
 

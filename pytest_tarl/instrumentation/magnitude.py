@@ -1,4 +1,4 @@
-"""The flow value of anything: one finite, non-negative number, found without running code of the program.
+"""The flow value of any object: a finite, non-negative number, computed without running the program's code.
 
 =============================  =====================================================================
 int, float, bool               absolute value; 1 and 0
@@ -40,7 +40,7 @@ Parts = Callable[[Any], Iterable[Any]]
 
 
 def magnitude(value: object) -> float:
-    """Return the flow value of anything: finite, at least 0. Never raises, leaves `value` alone."""
+    """Return the flow value of any object: finite, at least 0. Never raise, never modify `value`."""
     if value is None or value is True or value is False or type(value) is str:
         return 1.0 if value is True else 0.0
     try:
@@ -172,7 +172,7 @@ def _numpy(value: Any) -> float:
 
 
 def _parts(kind: type) -> Parts | None:
-    """Return what lists the contents of a container or message; None where there is nothing to look into."""
+    """Return what lists the contents of a container or message; None if there is nothing to look into."""
     for container in _CONTAINERS:
         if issubclass(kind, container):
             return container.__iter__  # not the subclass's own, which may do anything

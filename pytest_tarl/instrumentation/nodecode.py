@@ -1,4 +1,4 @@
-"""Node file → code object: its text or the text that replaces it, with its sites recorded."""
+"""Compile a node file, or the text that replaces it, with its sites recorded."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class NodeCode:
         return None if text is None else text.encode()
 
     def recorded(self, file: Path) -> bool:
-        """Tell whether a file (a resolved path) holds sites."""
+        """Return whether a file (a resolved path) holds sites."""
         return bool(self._plan.get(file))
 
     def compile(self, path: Path) -> CodeType:

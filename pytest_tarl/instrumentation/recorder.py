@@ -1,8 +1,8 @@
-"""Event buffers of one episode: as little as possible while the node runs, everything else at its end.
+"""Event buffers of one episode, with minimal work while the node runs and the rest at its end.
 
 A buffer is one flat list per thread, `[site, value, site, value, …]`. What happens around the node (a cell
 is latched, a step is rewarded) goes into a list of marks, each with the length of every buffer at that
-moment; so nobody but its thread ever writes to a buffer. Greenlets of one thread share its buffer.
+moment; so only its own thread ever writes to a buffer. Greenlets of one thread share its buffer.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ class Recorder:
         return bound(code, self._bound_hook, self._own.entries)
 
     def latch(self, cell: Cell | None) -> None:
-        """Note the cell that the node has now been told; None when it is unknown again."""
+        """Latch the current cell; None if it is unknown again."""
         with self._lock:
             self._mark(-1 if cell is None else self._cells.setdefault(cell, len(self._cells)))
 
@@ -165,7 +165,7 @@ class Recorder:
 
 
 def _alone() -> bool:
-    """Tell whether every other thread belongs to a tool that runs tests, and so never runs the program's code."""
+    """Return whether every other thread belongs to a tool that runs tests, and so never runs the program's code."""
     return all(
         _of_tool(thread) for thread in threading.enumerate() if thread is not threading.current_thread()
     )

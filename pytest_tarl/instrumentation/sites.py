@@ -1,4 +1,4 @@
-"""Analysis → numbered sites: one list per source topic and sink topic, and where each site stands."""
+"""Number the sites of an analysis: one list per source and sink topic, with the position of each site."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Positions = Mapping[Position, int]  # → global number of the site that stands 
 
 
 class HasFlows(Protocol):
-    """What `plan` needs of `tarl_lint.api.Analysis`."""
+    """The part of `tarl_lint.api.Analysis` that `plan` needs."""
 
     @property
     def flows(self) -> Sequence[Flow]:
@@ -30,7 +30,7 @@ class HasFlows(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What to record.
+    """The sites to record.
 
     A global site number is an index into `places`; `members[i]` are the numbers of `lists[i]`.
     `positions` tells by path (as the analysis writes it) where sites stand, columns in characters.

@@ -1,4 +1,4 @@
-"""Hear of a program's next thread before it runs its first line."""
+"""Get notified of a program's new threads before their first line runs."""
 
 from __future__ import annotations
 

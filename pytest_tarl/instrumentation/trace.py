@@ -1,4 +1,4 @@
-"""What one episode recorded, in columns."""
+"""The recorded columns of one episode."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Trace:
     `cells` are the distinct cells in order of first latch; the other cell columns are indices into it, -1
     where no message had come yet. Event columns have shape (events,), step columns (steps,). Events come by
     step and, within a step, by thread: consecutive events of different threads are no sequence. Events
-    after the last reward belong to the last step. `thread` is None where one thread recorded everything.
+    after the last reward belong to the last step. `thread` is None if one thread recorded everything.
     """
 
     cells: tuple[Cell, ...]

@@ -1,1 +1,1 @@
-"""From traces to what they say: statistics, utility, fixture, comparison, slices."""
+"""Learn from traces: statistics, utility, recordings, comparison, slices."""

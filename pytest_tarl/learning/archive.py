@@ -1,4 +1,4 @@
-"""Arrays of an `.npz` file that nobody vouches for: read within bounds, numbers only, never a pickle."""
+"""Read arrays from an untrusted `.npz` file: bounded in size, numbers only, no pickle."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from numpy.typing import NDArray
 
 from pytest_tarl.free_memory import available
 
-FREE = 256_000_000  # bytes that any file may unpack to
-RATIO = 100  # bytes more for each byte of the file; recordings take 2 to 20
+FREE = 256_000_000  # unpacked bytes allowed for every file
+RATIO = 100  # further unpacked bytes allowed per byte of the file; recordings take 2 to 20
 NEEDED = 9  # bytes of memory for each unpacked one while a recording is read (benchmarks/limits.py, case recording)
 KINDS = "biuf"  # booleans and numbers
 ENDING = ".npy"
 
 
 class DamagedError(ValueError):
-    """An archive is not what a recording writes; the argument is a half-sentence that says why."""
+    """An archive is not a valid recording; the argument is a clause that says why."""
 
 
 class TooLargeError(ValueError):
-    """There is not the memory to read an archive; the argument is a half-sentence that says how much it takes."""
+    """There is too little memory to read an archive; the argument is a clause that says how much it needs."""
 
 
 def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
@@ -40,7 +40,7 @@ def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
         unpacked = sum(one.file_size for one in members)
         if unpacked > FREE + RATIO * len(content):
             raise DamagedError(
-                f"its {len(content):,} bytes would unpack to {unpacked:,}, which no recording does"
+                f"its {len(content):,} bytes would unpack to {unpacked:,}, more than any recording"
             )
         free = available()
         if free is not None and NEEDED * unpacked > free:
@@ -49,12 +49,12 @@ def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
             )
         names = [one.filename for one in members]
         if len({*names}) < len(names):
-            raise DamagedError("it holds one name twice")
+            raise DamagedError("it contains a name twice")
         return {one.filename.removesuffix(ENDING): _array(archive, one) for one in members}
 
 
 def numbers(arrays: Mapping[str, NDArray[Any]], name: str, *shape: int | None) -> NDArray[Any]:
-    """Return an array. Raises DamagedError where it is not there or of another shape; None stands for any length."""
+    """Return an array. Raise DamagedError if it is not there or of another shape; None stands for any length."""
     found = arrays.get(name)
     if found is None:
         raise DamagedError(f"it has no column {name!r}")
@@ -66,7 +66,7 @@ def numbers(arrays: Mapping[str, NDArray[Any]], name: str, *shape: int | None) -
 
 def _array(archive: ZipFile, member: ZipInfo) -> NDArray[Any]:
     if not member.filename.endswith(ENDING):
-        raise DamagedError(f"its member {member.filename[:40]!r} is no array")
+        raise DamagedError(f"its member {member.filename[:40]!r} is not an array")
     stream = io.BytesIO(archive.read(member))
     if npy.read_magic(stream) != (1, 0):
         raise DamagedError(f"its member {member.filename[:40]!r} has an unknown header")
@@ -74,5 +74,5 @@ def _array(archive: ZipFile, member: ZipInfo) -> NDArray[Any]:
     body = stream.read()
     whole = dtype.kind in KINDS and all(size >= 0 for size in shape)
     if not whole or math.prod(shape) * dtype.itemsize != len(body):
-        raise DamagedError(f"its member {member.filename[:40]!r} is not as long as its shape says")
+        raise DamagedError(f"its member {member.filename[:40]!r} has another length than its shape")
     return np.frombuffer(body, dtype).reshape(shape, order="F" if by_columns else "C").copy()

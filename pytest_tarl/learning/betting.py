@@ -1,8 +1,9 @@
-"""Is a mean above a limit? Bets on every episode against the claim that it is not (Waudby-Smith & Ramdas 2023).
+"""Test by betting whether a mean is above a limit (Waudby-Smith & Ramdas 2023).
 
-Who bets a fixed share of what he has on a fair game multiplies it by 1/risk with probability `risk` at most, whatever
-the shape of the totals is, and however often he looks (Ville). Two bets share the money: a bold one, which wins soon
-where no episode is bad, and one that survives a few bad ones.
+Each episode is a bet against the claim that it is not. In a fair game, a bet that always stakes a fixed share of its
+wealth multiplies it by 1/risk with probability at most `risk`, whatever the distribution of the totals and the number
+of looks (Ville). Two bets share the wealth: a bold one, which wins soon if no episode is bad, and a careful one, which
+survives a few bad ones.
 """
 
 from __future__ import annotations
@@ -14,16 +15,14 @@ from statistics import fmean, variance
 
 from pytest_tarl.learning.bounds import mean_of
 
-BOLD, CAREFUL = 0.95, 0.5  # shares that may be lost in the worst episode there is
-DOUBT = 1.5  # by which a variance of few episodes is taken for larger than it looks
-CERTAIN = (
-    0.005  # risk, about, at which a mean is taken to be below the limit: this ends tests, it accepts nothing
-)
+BOLD, CAREFUL = 0.95, 0.5  # shares lost in the worst possible episode
+DOUBT = 1.5  # factor on the variance estimated from few episodes
+CERTAIN = 0.005  # approximate risk of giving up on a mean above the limit; it ends tests, it accepts nothing
 
 
 @dataclass(frozen=True, slots=True)
 class Bet:
-    """Bets that differences are above `-margin` on average; those below `least` count as that.
+    """Bets that the mean difference is above `-margin`; differences below `least` are clipped to it.
 
     `stakes` are per unit of reward.
     """
@@ -33,13 +32,13 @@ class Bet:
     stakes: tuple[float, ...]
 
     def wealth(self, differences: Sequence[float]) -> float:
-        """Return the logarithm of what one unit has become; -inf where all was lost."""
+        """Return the logarithm of the wealth that started as 1; -inf if all was lost."""
         each = [_grown(stake, differences, self.margin, self.least) for stake in self.stakes]
         most = max(each)
         return most if most == -inf else most + log(fmean(exp(one - most) for one in each))
 
     def hopeless(self, differences: Sequence[float], left: int, risk: float) -> bool:
-        """Tell whether `left` more episodes, as good as those seen may truly be, would not win the bet."""
+        """Return whether the bet cannot be won with `left` more episodes, even at an optimistic mean."""
         counted = [max(one, self.least) for one in differences]
         best = mean_of(counted, 1.0 - CERTAIN).high
         if best < -self.margin:
@@ -49,7 +48,7 @@ class Bet:
 
 
 def bet(margin: float, least: float, known: Sequence[float]) -> Bet:
-    """Return the bets that grow fast if differences are as in `known`, episodes of which none is bet on."""
+    """Return bets that grow fast if differences are as in `known`, shape (episodes,), which must not be bet on."""
     counted = [max(one, least) for one in known]
     spread = DOUBT * variance(counted) if len(counted) > 1 else 0.0
     gap = max(fmean(counted) + margin, margin / 4)
@@ -64,6 +63,6 @@ def _grown(stake: float, differences: Sequence[float], margin: float, least: flo
 
 
 def _bounded(stake: float, margin: float, least: float, share: float) -> float:
-    """Return a stake that loses this share of the money, at most, in the worst episode."""
+    """Return a stake that loses at most this share of the wealth in the worst episode."""
     deepest = -least - margin
     return stake if deepest <= 0.0 else min(stake, share / deepest)

@@ -1,7 +1,7 @@
-"""Bounds on what a world's next episodes do: success rate, mean and quantiles of the total reward, loss.
+"""Bounds on future episodes of a world: success rate, mean and quantiles of the total reward, loss.
 
-Each one assumes that episodes are drawn independently from one world, and holds by itself (marginally): several of them
-hold together at the sum of their risks. What else they assume:
+Each bound assumes that episodes are drawn independently from one world, and holds marginally: several bounds hold
+jointly at the sum of their risks. Further assumptions:
 
     rate          nothing                                       exact (Clopper & Pearson 1934)
     mean_of       totals lie in a declared range                exact (betting; Waudby-Smith & Ramdas 2023, Theorem 3)
@@ -10,15 +10,15 @@ hold together at the sum of their risks. What else they assume:
     loss_between  both worlds' totals lie in a declared range   exact (two betting bounds)
     loss_between  nothing declared                              permutation: exact if the worlds differ by a shift;
                                                                 approximate (Welch) if one of them varies more
-    detectable    -                                             approximate (normal): what a test would have seen
+    detectable    -                                             approximate (normal)
 
 An acceptance asks whether a mean is above a limit, for values that have a lower end only: learning/betting.py, exact.
 No other module computes an interval or a quantile of its own (tests/plugin/learning/test_bounds_are_one_place.py).
-What a search decides by an approximate bound is where to look next and what to say first, never what to promise.
+A search uses approximate bounds only to choose what to try and to rank, never to guarantee.
 
-"Exact" means at least the stated confidence, for any number of episodes that was fixed beforehand. Where it was not,
-because recording went on until something was settled, `rate_sequence`, and `mean_of` with `anytime`, hold at all times.
-benchmarks/bound_coverage.py measures how often each of them holds.
+"Exact" means at least the stated confidence, for any number of episodes that was fixed beforehand. If their number
+depends on their results, `rate_sequence`, and `mean_of` with `anytime`, hold at all times. benchmarks/bound_coverage.py
+measures how often each of them holds.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ from pytest_tarl.learning.student import difference_bounds, mean_bounds
 from pytest_tarl.learning.tables import Floats
 from pytest_tarl.model import Bound
 
-POWER = 0.8  # of the smallest loss that is called detectable
-STAKE = 0.75  # of what a bet may lose at once: the truncation c of Waudby-Smith & Ramdas
+POWER = 0.8  # power at the smallest detectable loss
+STAKE = 0.75  # share of the wealth that a bet may lose at once: the truncation c of Waudby-Smith & Ramdas
 
 
 class Range(NamedTuple):
-    """Between which values every episode's total lies, whatever happens."""
+    """Known bounds on the total of every episode."""
 
     low: float
     high: float
@@ -57,7 +57,7 @@ def rate(passed: int, episodes: int, confidence: float) -> Bound:
 
 
 def rate_low(passed: int, episodes: int, risk: float) -> float:
-    """Return the rate below which so many passes or more have at most the probability `risk`."""
+    """Return the rate below which at least so many passes have a probability of at most `risk`."""
     if passed <= 0:
         return 0.0
     if passed == episodes:
@@ -67,7 +67,7 @@ def rate_low(passed: int, episodes: int, risk: float) -> float:
 
 
 def rate_sequence(passed: int, episodes: int, confidence: float) -> Bound:
-    """Return one-sided bounds of a success rate that hold after every episode at once, however often one looks."""
+    """Return one-sided bounds of a success rate that hold simultaneously after every episode."""
     risk = 1.0 - confidence
     low = _sequence_low(passed, episodes, risk)
     high = 1.0 - _sequence_low(episodes - passed, episodes, risk)
@@ -75,10 +75,10 @@ def rate_sequence(passed: int, episodes: int, confidence: float) -> Bound:
 
 
 def evidence_above(passed: int, episodes: int, least: float) -> float:
-    """Return the log of an e-process against a success rate of `least` or less: it rarely grows where that is so.
+    """Return the log of an e-process against a success rate of `least` or less.
 
-    The likelihood ratio is mixed over all higher rates, uniformly (Robbins 1970); it exceeds log(1 / α) ever with
-    probability α at most (Ville).
+    The likelihood ratio is mixed over all higher rates, uniformly (Robbins 1970); if that is true, it ever exceeds
+    log(1 / α) with probability at most α (Ville).
     """
     failed = episodes - passed
     if least >= 1.0:
@@ -99,8 +99,8 @@ def mean_of(
 ) -> Bound:
     """Return the one-sided bounds of a mean, each at the confidence; exact where the range is declared.
 
-    With `anytime` they hold after every episode at once. A bet that was won early stays won, so a bound may pass the
-    mean of what was seen; there it ends. Raises ValueError where a total lies outside of the range.
+    With `anytime` they hold simultaneously after every episode. A bound from an early win may then exceed the observed
+    mean; it is clipped there. Raise ValueError if a total lies outside of the range.
     """
     values = np.asarray(totals, dtype=np.float64)
     if declared is None:
@@ -121,10 +121,10 @@ def mean_of(
 
 
 def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
-    """Return the mean, of values from 0 to 1, below which a gambler would have multiplied his money by 1 / risk.
+    """Return the lower bound of the mean of values in [0, 1]: below it, a bet multiplies its wealth by 1 / risk.
 
-    He bets that values exceed m, λ of them at a time; where the mean is m his money is a martingale. λ is chosen from
-    the values before, for so many values as there are, or with `anytime` for any number of them.
+    The bet stakes λ on values above m; if the mean is m, the wealth is a martingale. λ depends on earlier values only,
+    and is tuned for the given number of values, or with `anytime` for any number.
     """
     if not values.size:
         return 0.0
@@ -143,9 +143,9 @@ def bet_low(values: Floats, risk: float, *, anytime: bool = False) -> float:
 
 
 def quantile_low(totals: Sequence[float], share: float, confidence: float) -> float | None:
-    """Return a total that at least 1 - `share` of all episodes reach; None where there are too few episodes.
+    """Return a total that at least 1 - `share` of all episodes reach; None if there are too few episodes.
 
-    That is the largest order statistic k with P(Bin(n, share) < k) ≤ 1 - confidence.
+    It is the largest order statistic k with P(Bin(n, share) < k) ≤ 1 - confidence.
     """
     ordered = sorted(totals)
     below = np.cumsum(probabilities(len(ordered), share))
@@ -154,7 +154,7 @@ def quantile_low(totals: Sequence[float], share: float, confidence: float) -> fl
 
 
 def episodes_for_quantile(share: float, confidence: float) -> int:
-    """Return how many episodes it takes until the lowest of them bounds that quantile."""
+    """Return the number of episodes after which the lowest total bounds that quantile."""
     return ceil(log(1.0 - confidence) / log1p(-share) - 1e-9)
 
 
@@ -163,9 +163,9 @@ def loss_between(
 ) -> Bound:
     """Return the one-sided bounds of mean(offline) - mean(online), each at the confidence.
 
-    Without a declared range they are the wider ones of two: the shifts that a studentised permutation test does not
-    refute (Janssen 1997), exact where on-line totals are off-line ones and a constant, however skewed; and Welch's,
-    which hold for totals that are about normal and vary more in one world.
+    Without a declared range, they are the wider of two: the shifts that a studentised permutation test does not reject
+    (Janssen 1997), exact if the worlds' totals differ by a constant, however skewed; and Welch's, for totals that are
+    about normal and may vary more in one world.
     """
     episodes = min(len(offline), len(online))
     if declared is None:
@@ -180,9 +180,9 @@ def loss_between(
 
 
 def detectable_loss(offline: Floats, online: Floats, risk: float) -> float:
-    """Return the loss that a test of this size at `risk` would have seen four times in five, by normal approximation.
+    """Return the loss that a test of this size at `risk` detects with probability POWER, by normal approximation.
 
-    Infinite where so few episodes can be shuffled in so few ways that no loss is significant.
+    Infinite if there are so few permutations of the episodes that no loss is significant.
     """
     if risk * comb(offline.size + online.size, online.size) <= 1:
         return inf

@@ -1,7 +1,7 @@
-"""Compare two worlds: is performance worse, is the world another one, and in which cells?
+"""Compare two worlds: test for a loss of performance and for a drift, and find the cells that differ.
 
-What is compared are the Bellman residuals of the off-line utility. Significance is by permutation of whole episodes,
-corrected over all columns by the largest statistic.
+The tests compare the Bellman residuals of the designed utility. They permute whole episodes and correct over all
+columns by the largest statistic.
 """
 
 from __future__ import annotations
@@ -23,15 +23,14 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.model import LossInterval, Region, Result, Verdict
 from pytest_tarl.sensors import Cell, Sensor
 
-MATERIAL = 0.1  # a cell belongs to the region from this share of the largest significant difference
+MATERIAL = 0.1  # least share of the largest significant difference for a cell of the region
 
 
 @dataclass(frozen=True)
 class Difference:
-    """What the comparison of two samples found, before any word of it.
+    """The result of comparing two samples.
 
-    `changes` tells by cell how far an on-line episode is from an off-line one, in the residual part that the region
-    is read from.
+    `changes` holds, by cell, the difference between the worlds in the part of the residual that determines the region.
     """
 
     verdict: Verdict
@@ -40,7 +39,7 @@ class Difference:
 
 
 def tolerated(offline: Sample, stated: float | None) -> float:
-    """Return δ, the loss per episode that nobody minds: 5 % of the off-line reward, or what the marker states."""
+    """Return δ, the tolerated loss per episode: 5 % of the designed reward, or the marker's tolerance."""
     return max(0.05 * abs(float(offline.total.mean())), stated or 0.0)
 
 
@@ -55,11 +54,10 @@ def compare(
     permutations: int = PERMUTATIONS,
     declared: Range | None = None,
 ) -> Difference:
-    """Judge the on-line world against the off-line one; `tolerance` is the tolerated loss per episode.
+    """Compare the deployed world with the designed one; `tolerance` is the tolerated loss per episode.
 
-    `sensors` tell which of them are tiled; without them utility is a table. `permutations` are more where verdicts are
-    corrected over many comparisons; `declared` is the range of totals, where there is one. Both samples are compared as
-    a fixture holds them, whichever was read from one.
+    `sensors` are needed for tiled utilities; without them the utility is a table. Correcting over many comparisons
+    needs more `permutations`. `declared` is the range of totals, if any. Both samples are rounded as in a recording.
     """
     offline, online = aligned(as_compared(offline), as_compared(online))
     margin = tolerated(offline, tolerance)
@@ -78,12 +76,12 @@ def compare(
 
 
 def as_compared(sample: Sample) -> Sample:
-    """Return the sample with the chain as a fixture would hold it, the only part that is compared."""
+    """Return the sample with its chain, the only compared part, rounded as in a recording."""
     return replace(sample, chain=represented_chain(sample.chain))
 
 
 def judged(verdict: Verdict, alpha: float) -> Verdict:
-    """Return the verdict with the result that its figures call for."""
+    """Return the verdict with the result that follows from its numbers."""
     result: Result = "no difference"
     if verdict.p_loss < alpha and verdict.loss > verdict.tolerance:
         result = "degraded"
@@ -95,7 +93,7 @@ def judged(verdict: Verdict, alpha: float) -> Verdict:
 def loss_bounds(
     offline: Floats, online: Floats, risk: float, declared: Range | None = None
 ) -> tuple[float, float]:
-    """Return the losses that are neither too small nor too large at `risk`."""
+    """Return the confidence interval of the loss, each end at `risk`."""
     bound = loss_between(offline.tolist(), online.tolist(), 1.0 - risk, declared)
     return bound.low, bound.high
 
@@ -109,9 +107,9 @@ def _compared_without(
     sensors: Sequence[Sensor],
     found: Region,
 ) -> tuple[Region, dict[Cell, float]]:
-    """Return the region and the change by cell when some sensors are left out, as cells that on-line episodes were in.
+    """Return the region (deployed cells) and the change by cell if some sensors are left out.
 
-    They add nothing to p_drift, so looking for them costs no false alarm.
+    They do not affect p_drift, so they add no false alarms.
     """
     kept = [sensor for d, sensor in enumerate(sensors) if d not in without]
     shorter = projected(offline, without), projected(online, without)
@@ -159,10 +157,10 @@ def _drift(
 
 
 def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
-    """Return the cells that no on-line episode was in, though so many off-line ones were that it is no chance.
+    """Return the cells that deployed episodes avoid significantly, shape (cells,).
 
-    Were it one world, all its n on-line episodes would be among the N - K of all N that avoid the cell with probability
-    C(N - K, n) / C(N, n), which must be below α over the number of cells. Shape (cells,).
+    In a single world, all n deployed episodes are among the N - K of all N that avoid the cell with probability
+    C(N - K, n) / C(N, n), which must be below α divided by the number of cells.
     """
     been = np.unique(offline.chain.episode * len(offline.cells) + offline.chain.cell) % len(offline.cells)
     often = np.bincount(been, minlength=len(offline.cells))
@@ -174,10 +172,10 @@ def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
 
 
 def outstanding(difference: Floats, significant: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return the significant cells that matter beside the largest of them, shape (cells,).
+    """Return the significant cells whose difference is not small beside the largest, shape (cells,).
 
-    What off-line steps bring per visit is known up to an error. Where on-line episodes come by more or less often, a
-    trace of it shows, and enough episodes make it significant: but it stays small.
+    The designed mean per visit has an estimation error. If deployed episodes visit a cell more or less often, this
+    error becomes significant with enough episodes, but it stays small.
     """
     size = np.where(significant, np.abs(difference), 0.0)
     material: NDArray[np.bool_] = size >= MATERIAL * size.max(initial=0.0)
@@ -187,7 +185,7 @@ def outstanding(difference: Floats, significant: NDArray[np.bool_]) -> NDArray[n
 def paper_region(offline: Floats, online: Floats) -> Ints:
     """Return the cells whose utility differs by at least half of the largest difference, as the paper's region.
 
-    Inputs have shape (cells, sites), NaN where a world never was; only what both have visited counts.
+    Inputs have shape (cells, sites), NaN for unvisited ones; only cells visited in both worlds count.
     """
     gap = np.abs(np.nansum(online - offline, axis=1))
     return np.flatnonzero(gap >= 0.5 * gap.max()) if gap.max(initial=0.0) > 0 else np.empty(0, dtype=np.int64)

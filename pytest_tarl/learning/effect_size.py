@@ -1,4 +1,4 @@
-"""How large a difference of means is beside what totals vary by."""
+"""The effect size of a difference of means."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from statistics import fmean, variance
 
 
 def effect_size(first: Sequence[float], second: Sequence[float]) -> float:
-    """Return Hedges' g: mean(first) - mean(second) in pooled standard deviations; NaN where nothing varies."""
+    """Return Hedges' g: mean(first) - mean(second) in pooled standard deviations; NaN if nothing varies."""
     degrees = len(first) + len(second) - 2
     squares = sum((len(group) - 1) * variance(group) for group in (first, second) if len(group) > 1)
     if degrees < 1 or squares <= 0:

@@ -1,4 +1,4 @@
-"""The columns in which two worlds are compared: what an episode's residuals sum to, in every cell and over many."""
+"""Columns for comparing two worlds: sums of an episode's residuals, per cell and over groups of cells."""
 
 from __future__ import annotations
 
@@ -13,22 +13,22 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.sensors import Cell, Sensor
 
-NOVEL_VISITS = 3  # a cell unknown to the fit counts as novel from so many visits,
+NOVEL_VISITS = 3  # a cell unknown to the fit is novel from so many visits,
 NOVEL_EPISODES = 2  # in so many episodes
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Columns in which the worlds are compared, shape (episodes, columns): on-line episodes first.
+    """Columns for comparing the worlds, shape (episodes, columns): deployed episodes first.
 
-    A drift may be strong in a few cells or weak in many. So beside the cells stand slabs, the sums over all cells
-    that share a bin of one sensor, and the episodes' totals.
+    A drift may be strong in a few cells or weak in many. So there are also columns for slabs (the sums over all cells
+    that share a bin of one sensor) and for the episodes' totals.
     """
 
     move: Floats  # per cell, like the next two
     reward: Floats
     novel: Floats
-    move_error: Floats  # of the first two, which are 0 where they are no larger
+    move_error: Floats  # rounding errors of the first two, which are 0 if no larger than it
     reward_error: Floats
     slabs: tuple[Ints, ...]  # the cells of each slab
     totals: Floats
@@ -48,7 +48,7 @@ class Evidence:
 
 
 def gathered(offline: Sample, online: Sample, sensors: Sequence[Sensor] = ()) -> Evidence:
-    """Fit on the one half of the off-line episodes, hold the other half against the on-line ones."""
+    """Fit on one half of the recorded episodes, and compare the other half with the deployed ones."""
     fit = np.array([in_fit(seed) for seed in offline.seeds])
     rows = fit[offline.chain.episode]
     known = type(offline.chain)(*(column[rows] for column in vars(offline.chain).values()))

@@ -1,4 +1,4 @@
-"""The utility fixture: what `--tarl-record` leaves on disk for `--tarl-online` to compare with.
+"""The recording of a test (utility fixture): written by `--tarl-record`, read by `--tarl-online`.
 
 One `.npz` file: a JSON header with a format version and a digest, and the columns of the statistics, packed. Loaded
 without pickle, written to a temporary file and renamed; the same episodes give the same bytes.
@@ -6,8 +6,8 @@ without pickle, written to a temporary file and renamed; the same episodes give 
 FORMAT_VERSION history:
 1  Columns of float64.
 2  Sums as logarithms (packing.py), a sixth of the size; Σ|f| per episode and site. Where there are formulas also
-   `formulas` and `signals` in the header and the columns `robustness` and `lost`, which older versions pass over. So
-   they do with `stated`, the bounds, and `world`, digests of the test's own modules.
+   `formulas` and `signals` in the header and the columns `robustness` and `lost`, which older versions ignore, like
+   `stated`, the bounds, and `world`, digests of the test's modules.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ from pytest_tarl.sensors import Sensor
 
 FORMAT_VERSION = 2
 HEADER = "header"
-TUPLES = ("categories", "edges")  # fields of a sensor that JSON makes lists of
+TUPLES = ("categories", "edges")  # fields of a sensor that are lists in JSON
 
 
 @dataclass(frozen=True)
 class Fixture:
-    """What one test recorded. `sarsa` holds the learned table per taint list, shape (cells, sites)."""
+    """The recording of a test. `sarsa` holds the learned table per taint list, shape (cells, sites)."""
 
     test: str
     seed: int
@@ -57,9 +57,9 @@ class Fixture:
     topics: Mapping[str, str]  # sensor topic → message type
     sample: Sample
     sarsa: tuple[Floats, ...]
-    learner: str = "sarsa"  # what learned it, a key of sarsa.LEARNERS
-    design: tuple[str, ...] = ()  # drifts that are the design: changes for good
-    signals: tuple[Signal, ...] = ()  # that formulas may name and a message holds
+    learner: str = "sarsa"  # its learning rule, a key of sarsa.LEARNERS
+    design: tuple[str, ...] = ()  # permanent drifts that are part of the design
+    signals: tuple[Signal, ...] = ()  # signals for formulas that are read from messages
     stated: Guarantee | None = None
     world: Mapping[str, Mapping[str, str]] = field(
         default_factory=dict
@@ -67,7 +67,7 @@ class Fixture:
 
 
 def save(fixture: Fixture, path: Path) -> None:
-    """Write the fixture whole or not at all. Raises FixtureError where that is not allowed."""
+    """Write the recording atomically. Raise FixtureError if it cannot be written."""
     columns = _columns(fixture)
     header = {
         "format": FORMAT_VERSION,
@@ -93,7 +93,7 @@ def save(fixture: Fixture, path: Path) -> None:
     text = np.frombuffer(json.dumps(header, ensure_ascii=False, sort_keys=True).encode(), dtype=np.uint8)
     buffer = io.BytesIO()
     arrays: dict[str, Any] = {HEADER: text, **columns}
-    np.savez_compressed(buffer, **arrays)  # numpy before 2.1 takes any option for an array
+    np.savez_compressed(buffer, **arrays)  # numpy before 2.1 would store any option as an array
     try:
         write_atomically(path, buffer.getvalue())
     except OSError as problem:
@@ -101,7 +101,7 @@ def save(fixture: Fixture, path: Path) -> None:
 
 
 def prepare(path: Path) -> None:
-    """Raise FixtureError unless a fixture can be written, before the episodes are run that would be lost."""
+    """Raise FixtureError if a recording cannot be written, before its episodes run."""
     try:
         check_writable(path)
     except OSError as problem:
@@ -113,18 +113,16 @@ def _unwritable(path: Path, problem: OSError) -> FixtureError:
 
 
 def load(path: Path) -> Fixture:
-    """Read a fixture. Raises FixtureError when it is missing, damaged, foreign or of another format."""
+    """Read a recording. Raise FixtureError if it is missing, damaged or of another format."""
     advice = "Record it again with `pytest --tarl-record`."
     try:
         content = path.read_bytes()
     except FileNotFoundError:
-        raise FixtureError(f"There is no utility fixture {path}.", advice) from None
+        raise FixtureError(f"{path}: no such recording.", advice) from None
     except IsADirectoryError:
         raise FixtureError(f"{path} is a folder.", "Name a file in it, such as NAME.npz.") from None
     except OSError as problem:
-        raise FixtureError(
-            f"The utility fixture {path} cannot be read: {problem.strerror}.", advice
-        ) from problem
+        raise FixtureError(f"The recording {path} cannot be read: {problem.strerror}.", advice) from problem
     try:
         columns = read_arrays(content)
         header = json.loads(numbers(columns, HEADER, None).tobytes().decode())
@@ -132,35 +130,35 @@ def load(path: Path) -> Fixture:
         found = header["format"]
     except TooLargeError as problem:
         raise FixtureError(
-            f"The utility fixture {path} {problem}.",
-            "Read it where there is more memory, or record fewer episodes with --tarl-episodes.",
+            f"The recording {path} {problem}.",
+            "Read it on a machine with more memory, or record fewer episodes with --tarl-episodes.",
         ) from problem
-    except Exception as problem:  # zip, npy and JSON can be damaged in more ways than they list
+    except Exception as problem:  # damaged zip, npy and JSON raise undocumented exceptions
         raise FixtureError(
-            f"The utility fixture {path} is damaged or is not one{_why(problem)}.",
+            f"The recording {path} is damaged or is not a recording{_why(problem)}.",
             "Restore it from version control, or record it again with `pytest --tarl-record`.",
         ) from problem
     if found != FORMAT_VERSION:
         newer = isinstance(found, int) and found > FORMAT_VERSION
-        what = "Take the version of tarl that it was recorded with, or record" if newer else "Record"
+        what = "Use the version of tarl that recorded it, or record" if newer else "Record"
         raise FixtureError(
-            f"The utility fixture {path} has format {str(found)[:20]}, this version of tarl reads "
+            f"The recording {path} has format {str(found)[:20]}, but this version of tarl reads "
             f"{FORMAT_VERSION}.",
             f"{what} it again with `pytest --tarl-record`.",
         )
     try:
         if header.pop("digest", None) != _digest(header, columns):
             raise FixtureError(
-                f"The utility fixture {path} is damaged: its digest does not fit its content.", advice
+                f"The recording {path} is damaged: its digest does not match its content.", advice
             )
         with np.errstate(all="ignore"):
             fixture = _fixture(header, columns)
             check(fixture.sample, len(fixture.sensors), fixture.sarsa)
     except FixtureError:
         raise
-    except Exception as problem:  # whoever makes a digest that fits can have written anything
+    except Exception as problem:  # a matching digest does not make the content valid
         raise FixtureError(
-            f"The utility fixture {path} does not hold what one of format {FORMAT_VERSION} does{_why(problem)}.",
+            f"The recording {path} is not valid in format {FORMAT_VERSION}{_why(problem)}.",
             advice,
         ) from problem
     return fixture
@@ -168,7 +166,7 @@ def load(path: Path) -> Fixture:
 
 def _why(problem: Exception) -> str:
     if isinstance(problem, MemoryError):
-        return " (or there is not the memory to read it)"
+        return " (or there is too little memory to read it)"
     return f" ({problem})" if isinstance(problem, DamagedError) else ""
 
 
@@ -247,7 +245,7 @@ def _fixture(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any, An
 
 
 def _guarantee(told: Mapping[str, Any]) -> Guarantee:
-    """Return the bounds that a header states. Raises DamagedError where they are none."""
+    """Return the bounds in a header. Raise DamagedError if they are invalid."""
     declared = None if told.get("declared") is None else tuple(told["declared"])
     bounds = {"success": Bound(**told["success"]), "mean": Bound(**told["mean"])}
     found = Guarantee(**{**told, **bounds, "declared": declared})
@@ -263,7 +261,7 @@ def _guarantee(told: Mapping[str, Any]) -> Guarantee:
     ]
     texts = [found.success.method, found.mean.method]
     if not all(type(one) in (int, float) for one in numbers) or not all(type(one) is str for one in texts):
-        raise DamagedError("the bounds in its header are no numbers")
+        raise DamagedError("the bounds in its header are not numbers")
     return found
 
 
@@ -303,4 +301,4 @@ def _check_header(header: Mapping[str, Any]) -> None:
         or not all(type(text) is str for text in plain)
         or not all(type(line) is int for line in lines)
     ):
-        raise DamagedError("its header does not tell what was recorded")
+        raise DamagedError("its header does not describe a recording")

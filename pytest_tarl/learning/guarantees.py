@@ -1,4 +1,4 @@
-"""What is stated of a world's next episodes, from those that were run: bounds over the worlds that a test draws."""
+"""Bounds on future episodes of a world, over the worlds that a test samples."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.learning.bounds import (
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Guarantee
 
-CONFIDENCE = 0.95  # where the marker states none
+CONFIDENCE = 0.95  # default of the marker's confidence
 QUANTILE = 0.05
 
 
@@ -30,10 +30,10 @@ def stated(
     anytime: bool = False,
     varied: bool = True,
 ) -> Guarantee:
-    """Return the bounds that these episodes give, each of which holds by itself.
+    """Return the bounds from these episodes; each holds separately.
 
-    With `anytime` the number of episodes was decided by what they showed: then there is no bound of a quantile. Raises
-    ValueError where a total lies outside of the declared range.
+    `anytime` means that the number of episodes depended on their results; then there is no bound of a quantile. Raise
+    ValueError if a total lies outside the declared range.
     """
     sure, count = confidence or CONFIDENCE, len(passed)
     success = (rate_sequence if anytime else rate)(sum(passed), count, sure)
@@ -52,7 +52,7 @@ def stated(
 
 
 def varies(sample: Sample) -> bool:
-    """Tell whether any two episodes differ, in what happened or in what it earned."""
+    """Return whether any two episodes differ in their steps or rewards."""
     chain = sample.chain
     rows = np.bincount(chain.episode, minlength=sample.episodes)
     if np.ptp(sample.total) or np.ptp(sample.steps) or np.ptp(sample.passed.astype(int)) or np.ptp(rows):

@@ -1,4 +1,4 @@
-"""What formulas came to over many episodes: a row an episode, a column a formula."""
+"""Results of formulas over many episodes: one row per episode, one column per formula."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pytest_tarl.model import FormulaRow, FormulaWorld
 
 
 def judgements(judged: Sequence[Judged]) -> Judgements | None:
-    """Return the row of one episode; None where it has no formulas."""
+    """Return the row of one episode; None if it has no formulas."""
     if not judged:
         return None
     ordered = sorted(judged)
@@ -45,7 +45,7 @@ def _united(have: Sequence[Judgements | None], picked: Sequence[tuple[int, int]]
 
 
 def world(judged: Judgements | None, formula: str) -> FormulaWorld | None:
-    """Sum up a formula over the episodes in which it was judged; None where there is none."""
+    """Sum up a formula over the episodes in which it was judged; None if there is none."""
     if judged is None or formula not in judged.formulas:
         return None
     column = judged.formulas.index(formula)
@@ -64,7 +64,7 @@ def world(judged: Judgements | None, formula: str) -> FormulaWorld | None:
 
 
 def rows(order: Iterable[str], worlds: Mapping[str, Judgements | None]) -> tuple[FormulaRow, ...]:
-    """Return a row a formula: those in `order` first, then what else any world had."""
+    """Return one row per formula: those in `order` first, then others of any world."""
     others = sorted({name for one in worlds.values() if one is not None for name in one.formulas})
     found = []
     for formula in dict.fromkeys((*order, *others)):
@@ -76,7 +76,7 @@ def rows(order: Iterable[str], worlds: Mapping[str, Judgements | None]) -> tuple
 def with_worlds(
     known: Sequence[FormulaRow], worlds: Mapping[str, Sequence[Sequence[Judged]]]
 ) -> tuple[FormulaRow, ...]:
-    """Add worlds to the rows; what formulas came to there is given by episode."""
+    """Add worlds to the rows, from the formulas' results by episode."""
     summed = {name: stacked(episodes) for name, episodes in worlds.items()}
     return tuple(
         replace(
@@ -101,7 +101,7 @@ def stacked(episodes: Iterable[Sequence[Judged]]) -> Judgements | None:
 
 
 def accounts(judged: Judgements | None) -> tuple[str, ...]:
-    """Return a line a formula on the episodes of one world."""
+    """Return one line per formula on the episodes of one world."""
     lines = []
     for name in judged.formulas if judged is not None else ():
         one = world(judged, name)

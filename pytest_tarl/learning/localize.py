@@ -1,4 +1,4 @@
-"""Which site is to blame: slices (Eq. 2) as a prior, effects that simulation confirmed as evidence."""
+"""Rank the sites to blame: slices (Eq. 2) as a prior, effects confirmed by simulation as evidence."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pytest_tarl.learning.packing import ROUNDING
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.model import Culprit, OperandEffect, SitePlace, Slice, TaintList
 
-BELOW = 0.49  # the highest score of a site without an operand, where others have one
+BELOW = 0.49  # highest score of a site without an operand if others have one
 
 
 def slices(taint_list: TaintList, offline: Floats, online: Floats, region: Ints) -> tuple[Slice, ...]:
@@ -33,8 +33,8 @@ def prior(
 ) -> tuple[tuple[SitePlace, float], ...]:
     """Rank sites by their score, the size of their slice difference as a share of the largest one of a taint list.
 
-    Of several lists a site has its best score; one that does not differ is left out. `changeable` are the ids of the
-    sites that hold an operand: their scores lie above a half and all others below, since nothing can be changed there.
+    A site in several lists has its best score; sites without a difference are left out. `changeable` holds the ids of
+    sites with an operand: their scores are above 0.5, all others below, since those cannot be repaired.
     """
     best: dict[str, tuple[float, SitePlace]] = {}
     for ranked in per_list:
@@ -48,7 +48,7 @@ def prior(
 
 
 def _difference(one: Slice) -> float:
-    """Return the size of a slice's difference, 0 where rounding makes as much of equal ones, or one is unknown."""
+    """Return the magnitude of a slice's difference; 0 if within rounding errors or unknown."""
     size = abs(one.difference)
     return size if size > 4 * ROUNDING * (abs(one.offline) + abs(one.online)) else 0.0
 
@@ -66,10 +66,10 @@ def culprits(
     loss: float,
     method: str = "sweep",
 ) -> tuple[Culprit, ...]:
-    """Rank sites by their score: that of what simulation by `method` found, or of their slices where it found nothing.
+    """Rank sites by the effects that simulation by `method` found, or by their slices if it found none.
 
-    `effects` maps site ids to what was found; an effect of `loss` (reward per episode) has the score 1. A site of the
-    confirmed repair has no lower score than any other, what was not simulated none.
+    `effects` maps site ids to effects; an effect of `loss` (reward per episode) has the score 1. Sites of the confirmed
+    repair have the highest score, sites that were not simulated have none.
     """
     found = [_simulated(site, effects[site.id], loss, method) for site, _ in ranked if effects.get(site.id)]
     guessed = [Culprit(site, 0.0, "slices") for site, _ in ranked if not effects.get(site.id)]

@@ -1,4 +1,4 @@
-"""Where every on-line situation is new: what can still be compared when the sensors that make it new are left out."""
+"""Compare worlds without common situations, by leaving out the sensors whose values are new."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import numpy as np
 from pytest_tarl.learning.tables import END, START, Floats, Ints, ListSample, Sample, sum_by
 from pytest_tarl.sensors import Cell
 
-FEW = 0.05  # of the on-line steps in known cells: with no more, worlds do not meet
-ENOUGH = 0.5  # of them in cells that are known once a sensor is left out
+FEW = 0.05  # share of deployed steps in known cells up to which worlds have nothing in common
+ENOUGH = 0.5  # least share in known cells after leaving sensors out
 
 
 def left_out(offline: Sample, online: Sample) -> tuple[int, ...]:
-    """Return the sensors without which the worlds meet, as few as possible; none where they meet, or never do."""
+    """Return the fewest sensors to leave out so that the worlds overlap; none if they already do or never do."""
     width = len(offline.cells[0]) if offline.cells else 0
     if _met(offline, online, tuple(range(width))) > FEW:
         return ()
@@ -28,12 +28,12 @@ def left_out(offline: Sample, online: Sample) -> tuple[int, ...]:
 
 
 def apart(offline: Sample, online: Sample) -> bool:
-    """Tell whether hardly any on-line step was in a cell that off-line episodes know."""
+    """Return whether hardly any deployed step was in a recorded cell."""
     return _met(offline, online, tuple(range(len(offline.cells[0]) if offline.cells else 0))) <= FEW
 
 
 def _met(offline: Sample, online: Sample, kept: Sequence[int]) -> float:
-    """Return the share of the on-line steps in cells that off-line episodes know, told by these sensors alone."""
+    """Return the share of deployed steps in recorded cells, considering these sensors only."""
     known = {_shortened(offline.cells[i], kept) for i in np.unique(offline.chain.cell).tolist()}
     steps = sum_by(online.chain.cell, online.chain.count, len(online.cells))
     inside = sum(steps[i] for i, cell in enumerate(online.cells) if _shortened(cell, kept) in known)
@@ -58,9 +58,9 @@ def projected(sample: Sample, without: Sequence[int]) -> Sample:
 
 
 def lent(table: Floats, recorded: ListSample, cells: Sequence[Cell], without: Sequence[int]) -> Floats:
-    """Fill a table, shape (cells, sites), where it is unknown, by what cells alike are worth on average.
+    """Fill unknown entries of a table, shape (cells, sites), with the mean of similar cells.
 
-    Cells are alike that differ in the left-out sensors only; each counts as often as it was visited.
+    Similar cells differ in the left-out sensors only; they are weighted by their visits.
     """
     _, row = groups(cells, without)
     visits = recorded.visits

@@ -1,4 +1,4 @@
-"""The union of samples by seed: rows stand in key order, so sums are taken in the same order whoever recorded what."""
+"""The union of samples by seed: rows are in key order, so sums do not depend on which process recorded what."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Columns = TypeVar("Columns", Chain, Edges, Visits)
 
 
 def merge(samples: Sequence[Sample], cells: Iterable[Cell] = ()) -> Sample:
-    """Return the union by seed; where a seed occurs twice the first sample wins. At least one sample is needed.
+    """Return the union by seed; if a seed occurs twice, the first sample wins. At least one sample is needed.
 
     The cells are those of all samples and the given ones.
     """
@@ -47,13 +47,13 @@ def merge(samples: Sequence[Sample], cells: Iterable[Cell] = ()) -> Sample:
 
 
 def aligned(first: Sample, second: Sample) -> tuple[Sample, Sample]:
-    """Return both over one table of cells, so that their rows can be compared."""
+    """Return both samples over one table of cells, so that their rows can be compared."""
     return merge([first], second.cells), merge([second], first.cells)
 
 
 @dataclass(frozen=True)
 class _Place:
-    """Where the rows of one sample go in the merged one; `episode` holds -1 for those that another sample has."""
+    """The target rows of a sample in the merged one; `episode` is -1 for episodes of an earlier sample."""
 
     sample: Sample
     episode: Ints

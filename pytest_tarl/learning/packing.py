@@ -1,12 +1,12 @@
-"""The columns of statistics as small arrays: whole numbers as they are, sums as logarithms beside what foretells them.
+"""Pack columns of statistics into small arrays: integers unchanged, sums as logarithms minus a prediction.
 
 A sum z is kept as its sign and round(2¹⁶·log₂|z|): within 5.3e-6 of itself, whatever its size. In that form values
 that are proportional, as those of `delta` and `5 * delta`, differ by a constant, which deflate reduces to nothing. A
 sum of squares is close to the square of the sum over the count, so only the difference is kept, to 0.14 %. Packing
 what was unpacked gives the same arrays.
 
-What is compared with a fixture passes through the same representation (`represented`): otherwise rounding alone tells
-the recorded world from the live one wherever rewards are constant.
+Samples compared with a recording pass through the same representation (`represented`): otherwise, where rewards are
+constant, rounding alone would distinguish the recorded world from the live one.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from pytest_tarl.learning.tables import START, Chain, Edges, Floats, Ints, ListS
 Arrays = dict[str, NDArray[Any]]
 Signs = NDArray[np.int8]
 
-FINE = 1  # step of a sum's logarithm, in units of 2⁻¹⁶
-COARSE = 256  # of that of a sum of squares
+FINE = 1  # step of the logarithm of a sum, in units of 2⁻¹⁶
+COARSE = 256  # step of the logarithm of a sum of squares, in the same units
 UNIT = 65536.0
 ROUNDING = 5.3e-6  # largest error of a packed sum, relative to it: 2^(1/2 / UNIT) - 1
 
 
 def represented(sample: Sample) -> Sample:
-    """Return the sample as a fixture would hold it; what was read from a fixture comes back as it is."""
+    """Return the sample rounded as in a recording; idempotent."""
     lists = (
         unpacked_list("list", packed_list("list", one), one.width) if one.width else one
         for one in sample.lists
@@ -39,7 +39,7 @@ def represented(sample: Sample) -> Sample:
 
 
 def represented_chain(chain: Chain) -> Chain:
-    """Return the chain as a fixture would hold it."""
+    """Return the chain rounded as in a recording."""
     return unpacked_chain(packed_chain(chain))
 
 
@@ -61,7 +61,7 @@ def unpacked_chain(arrays: Mapping[str, NDArray[Any]]) -> Chain:
 
 
 def packed_list(name: str, recorded: ListSample) -> Arrays:
-    """Return the arrays of a taint list. Which states were visited how often is in the edges already."""
+    """Return the arrays of a taint list, without visit counts, which follow from the edges."""
     edges, visits = recorded.edges, recorded.visits
     before = _before(visits, recorded.width)
     count = _logarithms(visits.count.astype(np.float64))
@@ -153,7 +153,7 @@ def _unpacked(column: tuple[Signs, Ints], foretold: Ints, step: int) -> tuple[Fl
 
 
 def _unpacked_in_turn(column: tuple[Signs, Ints], before: Ints) -> tuple[Floats, Ints]:
-    """Do the same where each value is foretold by the row before, 0 where there is none or that is zero."""
+    """Do the same where each value is foretold by the row before, 0 if there is none or that is zero."""
     signs, away = column
     starts = (before < 0) | (np.append(0, signs[:-1])[: signs.size] == 0)
     whole = np.cumsum(away)

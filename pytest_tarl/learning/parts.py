@@ -1,4 +1,4 @@
-"""Which part of the reward is lost in which cells."""
+"""Find the cells in which parts of the reward are lost."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from pytest_tarl.learning.permutation import max_statistic
 from pytest_tarl.learning.tables import Floats, Sample, sum_by
 from pytest_tarl.sensors import Cell
 
-MATERIAL = 0.1  # a cell is named from this share of the largest loss of its part
+MATERIAL = 0.1  # least share of its part's largest loss for a cell to be reported
 
 
 def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
-    """Return the mean of each part of the reward per episode, off-line and on-line."""
+    """Return the mean of each part of the reward per episode in both worlds."""
     names = sorted({*offline.part_names, *online.part_names})
     return {
         name: (
@@ -29,9 +29,9 @@ def means(offline: Sample, online: Sample) -> dict[str, tuple[float, float]]:
 def lost(
     offline: Sample, online: Sample, alpha: float, generator: np.random.Generator
 ) -> Mapping[str, tuple[Cell, ...]]:
-    """Return the cells in which each part earns significantly less on-line; both samples share their cells.
+    """Return the cells where each part earns significantly less in the deployed world; both samples share their cells.
 
-    Corrected over all cells of all parts. A cell counts in which less is earned because it is no longer reached.
+    Corrected over all cells of all parts. Includes cells that earn less because they are no longer reached.
     """
     names = sorted({*offline.part_names, *online.part_names})
     if not names:
@@ -49,7 +49,7 @@ def lost(
 
 
 def _by_cell(world: Sample, name: str) -> Floats:
-    """Return what a part sums to, shape (episodes, cells); zeros where the world does not have it."""
+    """Return the sums of a part, shape (episodes, cells); zeros if the world does not have the part."""
     shape = (world.episodes, len(world.cells))
     if name not in world.part_names:
         return np.zeros(shape)

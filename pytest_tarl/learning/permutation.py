@@ -1,4 +1,4 @@
-"""Permutation tests: what would be seen if it made no difference which group an episode is of.
+"""Permutation tests under the hypothesis that both groups of episodes are exchangeable.
 
 Corrected over many columns by the distribution of the largest statistic, step by step (Westfall & Young 1993).
 """
@@ -17,7 +17,7 @@ ARITHMETIC = 1e-12  # error of a few sums of floats, relative to the largest of 
 
 
 def permutations_for(alpha: float, comparisons: int) -> int:
-    """Return how many shuffles it takes so that a correction over so many comparisons can leave one significant."""
+    """Return the number of shuffles at which a result can be significant after correcting for the comparisons."""
     return (
         min(max(PERMUTATIONS, ceil(2 * comparisons / alpha) - 1), MOST_PERMUTATIONS)
         if comparisons > 1
@@ -26,16 +26,16 @@ def permutations_for(alpha: float, comparisons: int) -> int:
 
 
 def least_p_value(offline: int, online: int, permutations: int) -> float:
-    """Return the smallest p-value that so many episodes and shuffles can give."""
+    """Return the smallest possible p-value for these numbers of episodes and shuffles."""
     return max(1 / (1 + permutations), 1 / comb(offline + online, online))
 
 
 def permuted_loss(
     offline: Floats, online: Floats, generator: np.random.Generator, permutations: int = PERMUTATIONS
 ) -> float:
-    """Return the one-sided permutation p-value for a lower mean on-line; inputs have shape (episodes,).
+    """Return the one-sided permutation p-value for a lower deployed mean; inputs have shape (episodes,).
 
-    Sums that differ by no more than rounding makes of equal totals are ties, and count against a loss.
+    Sums that differ by at most rounding errors are ties, and count against a loss.
     """
     pooled = np.concatenate((online, offline))
     rounding = ARITHMETIC * float(np.abs(pooled).sum())
@@ -55,9 +55,9 @@ def max_statistic(
     """Return each column's p-value corrected over all columns, shape (columns,).
 
     The first `first` rows are one group, the others the other. The statistic is the difference of the groups' means in
-    units of the column's standard deviation, which orders columns as the pooled t statistic does. A column is held
-    against the largest of those that do not differ more than it does (step-down). A column is constant where it varies
-    by no more than `error` of its largest entry.
+    units of the column's standard deviation, which orders columns as the pooled t statistic does. A column is compared
+    with the maximum over those that do not differ more than it does (step-down). A column counts as constant if it
+    varies by at most `error` of its largest entry.
     """
     deviation = columns - columns.mean(axis=0)
     extent, largest = (np.abs(part).max(axis=0, initial=0.0) for part in (deviation, columns))

@@ -1,10 +1,10 @@
-"""What each step brought beside what the off-line world lets expect: the Bellman residual, in its two parts.
+"""The Bellman residual of each step against the designed utility, in its two parts.
 
-Zero in expectation where the world still is the one that the utility was fitted in, so what stands out is where it
-changed, not what lies upstream of it (performance-difference lemma, Kakade & Langford 2002).
+Its expectation is zero where the world is the one in which the utility was fitted, so it locates the change itself,
+not cells upstream of it (performance-difference lemma, Kakade & Langford 2002).
 
-A residual below its own error is 0: where a cell's reward is constant, all that is left of it is how sums are rounded
-(packing.py) and in which order they were taken.
+A residual below its own error is set to 0: for a constant reward, it only shows how sums are rounded (packing.py) and
+in which order they were computed.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ class Residuals:
 
 
 def in_fit(seed: int) -> bool:
-    """Tell whether an off-line episode is one that the utility is fitted on; the others are compared with."""
+    """Return whether a recorded episode is used to fit the utility; the others are compared."""
     return zlib.crc32(str(seed).encode()) % 2 == 0
 
 
 @dataclass(frozen=True)
 class Model:
-    """What one step is expected to bring in each cell of the off-line world, shape (cells,); NaN where unknown."""
+    """The expected contribution of a step in each cell of the designed world, shape (cells,); NaN if unknown."""
 
     utility: Floats
     move: Floats  # mean of γU(x')-U(x) over the steps that are not the last
@@ -51,7 +51,7 @@ class Model:
 
 
 def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:
-    """Fit the model to off-line transitions."""
+    """Fit the model to recorded transitions."""
     utility = tiled_chain(chain, cells, tiles)
     inside = chain.next_cell != END
     gained = _gain(chain, utility) * chain.count
@@ -62,9 +62,9 @@ def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:
 
 
 def residuals(compared: Sample, model: Model) -> Residuals:
-    """Return each episode's residuals per cell, each part less what the off-line world brings per visit.
+    """Return each episode's residuals per cell, minus the designed mean per visit of each part.
 
-    So both parts are zero in expectation in that world, however often a cell is visited. The last step of an episode
+    So both parts have zero expectation in that world, however often a cell is visited. The last step of an episode
     has no move. Transitions from or to a cell of unknown utility are left out.
     """
     chain, shape = compared.chain, (compared.episodes, len(compared.cells))
@@ -86,12 +86,12 @@ def residuals(compared: Sample, model: Model) -> Residuals:
 
 
 def beyond(values: Floats, error: Floats) -> Floats:
-    """Return the values, 0 where they are no larger than their error."""
+    """Return the values, 0 if they are no larger than their error."""
     return np.where(np.abs(values) > error, values, 0.0)
 
 
 def _gain(chain: Chain, utility: Floats) -> Floats:
-    """Return γU(x')-U(x) of every transition, 0 for the last step, NaN where a utility is unknown."""
+    """Return γU(x')-U(x) of every transition, 0 for the last step, NaN if a utility is unknown."""
     inside = chain.next_cell != END
     return np.where(
         inside, GAMMA_STEP * utility[np.where(inside, chain.next_cell, 0)] - utility[chain.cell], 0.0

@@ -16,10 +16,10 @@ LAMBDA = 0.8
 
 
 class Learner:
-    """Learn q(c) of one taint list from one episode after the other; what a step teaches is up to the subclass.
+    """Learn q(c) of one taint list, episode by episode; subclasses implement the update rule.
 
-    All rules are linear in ρ = r·[last event of its step] + r·|f|/F: a table for either term is learned, and F, which
-    is known after the last episode only, is asked for when they are added up. So no episode has to be kept.
+    All rules are linear in ρ = r·[last event of its step] + r·|f|/F: each term has its own table, and F, which is known
+    only after the last episode, is applied when they are added. So no episode has to be kept.
     """
 
     def __init__(self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA) -> None:
@@ -40,7 +40,7 @@ class Learner:
         self._passed(states)
 
     def table(self, cells: Sequence[Cell], scale: float) -> Floats:
-        """Return q(x, n), shape (cells, sites); NaN where never visited. `scale` is F; infinite: no flow term."""
+        """Return q(x, n), shape (cells, sites); NaN if never visited. `scale` is F; infinite: no flow term."""
         q = np.array(self._full) + np.array(self._scaled) / scale
         q[[state for state in range(q.size) if state not in self._seen]] = np.nan
         by_row = q[START + 1 :].reshape(len(self._row), self.sites)
@@ -54,7 +54,7 @@ class Learner:
         raise NotImplementedError
 
     def _passed(self, states: Sequence[int]) -> None:
-        """Note that a sequence has been learned from."""
+        """Update internal counts after a sequence."""
 
     def _numbered(self, state: Ints, cells: Sequence[Cell]) -> Ints:
         """Number states by the order in which their cells were first met."""

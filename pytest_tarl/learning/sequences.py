@@ -1,4 +1,4 @@
-"""One episode as one taint list sees it: its events in order, each with its share of the reward."""
+"""The events of one taint list in an episode, in order, each with its share of the reward."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Steps = NDArray[np.int32]
 
 @dataclass(frozen=True)
 class EventSequence:
-    """What one thread did for a taint list: the start and then every event; columns of shape (events + 1,).
+    """The events of one thread in a taint list, after the start; columns of shape (events + 1,).
 
     `reward` holds what an event is given in full (it is the last of its step), `scaled` is r·|f|.
     """

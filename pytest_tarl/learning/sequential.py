@@ -1,4 +1,4 @@
-"""Looks: when a comparison may end early, at a risk that is shared over all of them.
+"""Group-sequential testing: looks at which a comparison may end early, with shared risk (alpha spending).
 
 Of the risk α, α·t² is spent by the time that a share t of the episodes has run (Lan & DeMets 1983). The looks add up to
 α whatever the dependence between them, so an early end costs no false alarms.
@@ -17,7 +17,7 @@ FEWEST = 10  # episodes before the first look
 
 @dataclass(frozen=True)
 class Look:
-    """After how many episodes to look, and the share of α that may be spent there."""
+    """A planned look: its number of episodes, and the share of α spent there."""
 
     episodes: int
     share: float
@@ -32,16 +32,16 @@ def planned(episodes: int, looks: int) -> tuple[Look, ...]:
 
 
 def certain(difference: Difference) -> bool:
-    """Tell whether more episodes would change nothing: the loss is there, and so is where it comes from."""
+    """Return whether the verdict is final: both the loss and its region are significant."""
     region = difference.region
     return difference.verdict.result == "degraded" and bool(region.cells or region.novel)
 
 
 def concluded(seen: Sequence[tuple[Look, Difference]], alpha: float) -> Difference:
-    """Return what the last look found, its figures those of the whole sequence.
+    """Return the result of the last look, with p-values and intervals adjusted for the whole sequence.
 
-    Of p-values that is the least of p / share. The interval is the last look's, at the risk left to that look, so it
-    holds whenever the run ended.
+    The adjusted p-value is the least p / share. The interval is that of the last look at its risk, so it holds whenever
+    the run ended.
     """
     last = seen[-1][1]
     p_drift, p_loss = (

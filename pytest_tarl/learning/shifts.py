@@ -1,6 +1,6 @@
-"""By how much two groups may be shifted against each other: what a studentised permutation test leaves possible.
+"""Confidence interval of the shift between two groups, by inverting a studentised permutation test.
 
-It is exact where one group is the other and a constant (Janssen 1997), however skewed they are.
+It is exact if the groups differ by a constant (Janssen 1997), however skewed they are.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ AT_ONCE = 2_000  # shuffles that are drawn together: a few MB
 
 
 def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
-    """Return the least and the largest shift between the groups that a permutation test at `risk` leaves possible."""
+    """Return the least and the largest shift between the groups that a permutation test at `risk` does not reject."""
     difference = float(offline.mean() - online.mean())
-    unit = float(np.ptp(offline) + np.ptp(online))  # further apart, the groups would not overlap
+    unit = float(np.ptp(offline) + np.ptp(online))  # beyond this shift, the groups do not overlap
     if unit <= ARITHMETIC * float(np.abs(np.concatenate((offline, online))).max()):
         return difference - unit, difference + unit
     before, after = (offline - offline.mean()) / unit, (online - online.mean()) / unit
@@ -33,12 +33,12 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
     drawn = _drawn(offline.size + online.size, online.size, shuffles)
 
     def refuted(shift: float, sign: float) -> bool:
-        """Tell whether the on-line group, moved so far from the same mean, is too low (or too high) for one world."""
+        """Return whether the on-line group, moved so far from the same mean, is too low (or too high) for one world."""
         pooled = sign * np.concatenate((after + shift, before))
         return _studentised_p(pooled - pooled.mean(), online.size, drawn) <= risk
 
     if not refuted(-1.0, 1.0) or not refuted(1.0, -1.0):
-        return -inf, inf  # so few episodes can be shuffled in too few ways
+        return -inf, inf  # too few permutations to reject anything
     low = root(lambda by: refuted(by - 1.0, 1.0), 0.0, 1.0, COARSE) - 1.0
     high = 1.0 - root(lambda by: refuted(1.0 - by, -1.0), 0.0, 1.0, COARSE)
     return difference + unit * low, difference + unit * high

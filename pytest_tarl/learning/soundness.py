@@ -1,4 +1,4 @@
-"""Do the columns of a recording belong together? Asked once when it is read, so that nobody else has to."""
+"""Check once, when a recording is read, that its columns are consistent."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from pytest_tarl.learning.tables import END, START, Chain, Floats, ListSample, S
 
 
 def check(sample: Sample, sensors: int, tables: Sequence[Floats]) -> None:
-    """Raise DamagedError where episodes, cells and states that columns name are not there, or counts are none."""
+    """Raise DamagedError if columns refer to missing episodes, cells or states, or have invalid counts."""
     if not sample.episodes or len(set(sample.seeds)) < sample.episodes:
-        raise DamagedError("its seeds are not one for each episode")
+        raise DamagedError("it does not have one seed per episode")
     whole = all(type(bin_) is int for cell in sample.cells for bin_ in cell)
     if not whole or any(len(cell) != sensors for cell in sample.cells) or not _rising(sample.cells):
-        raise DamagedError("its cells are not those of its sensors")
+        raise DamagedError("its cells do not match its sensors")
     _same_length("episodes", sample.episodes, sample.passed, sample.total, sample.steps)
     kinds = (sample.passed.dtype, sample.total.dtype)
     if (
@@ -33,7 +33,7 @@ def check(sample: Sample, sensors: int, tables: Sequence[Floats]) -> None:
     for one, table in zip(sample.lists, tables, strict=True):
         _check_list(one, sample)
         if table.shape != (len(sample.cells), one.width):
-            raise DamagedError("a learned table is not one of its cells and sites")
+            raise DamagedError("a learned table does not match its cells and sites")
 
 
 def _check_judgements(sample: Sample) -> None:
@@ -43,7 +43,7 @@ def _check_judgements(sample: Sample) -> None:
     shape = sample.episodes, len(judged.formulas)
     for column in (judged.robustness, judged.lost):
         if column.shape != shape or column.dtype != np.float64 or np.isinf(column).any():
-            raise DamagedError("what its formulas came to is not told of its episodes")
+            raise DamagedError("the results of its formulas do not match its episodes")
     if len(set(judged.formulas)) < len(judged.formulas):
         raise DamagedError("it names a formula twice")
 
@@ -56,7 +56,7 @@ def _check_chain(chain: Chain, sample: Sample) -> None:
     _within("transitions", chain.next_cell, END, len(sample.cells))
     _counted(chain.count)
     if chain.parts.shape[1] != len(sample.part_names):
-        raise DamagedError("its rewards have other parts than it names")
+        raise DamagedError("its rewards have other parts than its header")
     if not (np.isfinite(chain.reward).all() and np.isfinite(chain.parts).all()):
         raise DamagedError("its rewards are not finite")
 
@@ -71,19 +71,19 @@ def _check_list(one: ListSample, sample: Sample) -> None:
     sums = (visits.reward, visits.scaled, visits.reward_squared, visits.scaled_squared)
     _same_length("visits", visits.count.size, *sums)
     if one.flow.shape != (sample.episodes, one.width) or not np.isfinite(one.flow).all():
-        raise DamagedError("its flows are not those of its episodes and sites")
+        raise DamagedError("its flows do not match its episodes and sites")
     if not all(np.isfinite(column).all() for column in sums[:2]):
         raise DamagedError("its sums are not finite")
 
 
 def _within(what: str, column: NDArray[Any], low: int, high: int) -> None:
     if column.size and not low <= column.min() <= column.max() < high:
-        raise DamagedError(f"its {what} name what is not there")
+        raise DamagedError(f"its {what} refer to missing entries")
 
 
 def _counted(column: NDArray[Any]) -> None:
     if column.size and column.min() < 1:
-        raise DamagedError("it counts what never was")
+        raise DamagedError("it has counts below 1")
 
 
 def _same_length(what: str, size: int, *columns: NDArray[Any]) -> None:

@@ -1,4 +1,4 @@
-"""Sufficient statistics of a recorded episode: all that utility and comparison need, per episode, mergeable."""
+"""Sufficient statistics of a recorded episode for utility and comparison; statistics of episodes can be merged."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from pytest_tarl.sensors import Cell
 if TYPE_CHECKING:
     from pytest_tarl.instrumentation.trace import Trace
 
-CANCELLED = 1e-13  # of the sum of sizes: a sum below it is what rounding left of values that cancel out
+CANCELLED = 1e-13  # share of the sum of magnitudes below which a sum is a rounding error
 DENSE = 4  # possible pairs per pair seen up to which they are counted in a table
 
 
@@ -75,7 +75,7 @@ def _chain(trace: Trace, names: Sequence[str]) -> Chain:
 
 
 def total_reward(reward: Floats) -> float:
-    """Return what an episode earned, 0 where all of it cancels out."""
+    """Return the total reward of an episode; exactly 0 if its rewards cancel out."""
     total, size = float(np.add.reduce(reward)), float(np.add.reduce(np.abs(reward)))
     return total if abs(total) > CANCELLED * size else 0.0
 
@@ -95,7 +95,7 @@ def total_rewards(reward: Floats, ends: Ints) -> Floats:
 
 
 def summed(index: Ints, column: Floats, size: int) -> Floats:
-    """Return the sum at each index, 0 where all of it cancels out; shape (size,)."""
+    """Return the sum at each index, 0 if all of it cancels out; shape (size,)."""
     return _cancelled(sum_by(index, column, size), sum_by(index, np.abs(column), size))
 
 

@@ -1,7 +1,7 @@
 """Student's t: bounds of a mean and of a difference of means, for totals that are about normal.
 
-They hold less often than stated for skewed totals and few episodes, so learning/bounds.py, which says so of each, is
-the only module that may use them.
+Their coverage is too low for skewed totals and few episodes, so only learning/bounds.py, which states this, may use
+them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The columns that recorded episodes become: one row per (episode, transition) or (episode, state).
+"""Columns of recorded episodes: one row per (episode, transition) or (episode, state).
 
 States of a taint list with `width` sites are numbered 0 for the start of an episode and 1 + cell·width + n for site n
 in a cell; `END` is where an episode goes after its last event.
@@ -57,7 +57,7 @@ class Visits:
 
 @dataclass(frozen=True)
 class ListSample:
-    """What was recorded of one taint list with `width` sites; `flow` is Σ|f|, shape (episodes, sites)."""
+    """The sample of one taint list with `width` sites; `flow` is Σ|f|, shape (episodes, sites)."""
 
     width: int
     edges: Edges
@@ -74,9 +74,9 @@ class ListSample:
 
 @dataclass(frozen=True)
 class Judgements:
-    """What formulas came to; columns of shape (episodes, formulas).
+    """Results of formulas; columns of shape (episodes, formulas).
 
-    Robustness is NaN where a formula was not judged, `lost` is when it was lost, in s, NaN where it was not.
+    Robustness is NaN if a formula was not judged, `lost` is when it was lost, in s, NaN if it was not.
     """
 
     formulas: tuple[str, ...]  # sorted
@@ -100,7 +100,7 @@ class Sample:
 
     @property
     def episodes(self) -> int:
-        """Return how many episodes there are."""
+        """Return the number of episodes."""
         return len(self.seeds)
 
 

@@ -29,7 +29,7 @@ class Tiles:
 
 
 def tiled(cells: Sequence[Cell], sensors: Sequence[Sensor]) -> Tiles | None:
-    """Return the tiles of the cells, None where no sensor has tilings and a table it is."""
+    """Return the tiles of the cells, None if no sensor has tilings and a table it is."""
     grids = max((sensor.tilings for sensor in sensors), default=0)
     if not grids or not cells:
         return None
@@ -54,7 +54,7 @@ def _grid(table: Ints, sensors: Sequence[Sensor], grid: int) -> Ints:
 
 
 def tiled_chain(chain: Chain, cells: int, tiles: Tiles | None, gamma: float = GAMMA_STEP) -> Floats:
-    """Return U(x) on the chain of sensor cells, shape (cells,); NaN where a tile was never visited."""
+    """Return U(x) on the chain of sensor cells, shape (cells,); NaN if a tile was never visited."""
     if tiles is None:
         return chain_utility(chain, cells, gamma)
     reward = sum_by(chain.cell, chain.reward, cells)
@@ -64,7 +64,7 @@ def tiled_chain(chain: Chain, cells: int, tiles: Tiles | None, gamma: float = GA
 def tiled_batch(
     recorded: ListSample, cells: int, scale: float, tiles: Tiles | None, gamma: float = GAMMA_EVENT
 ) -> Floats:
-    """Return q(x, n), shape (cells, sites); each site has tiles of its own. NaN where never visited at all."""
+    """Return q(x, n), shape (cells, sites); each site has tiles of its own. NaN if never visited at all."""
     if tiles is None:
         return batch(recorded, cells, scale, gamma)
     edges, visits, width = recorded.edges, recorded.visits, recorded.width
@@ -88,7 +88,7 @@ def expected(cell: Ints, count: Ints, brought: Floats, cells: int, tiles: Tiles 
 
 
 def _fitted(state: Ints, next_state: Ints, count: Ints, reward: Floats, of: Ints, gamma: float) -> Floats:
-    """Solve Σφ(c)[φ(c) - γφ(c')]w = Σφ(c)ρ and return φw, NaN where a state has a tile that was never visited."""
+    """Solve Σφ(c)[φ(c) - γφ(c')]w = Σφ(c)ρ and return φw, NaN if a state has a tile that was never visited."""
     size, grids = int(of.max()) + 1, of.shape[1]
     visits = sum_by(state, count, reward.size)
     ridge = RIDGE * float(visits[visits > 0].mean()) if visits.any() else 1.0

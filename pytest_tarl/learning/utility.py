@@ -1,4 +1,4 @@
-"""From statistics to utility: what it is worth, in the long run, to be at a site in a cell.
+"""Compute the utility of being at a site in a cell from the statistics.
 
 The learning signal is ρ = r·[last event of its step] + r·|f|/F (the reward-scaled flow value of Lyons &
 Zahra 2020); F is the mean |f| of the off-line recording. `batch` gives the fixed point that SARSA converges
@@ -21,7 +21,7 @@ STEPS = 300  # of the biconjugate gradients, which are left to the sweeps where 
 
 
 def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamma: float) -> Floats:
-    """Solve q = ρ̄ + γPq from transition counts, shape (states,); NaN where a state was never left.
+    """Solve q = ρ̄ + γPq from transition counts, shape (states,); NaN if a state was never left.
 
     `reward` is the summed reward per state, shape (states,). Transitions to `END` end the episode.
     """
@@ -101,7 +101,7 @@ def gradients(system: Callable[[Floats], Floats], right: Floats) -> Floats:
 
 
 def batch(recorded: ListSample, cells: int, scale: float, gamma: float = GAMMA_EVENT) -> Floats:
-    """Return q(x, n), shape (cells, sites); NaN where never visited. `scale` is F; infinite: no flow term."""
+    """Return q(x, n), shape (cells, sites); NaN if never visited. `scale` is F; infinite: no flow term."""
     edges, visits = recorded.edges, recorded.visits
     states = 1 + cells * recorded.width
     signal = visits.reward + visits.scaled / scale
@@ -111,6 +111,6 @@ def batch(recorded: ListSample, cells: int, scale: float, gamma: float = GAMMA_E
 
 
 def chain_utility(chain: Chain, cells: int, gamma: float = GAMMA_STEP) -> Floats:
-    """Return U(x) on the chain of sensor cells, shape (cells,); NaN where never visited."""
+    """Return U(x) on the chain of sensor cells, shape (cells,); NaN if never visited."""
     reward = sum_by(chain.cell, chain.reward, cells)
     return fixed_point(chain.cell, chain.next_cell, chain.count, reward, gamma)

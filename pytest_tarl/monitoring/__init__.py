@@ -1,1 +1,1 @@
-"""Missions that come one by one and never end, watched for a loss of performance and for a change of the world."""
+"""Watch an endless sequence of missions for a loss of performance and for a change of the world."""

@@ -1,4 +1,4 @@
-"""Missions of the records of one log, as they come."""
+"""Assemble missions from the records of one log."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from pytest_tarl.monitoring.mission import Mission, Progress, Steps, Table, adva
 from pytest_tarl.observing.frames import Record
 from pytest_tarl.sensors import Cell
 
-LATEST = 1e11  # seconds since 1970: no clock of a robot is further
+LATEST = 1e11  # seconds since 1970; later times come from a wrong clock
 
 
 @dataclass(frozen=True)
 class Expected:
-    """What a log must have been written with to be of one kind with the fixture."""
+    """The sensors and test with which a log must have been written to match the recording."""
 
     test: str
     sensors: tuple[str, ...]
@@ -29,29 +29,29 @@ class Expected:
     number: Mapping[Cell, int]
 
     def problem(self, start: Record, path: Path) -> str:
-        """Return why missions after this record are not comparable, as a sentence; empty where they are."""
+        """Return why missions after this record are not comparable, as a sentence; empty if they are."""
         names = start.get("sensors", [])
         if [*names] != [*self.sensors]:
             return (
-                f"{path} was written with the sensors {', '.join(map(str, names))}, the fixture of {self.test} has "
-                f"{', '.join(self.sensors)}: its missions are not counted. Watch it with its own fixture."
+                f"{path} was written with the sensors {', '.join(map(str, names))}, but the recording of {self.test} "
+                f"has {', '.join(self.sensors)}: its missions are not counted. Watch it with its own recording."
             )
         if start.get("test", self.test) != self.test:
             return (
-                f"{path} was written for the fixture of {start['test']}, not of {self.test}: its missions are not "
-                "counted. Watch it with its own fixture."
+                f"{path} was written for the recording of {start['test']}, not of {self.test}: its missions are not "
+                "counted. Watch it with its own recording."
             )
         if start.get("bins", self.digest) != self.digest:
             return (
                 f"{path} was written when the sensors of {self.test} had other bins: its missions are not counted. "
-                "Observe again with the fixture as it is now."
+                "Observe again with the current recording."
             )
         return ""
 
 
 @dataclass
 class Assembly:
-    """What was read of an open log, up to `place`; a mission that has not ended is kept for the next time."""
+    """The state of reading an open log, up to `place`, including an unfinished mission."""
 
     expected: Expected
     path: Path
@@ -69,7 +69,7 @@ class Assembly:
 
     @property
     def progress(self) -> Progress:
-        """Return how far the log was read with whole missions."""
+        """Return the position after the last whole mission."""
         return advanced(self.begun, self._last, self.missions, self.unfinished)
 
     def of_block(self, block: Block) -> Iterator[Mission]:
@@ -147,6 +147,6 @@ def _new(steps: Sequence[Steps]) -> tuple[Cell, ...]:
 
 
 def _time(told: float | bytes) -> float:
-    """Return seconds since 1970; 0 where a clock was wrong."""
+    """Return seconds since 1970; 0 if a clock was wrong."""
     time = float(told)
     return time if 0.0 <= time < LATEST else 0.0

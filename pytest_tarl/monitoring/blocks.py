@@ -1,4 +1,4 @@
-"""Whole records of a log, many at a time: what is read is the same wherever a block ends."""
+"""Read whole records of a log in blocks; the result does not depend on block boundaries."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import BinaryIO
 
 from pytest_tarl.observing.frames import HEAD, LARGEST, Record, unpack_head
 
-BLOCK = 1 << 15  # bytes that are read together: some two hundred records
+BLOCK = 1 << 15  # bytes read at once, about 200 records
 _DECODED = json.JSONDecoder().raw_decode
 _TEXTS = b"".join(rb'"%s":"[^"\n]*",' % name for name in (b"site", b"flow", b"cell", b"step", b"thread"))
-# A mission as an observer writes it that found time to write only once: the records mission, steps and end
+# A mission that an observer wrote at once: the records mission, steps and end
 _AT_ONCE = re.compile(
     rb'\{"kind":"mission","time":([0-9.e+-]+)\}\n'
     rb'\{"kind":"steps","cells":(\[[^"\n]*\]),'
@@ -24,7 +24,7 @@ _AT_ONCE = re.compile(
 RECORDS = 3  # of such a mission
 
 
-Spot = tuple[int, int, int]  # where a record begins in its log, and the length and checksum of its payload
+Spot = tuple[int, int, int]  # offset of a record in its log, and length and checksum of its payload
 
 
 # A mission that was written at once: its time and cells as JSON, cells and rewards of its steps as base64, whether it
@@ -38,13 +38,15 @@ class Block:
     def __init__(self, texts: list[bytes], spots: list[Spot]) -> None:
         self._texts = texts
         self._spots = spots
-        self._number = 0  # of the record that comes next
+        self._number = 0  # index of the next record
         joined = b"\n".join((*texts, b""))
-        self._lines = joined if joined.count(b"\n") == len(texts) else b""  # else some record has more lines
+        self._lines = (
+            joined if joined.count(b"\n") == len(texts) else b""
+        )  # empty if a record has several lines
         self._at = 0
 
     def left(self) -> bool:
-        """Tell whether there is a record that was not taken."""
+        """Return whether a record is left."""
         return self._number < len(self._texts)
 
     def at_once(self) -> Iterator[AtOnce]:
@@ -57,7 +59,7 @@ class Block:
             yield time, cells, cell, reward, passed, self._spots[self._number - 1]
 
     def record(self) -> Record:
-        """Take the next record. Raises ValueError where it is none."""
+        """Take the next record. Raise ValueError if it is none."""
         text = self._texts[self._number]
         found: Record = _DECODED(text.decode())[0]
         self._number += 1
@@ -76,7 +78,7 @@ def end_of(spot: Spot) -> int:
 
 
 def next_block(file: BinaryIO, place: int, size: int = BLOCK) -> Block:
-    """Return the records from `place` on, of about `size` bytes; none where no whole one is there."""
+    """Return the records from `place` on, of about `size` bytes; none if no whole one is there."""
     file.seek(place)
     data = file.read(max(size, HEAD))
     texts: list[bytes] = []

@@ -1,13 +1,13 @@
-"""Conformal test martingales: are on-line missions exchangeable with those off-line ones that nothing was fitted on?
+"""Conformal test martingales: test whether new missions are exchangeable with held-out recorded ones.
 
-The pool begins with the scores of the held-out off-line missions, and every on-line mission joins it after it was
-judged. So the smoothed rank of a new score in the pool is uniform and independent of all ranks before, exactly, as
-long as the missions are exchangeable (Vovk, Gammerman & Shafer 2005, theorem 8.1), however few off-line missions
-there are. A pool that stays as it was would not do: what its few missions happened to be would add up to evidence.
+The pool begins with the scores of the held-out recorded missions, and every new mission joins it after it was judged.
+So the smoothed rank of a new score in the pool is uniform and independent of all ranks before, exactly, as long as the
+missions are exchangeable (Vovk, Gammerman & Shafer 2005, theorem 8.1), however few recorded missions there are. A fixed
+pool would not work: the chance composition of its few missions would accumulate as evidence.
 
-Scores are rounded to bins, whose edges come from the other half of the off-line missions and so are a fixed function
-of a score. The pool is then a row of counts: small, whatever the number of missions, and exact, since ties are broken
-at random. A bet is a function of the rank p that is never negative and has integral 1 over [0, 1].
+Scores are rounded to bins, whose edges come from the other half of the recorded missions, so binning is a fixed
+function of a score. The pool is then a row of counts: small, whatever the number of missions, and exact, since ties are
+broken at random. A bet is a function of the rank p that is never negative and has integral 1 over [0, 1].
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 from pytest_tarl.learning.tables import Floats, Ints
 
 BINS = 64
-TAIL = 8  # bins beyond the scores that were fitted on, on either side; each twice as wide as the one before
-TOGETHER = 64  # missions that are ranked together; a multiple of 8 below 256
-CLOSE = 1e-4  # of a score's unit: values nearer than that are one value
+TAIL = 8  # bins beyond the fitted scores on either side; each twice as wide as the previous one
+TOGETHER = 64  # missions ranked at once; a multiple of 8 below 256
+CLOSE = 1e-4  # share of a score's unit below which values count as equal
 
 
 def edges(fitted: NDArray[np.float64], unit: float) -> Floats:
-    """Return the edges of the bins, shape (BINS - 1,), from scores that are never judged by them.
+    """Return the edges of the bins, shape (BINS - 1,), from scores that are not judged themselves.
 
     They lie midway between neighbouring values, so that no rounding of a value moves it into another bin. `unit` is
     the size of what was summed up to these scores; infinite edges are of bins that stay empty.

@@ -1,4 +1,4 @@
-"""The account of a watch for dashboards: one versioned JSON document, see `watch.schema.json`."""
+"""The status of a watch for dashboards: one versioned JSON document, see `watch.schema.json`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FORMAT_VERSION = 1  # 1: first version
 
 
 def write(document: dict[str, Any], path: Path) -> None:
-    """Write a document whole or not at all. Raises MonitorError where that is not allowed."""
+    """Write a document atomically. Raise MonitorError if it cannot be written."""
     try:
         write_atomically(path, f"{text(document, indent=1)}\n".encode())
     except OSError as problem:

@@ -1,4 +1,4 @@
-"""Which cells changed: the e-BH procedure over one e-value a cell, at any time.
+"""Find the changed cells: the e-BH procedure over one e-value per cell, valid at any time.
 
 Evidence about several cells comes in several filtrations: each cell's ranks are independent of each other, but not
 given those of all cells. An e-process stays one in a finer filtration after its running maximum was adjusted (Choe &

@@ -23,5 +23,5 @@ def factors(bound: float, observed: NDArray[np.float64]) -> Floats:
 
 
 def testable(bound: float) -> bool:
-    """Tell whether there is anything below the bound: one of 0 cannot be broken, one of 1 is no bound of a sample."""
+    """Return whether there is anything below the bound: one of 0 cannot be broken, one of 1 is no bound of a sample."""
     return 0.0 < bound < 1.0

@@ -1,4 +1,4 @@
-"""A mission as it was read from a log, and how far the log was read with it."""
+"""A mission read from a log, and the position in the log after it."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from pytest_tarl.sensors import Cell
 class Progress(NamedTuple):
     """How far a log was read: up to `offset`, where the record at `last` ends, whose length and checksum is `mark`.
 
-    The log is known by its first record, so that it is the same one under another name. `refused` tells why missions
-    at the offset are not comparable with the fixture, as a sentence.
+    The log is identified by its first record, even after renaming. `refused` is a sentence on why missions at the
+    offset are not comparable with the recording.
     """
 
     log: str
@@ -28,7 +28,7 @@ class Progress(NamedTuple):
     mark: str
     refused: str = ""
     missions: int = 0
-    unfinished: int = 0  # missions that began and did not end before the next one began
+    unfinished: int = 0  # missions without an end before the next one began
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Mission(NamedTuple):
 
 
 def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int) -> Progress:
-    """Return how far a log was read since `begun`, with the record at `last`; None where with none."""
+    """Return how far a log was read since `begun`, with the record at `last`; None if with none."""
     counted = begun._replace(missions=missions, unfinished=unfinished)
     if last is None:
         return counted

@@ -1,4 +1,4 @@
-"""When missions began: some of them, evenly spread, so that a mission's number can be told as a time."""
+"""Start times of evenly spaced missions, for converting a mission's number to a time."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-MOST = 1024  # moments that are kept
+MOST = 1024  # most times kept
 
 
 @dataclass

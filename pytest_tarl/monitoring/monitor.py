@@ -1,9 +1,8 @@
-"""The monitor: one e-process against each stated bound, one conformal martingale a score, and what raised an alarm.
+"""The monitor: one e-process per bound, one conformal martingale per score, and the alarms.
 
-Two questions share α: is performance below the bound that the fixture states, and are the missions others than those
-off-line? Each is answered by several processes of which each has a share of the question's half of α (a union bound,
-since the scores' martingales live in filtrations of their own). So the probability that there is ever a false alarm
-is at most α, beside the bound's own error.
+Two tests share α: is performance below the recorded bound, and do missions differ from the recorded ones? Each test
+runs several processes, which share its half of α (a union bound, since the scores' martingales have different
+filtrations). So the probability of ever raising a false alarm is at most α, plus the error of the bound.
 """
 
 from __future__ import annotations
@@ -24,14 +23,14 @@ from pytest_tarl.monitoring.stated import Bound, bounds
 from pytest_tarl.seeds import generator
 from pytest_tarl.sensors import Cell
 
-PORTION = 512  # missions that are scored together
-MOST_NEW = 256  # new cells that are counted
-DRAWS = 4096  # random numbers that are drawn together
+PORTION = 512  # missions scored at once
+MOST_NEW = 256  # most new cells counted
+DRAWS = 4096  # random numbers drawn at once
 
 
 @dataclass
 class Counts:
-    """How many missions were seen, and of what kind."""
+    """Numbers of missions by kind."""
 
     missions: int = 0
     passed: int = 0
@@ -42,7 +41,7 @@ class Counts:
 
 @dataclass
 class Monitor:
-    """What is known so far. Rows of `processes` are the bounds, then the scores; `pool` has shape (scores, BINS)."""
+    """The state of a watch. Rows of `processes` are the bounds, then the scores; `pool` has shape (scores, BINS)."""
 
     scale: Scale
     bounds: tuple[Bound, ...]
@@ -56,7 +55,7 @@ class Monitor:
     drawn: tuple[int, NDArray[np.float64]] = (-1, np.empty(0))
 
     def observe(self, missions: Missions) -> None:
-        """Take some missions, in their order. Any division into portions gives the same state, to the last bit."""
+        """Update with missions in order. The state does not depend on the portions, to the last bit."""
         self.take(sampled(self.scale, missions), missions.time, missions.new)
 
     def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
@@ -69,7 +68,7 @@ class Monitor:
         self._count(sample, new)
 
     def _judge(self, passed: NDArray[np.bool_], total: Floats, bins: Ints) -> None:
-        """Update the processes by some missions and have these join the pool."""
+        """Update the processes with some missions and add these to the pool."""
         first, count = self.counts.missions, len(bins)
         taken = np.concatenate((*(_told(bound, total) for bound in self.bounds), bins >= 0), axis=1)
         factors = np.empty((count, restarts.BETS, self.processes.count))
@@ -119,7 +118,7 @@ def _against(bound: Bound, passed: NDArray[np.bool_], total: Floats) -> Floats:
 
 
 def begun(fixture: Fixture, *, alpha: float, seed: int) -> Monitor:
-    """Return a monitor that has seen no mission. Raises FixtureError where the fixture holds too few episodes."""
+    """Return a monitor that has seen no mission. Raise FixtureError if the fixture holds too few episodes."""
     how, held_out = scale(fixture)
     stated = bounds(fixture)
     scores = held_out.shape[1]

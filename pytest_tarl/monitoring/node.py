@@ -17,19 +17,19 @@ TOPIC = "/diagnostics"
 NAME = "tarl_watch"
 OK, WARN, ERROR = 0, 1, 2  # levels of DiagnosticStatus
 
-Look = Callable[[], tuple[bool, Watch, Status]]  # whether to go on, and the account
+Look = Callable[[], tuple[bool, Watch, Status]]  # whether to continue, and the status
 
 
 def run(library: str, look: Look, period: float) -> None:
-    """Look every `period` seconds of ROS time and publish what was found, until the node is shut down.
+    """Read the logs every `period` seconds of ROS time and publish the status, until the node is shut down.
 
-    Raises SettingsError where the library or the message package is not installed.
+    Raise SettingsError if the library or the message package is not installed.
     """
     try:
         ros, messages = import_module(library), import_module("diagnostic_msgs.msg")
     except ImportError as missing:
         raise SettingsError(
-            f"--diagnostics {library} needs {missing.name}, which is not installed here: source the setup.bash of your "
+            f"--diagnostics {library} needs {missing.name}, which is not installed: source the setup.bash of your "
             "ROS, and install its package diagnostic_msgs."
         ) from None
     (_rospy if library == "rospy" else _rclpy)(ros, messages, look, period)

@@ -1,4 +1,4 @@
-"""Missions as they come out of a log, one by one, whoever else writes to it meanwhile."""
+"""Read missions from a log that another process may be writing."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from pytest_tarl.observing.frames import HEAD, MAGIC, next_record
 
 @dataclass
 class LogReader:
-    """One log that may grow, be rotated, cut short or not be there yet; `problem` tells what is wrong with it now."""
+    """A log that may grow, be rotated, truncated or not exist yet; `problem` is a sentence on its current problem."""
 
     path: Path
     expected: Expected
-    known: Mapping[str, Progress]  # of all logs that were ever counted
-    owners: dict[str, Path]  # where the logs were found that are open now
+    known: Mapping[str, Progress]  # progress of all logs ever counted
+    owners: dict[str, Path]  # paths of the open logs
     problem: str = ""
     _open: tuple[BinaryIO, Assembly] | None = None
-    _ahead: bool = False  # missions were read that nobody has taken yet
+    _ahead: bool = False  # whether missions were read but not yet consumed
 
     def missions(self) -> Iterator[Mission]:
-        """Yield the missions that have ended since the last time.
+        """Yield the missions that ended since the last call.
 
         A rotated log is read to its end before the one that took its name. Missions that were not taken come again,
         where `known` was kept up to date.
@@ -46,7 +46,7 @@ class LogReader:
 
     @property
     def progress(self) -> Progress | None:
-        """Return how far the log was read, None where it is not open."""
+        """Return how far the log was read, None if it is not open."""
         return None if self._open is None else self._open[1].progress
 
     def close(self) -> None:
@@ -61,10 +61,10 @@ class LogReader:
         try:
             file = self.path.open("rb")
         except FileNotFoundError:
-            self.problem = f"{self.path} is not there yet."
+            self.problem = f"{self.path} does not exist yet."
             return None
         except OSError as problem:
-            self.problem = f"{self.path} cannot be read ({problem.strerror}): look at the path."
+            self.problem = f"{self.path} cannot be read ({problem.strerror}): check the path."
             return None
         begun = self._begun(file)
         if begun is None:
@@ -78,12 +78,10 @@ class LogReader:
         return self._open
 
     def _begun(self, file: BinaryIO) -> Progress | None:
-        """Find out which log this is and where to go on. Return None where there is nothing to read."""
+        """Find out which log this is and where to go on. Return None if there is nothing to read."""
         magic = file.read(len(MAGIC))
         if not MAGIC.startswith(magic):
-            self.problem = (
-                f"{self.path} is no log of `tarl observe`, or one of another version: name such a log."
-            )
+            self.problem = f"{self.path} is not a log of `tarl observe` of this version: name such a log."
             return None
         self.problem = ""
         first = next_record(file) if magic == MAGIC else None
@@ -99,14 +97,14 @@ class LogReader:
         begun = self.known.get(log, fresh)._replace(path=str(self.path))
         if begun.last >= 0 and not _unchanged(file, begun):
             self.problem = (
-                f"{self.path} was cut short or changed since it was read up to byte {begun.offset}: nothing more of it "
-                "is counted. Restore it, or have the node write a new log."
+                f"{self.path} was truncated or changed since it was read up to byte {begun.offset}: the rest is not "
+                "counted. Restore it, or let the node write a new log."
             )
             return None
         return begun
 
     def _rotated(self, file: BinaryIO, assembly: Assembly) -> bool:
-        """Tell whether another file has the log's name by now, or the log got shorter than what was read of it."""
+        """Return whether another file has the log's name by now, or the log got shorter than what was read of it."""
         mine = os.fstat(file.fileno())
         try:
             there = self.path.stat()
@@ -125,19 +123,19 @@ class LogReader:
         self._damaged(file, assembly.place)
 
     def _damaged(self, file: BinaryIO, place: int) -> None:
-        """Notice a record that is there in full and yet not readable."""
+        """Set `problem` if a complete record is unreadable."""
         rest = os.fstat(file.fileno()).st_size - place
         file.seek(place)
         head = file.read(4)
         if len(head) == 4 and HEAD + int.from_bytes(head, "little") < rest:
             self.problem = (
-                f"{self.path} is damaged at byte {place}: what comes after it is not counted. Have the node write "
+                f"{self.path} is damaged at byte {place}: later missions are not counted. Let the node write "
                 "a new log."
             )
 
 
 def _unchanged(file: BinaryIO, at: Progress) -> bool:
-    """Tell whether the last record that was read is still where it was."""
+    """Return whether the last record read is unchanged."""
     file.seek(at.last)
     payload = next_record(file)
     if payload is None:

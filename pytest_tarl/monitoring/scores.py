@@ -1,7 +1,7 @@
-"""What a mission is judged by: numbers that are exchangeable with those of held-out off-line missions.
+"""Scores of missions, exchangeable with those of held-out recorded missions.
 
-The model is fitted on one half of the fixture's episodes; scores of the other half begin the pools, and on-line
-missions pass through the very representation that the fixture keeps.
+The model is fitted on one half of the recorded episodes; scores of the other half begin the pools. New missions are
+rounded as in a recording.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Missions:
 
 @dataclass(frozen=True)
 class Scale:
-    """How missions are scored: the off-line model, its cells, and the bins of every score, shape (scores, BINS - 1)."""
+    """How missions are scored: the fitted model, its cells, and the bins of every score, shape (scores, BINS - 1)."""
 
     cells: tuple[Cell, ...]
     known: NDArray[np.bool_]  # cells that the model was fitted in, and one False for all others
@@ -65,14 +65,14 @@ class Scale:
 def scale(fixture: Fixture) -> tuple[Scale, Ints]:
     """Return how missions are scored, and the bins of the held-out episodes, shape (episodes, scores).
 
-    Raises FixtureError where a half of the episodes holds too few.
+    Raise FixtureError if a half of the episodes holds too few.
     """
     sample = fixture.sample
     fit = np.array([in_fit(seed) for seed in sample.seeds])
     if min(fit.sum(), (~fit).sum()) < FEWEST:
         raise FixtureError(
-            f"The fixture of {fixture.test} holds {sample.episodes} episodes: too few to fit on one half and compare "
-            "with the other. Record more of them with --tarl-episodes."
+            f"The recording of {fixture.test} has {sample.episodes} episodes: too few to fit on one half and compare "
+            "with the other. Record more with --tarl-episodes."
         )
     rows = fit[sample.chain.episode]
     chain = Chain(*(column[rows] for column in vars(sample.chain).values()))
@@ -107,7 +107,7 @@ def _binned(scale: Scale, values: Floats) -> Ints:
 
 
 def _values(scale: Scale, sample: Sample) -> Floats:
-    """Return the scores, shape (missions, scores), NaN where a mission has none.
+    """Return the scores, shape (missions, scores), NaN if a mission has none.
 
     That of a cell is its residual, on average of a visit.
     """
@@ -143,7 +143,7 @@ def _units(chain: Chain, episodes: int, cells: int) -> Floats:
 def sampled(scale: Scale, missions: Missions) -> Sample:
     """Return missions in the form of recorded episodes over the scale's cells and one more for all others.
 
-    The total of a mission is NaN where it has no steps or an unknown reward.
+    The total of a mission is NaN if it has no steps or an unknown reward.
     """
     known = missions.cell >= 0
     reward = np.where(np.isfinite(missions.reward), missions.reward, 0.0)[known]

@@ -1,4 +1,4 @@
-"""The state of a watch on disk: a small file, there whole or not at all, from which it goes on as if never stopped.
+"""The state of a watch on disk: a small file, written atomically, from which the watch resumes.
 
 A `.npz` without pickle, as a fixture is: a JSON header with a digest, and the columns of the processes and the pool.
 
@@ -46,7 +46,7 @@ _UNREADABLE = (
 
 
 def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: str) -> None:
-    """Write the state whole or not at all; `fixture` is the digest of the fixture. Raises MonitorError."""
+    """Write the state atomically; `fixture` is the digest of the recording. Raise MonitorError on failure."""
     columns = _columns(monitor)
     header: dict[str, Any] = {
         "kind": KIND,
@@ -75,32 +75,31 @@ def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: st
 def load(
     path: Path, fixture: Fixture, digest: str, *, alpha: float, seed: int
 ) -> tuple[Monitor, dict[str, Progress]]:
-    """Return what a state holds, a fresh monitor where there is none.
+    """Return the monitor of a state file, or a new one without a file.
 
-    Raises MonitorError where it is damaged, or belongs to another fixture, α or seed.
+    Raise MonitorError if it is damaged, or belongs to another fixture, α or seed.
     """
     fresh = begun(fixture, alpha=alpha, seed=seed)
     if not path.exists():
         return fresh, {}
     header, columns = _read(path)
-    again = f"Name another file with --state, or remove {path} to begin anew."
+    again = f"Name another file with --state, or remove {path} to start again."
     if header["fixture"] != digest:
         raise MonitorError(
-            f"The state {path} belongs to another recording of the fixture, and evidence against one says nothing of "
-            f"another. {again}"
+            f"The state {path} belongs to another recording of the test, so its evidence does not apply. {again}"
         )
     for what, mine, theirs in (("alpha", alpha, header["alpha"]), ("seed", seed, header["seed"])):
         if mine != theirs:
             raise MonitorError(
-                f"The state {path} was begun with --{what} {theirs}, which cannot be changed to {mine} in the middle "
-                f"of a watch. {again}"
+                f"The state {path} was begun with --{what} {theirs}, which cannot be changed to {mine} during a "
+                f"watch. {again}"
             )
     return _restored(fresh, header, columns), {one["log"]: Progress(**one) for one in header["logs"]}
 
 
 @contextmanager
 def locked(path: Path) -> Iterator[None]:
-    """Keep a state to oneself. Raises MonitorError where another watch has it or its folder cannot be written."""
+    """Lock a state. Raise MonitorError if another watch has it or its folder cannot be written."""
     if path.is_dir():
         raise MonitorError(f"The state {path} is a folder: name a file with --state.")
     lock = path.with_name(f".{path.name}.lock")
@@ -116,7 +115,7 @@ def locked(path: Path) -> Iterator[None]:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             raise MonitorError(
-                f"The state {path} is in use by another watch: end that one, or name another file with --state."
+                f"The state {path} is in use by another watch: stop that watch, or name another file with --state."
             ) from None
         yield
 
@@ -151,15 +150,16 @@ def _read(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray[Any, Any]]]:
         raise _damaged(path)
     if header["format"] != FORMAT:
         raise MonitorError(
-            f"The state {path} has format {header['format']}, this version of tarl reads {FORMAT}: go on with the "
-            "version that wrote it, or remove it to begin anew."
+            f"The state {path} has format {header['format']}, but this version of tarl reads {FORMAT}: use the "
+            "version that wrote it, or remove it to start again."
         )
     return header, columns
 
 
 def _damaged(path: Path) -> MonitorError:
     return MonitorError(
-        f"The state {path} is damaged or is none of `tarl watch`: restore it from a backup, or remove it to begin anew."
+        f"The state {path} is damaged or not a state of `tarl watch`: restore it from a backup, or remove it to "
+        "start again."
     )
 
 

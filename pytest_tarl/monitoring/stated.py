@@ -1,4 +1,4 @@
-"""The bounds that a fixture states: what is promised of a mission, over the worlds that the test draws."""
+"""The bounds of a recording on future missions, over the worlds that the test samples."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ class Bound:
     high: float = 1.0
 
     def share(self, value: NDArray[np.float64] | float) -> Floats:
-        """Return where in the range values lie, 0 to 1; what is outside counts as at its end."""
+        """Scale values to the range, 0 to 1; clip values outside."""
         return np.clip((np.asarray(value) - self.low) / (self.high - self.low), 0.0, 1.0)
 
 
 def bounds(fixture: Fixture) -> tuple[Bound, ...]:
-    """Return what the fixture states: of success, and of the mean total where a range of it was declared.
+    """Return the bounds of the recording: of success, and of the mean total if its range was declared.
 
-    Nothing where its episodes are all the same, since they tell of one world only. A fixture of an older version
-    states nothing; its episodes tell the same bound of success.
+    Empty if all episodes are equal, since they sample one world only. A recording of an older version has no bounds;
+    the bound of success is computed from its episodes.
     """
     told = fixture.stated
     if told is None:

@@ -1,4 +1,4 @@
-"""What a monitor has to tell now: the evidence on each question, since when, and where."""
+"""The status of a monitor: the evidence of each test, its onset, and the changed cells."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FEWEST_NEW = 2  # missions that make a cell worth naming as new
 
 @dataclass(frozen=True)
 class Moment:
-    """A mission, counted from 1, and when it began, in seconds since 1970; None where that is not known."""
+    """A mission, counted from 1, and when it began, in seconds since 1970; None if that is not known."""
 
     mission: int
     time: float | None
@@ -49,7 +49,7 @@ class Score:
 
 @dataclass(frozen=True)
 class Status:
-    """The account of a watch. Evidence on a bound that cannot be broken, as one of 0, is None."""
+    """The status of a watch. Evidence against a bound that cannot be violated, such as 0, is None."""
 
     missions: int
     passed: int
@@ -63,22 +63,22 @@ class Status:
 
     @property
     def below(self) -> bool:
-        """Tell whether a bound was found broken."""
+        """Return whether there was an alarm against a bound."""
         return any(evidence is not None and evidence.alarm is not None for _, evidence in self.bounds)
 
     @property
     def drifted(self) -> bool:
-        """Tell whether the missions were found to be others than those off-line."""
+        """Return whether there was an alarm that missions differ from the recorded ones."""
         return self.world.alarm is not None
 
     @property
     def alarm(self) -> bool:
-        """Tell whether there ever was an alarm: it stays, since α is spent over the whole life of a watch."""
+        """Return whether there ever was an alarm; α covers the whole life of a watch."""
         return self.below or self.drifted
 
     @property
     def error(self) -> float:
-        """Return the probability that there is ever a false alarm, the error of the stated bounds included."""
+        """Return the probability of ever raising a false alarm, including the error of the bounds."""
         stated = {1.0 - bound.confidence for bound, evidence in self.bounds if evidence is not None}
         return self.alpha + (
             len([one for one in self.bounds if one[1] is not None]) * max(stated, default=0.0)
@@ -86,7 +86,7 @@ class Status:
 
 
 def status(monitor: Monitor) -> Status:
-    """Return what a monitor has to tell."""
+    """Return the status of a monitor."""
     processes, stated = monitor.processes, len(monitor.bounds)
     scores = np.arange(stated, processes.count)
     active = scores[processes.age[scores] > 0]
@@ -148,7 +148,7 @@ def _lead(monitor: Monitor, rows: Ints) -> Score | None:
 
 
 def _region(monitor: Monitor) -> tuple[Cell, ...]:
-    """Return the cells that e-BH names: missions that were in them fared otherwise there than off-line."""
+    """Return the cells that e-BH rejects: missions in them differ from the recorded ones."""
     peaks = monitor.processes.peak[len(monitor.bounds) + len(WHOLE) :]
     picked = e_bh.chosen(e_bh.adjusted(peaks), monitor.alpha)
     return tuple(monitor.scale.cells[row] for row in np.flatnonzero(picked).tolist())
@@ -157,7 +157,7 @@ def _region(monitor: Monitor) -> tuple[Cell, ...]:
 def _notes(monitor: Monitor) -> list[str]:
     counts, notes = monitor.counts, []
     if not monitor.bounds:
-        notes.append("The fixture's episodes are all the same, so it states no bound that could be tested.")
+        notes.append("All episodes of the recording are equal, so it has no bound to test.")
     if counts.without_steps:
         notes.append(f"{_missions(counts.without_steps)} without a step: only success was judged.")
     if counts.without_rewards:
@@ -166,8 +166,8 @@ def _notes(monitor: Monitor) -> list[str]:
         )
     if counts.beyond_range:
         notes.append(
-            f"{_missions(counts.beyond_range)} with a total outside of the declared range: counted as at its end, so "
-            "what the evidence says of the mean holds for totals within it."
+            f"{_missions(counts.beyond_range)} with a total outside the declared range: clipped to its ends, so "
+            "evidence on the mean refers to clipped totals."
         )
     return notes
 

@@ -1,4 +1,4 @@
-"""A watch: logs that grow, the monitor that judges them, and the state that both go on from."""
+"""A watch: growing logs, the monitor that judges them, and their saved state."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from pytest_tarl.monitoring.scores import Missions
 from pytest_tarl.monitoring.status import Status, status
 from pytest_tarl.sensors import binning_digest
 
-SAVED = 1.0  # seconds between two writings of the state while there is more to read
+SAVED = 1.0  # seconds between two saves of the state while there is more to read
 
 
 @dataclass
 class Watch:
-    """Some logs under watch; `known` is how far each log was counted, by its first record."""
+    """Some watched logs; `known` is the progress of each log, by its first record."""
 
     fixture: Fixture
     digest: str
@@ -39,10 +39,9 @@ class Watch:
     known: dict[str, Progress]
 
     def poll(self) -> Iterator[None]:
-        """Count the missions that have ended since the last time, in the order of their times.
+        """Count the missions that ended since the last call, in the order of their times.
 
-        Yields after each portion, with what was counted so far safe on disk whenever `SAVED` seconds have passed and
-        at the end.
+        Yield after each portion; save the state every `SAVED` seconds and at the end.
         """
         logs = [one.missions() for one in self.readers]
         coming = logs[0] if len(logs) == 1 else heapq.merge(*logs, key=lambda mission: mission.time)
@@ -63,10 +62,10 @@ class Watch:
         state.save(self.path, self.monitor, self.known, self.digest)
 
     def status(self) -> Status:
-        """Return the account of the watch."""
+        """Return the status of the watch."""
         found = status(self.monitor)
         unfinished = sum(one.unfinished for one in self.known.values())
-        more = [f"{unfinished:,} missions have no end and do not count."] if unfinished else []
+        more = [f"{unfinished:,} missions have no end and are not counted."] if unfinished else []
         return replace(found, notes=(*found.notes, *more))
 
     @property
@@ -81,9 +80,9 @@ class Watch:
 
 
 def begun(logs: Sequence[Path], fixture: Path, path: Path, *, alpha: float, seed: int) -> Watch:
-    """Return a watch that goes on from its state, a new one where there is none.
+    """Return a watch that resumes from its state file, or a new one without a file.
 
-    Raises FixtureError, MonitorError where fixture or state cannot be used.
+    Raise FixtureError, MonitorError if fixture or state cannot be used.
     """
     loaded = load_fixture(fixture)
     digest = hashlib.sha256(fixture.read_bytes()).hexdigest()
@@ -95,9 +94,9 @@ def begun(logs: Sequence[Path], fixture: Path, path: Path, *, alpha: float, seed
 
 
 def expectation(fixture: Fixture, monitor: Monitor) -> Expected:
-    """Return what logs must have been written with. Raises FixtureError where the sensors cannot be watched."""
+    """Return the sensors and test that logs must match. Raise FixtureError if the sensors cannot be watched."""
     if not fixture.sensors:
-        raise FixtureError(f"The fixture of {fixture.test} has no sensors.")
+        raise FixtureError(f"The recording of {fixture.test} has no sensors.")
     names = tuple(sensor.name for sensor in fixture.sensors)
     return Expected(fixture.test, names, binning_digest(fixture.sensors), monitor.scale.number)
 

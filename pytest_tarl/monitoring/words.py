@@ -1,4 +1,4 @@
-"""The account of a watch as sentences."""
+"""Describe the status of a watch in sentences."""
 
 from __future__ import annotations
 
@@ -13,37 +13,37 @@ from pytest_tarl.report.regions import Vocabulary
 SCORES = {
     "success": "the success of missions",
     "total": "the total reward",
-    "residual": "the total reward, less what each situation lets expect",
-    "unknown": "the steps in situations that no fitted episode was in",
+    "residual": "the total reward, minus its expectation in each situation",
+    "unknown": "the number of steps in unknown situations",
     "steps": "the number of steps",
 }
 SIDES = {
-    "lower": "is lower than off-line",
-    "higher": "is higher than off-line",
-    "spread": "is more extreme than off-line",
+    "lower": "is lower than recorded",
+    "higher": "is higher than recorded",
+    "spread": "is more extreme than recorded",
 }
 
 
 def lines(watch: Watch, status: Status) -> Iterator[str]:
-    """Yield the whole account."""
+    """Yield the full report."""
     words = vocabulary(watch, status)
     yield f"{watch.fixture.test}: {_missions(status.missions)}, {_passed(status)}"
     for bound, evidence in status.bounds:
         yield f"  bound   {stated(bound)}: {found(evidence, status.alpha)}"
-    yield f"  world   missions as off-line: {found(status.world, status.alpha)}"
+    yield f"  world   missions as recorded: {found(status.world, status.alpha)}"
     if status.drifted and status.lead is not None:
         yield f"          most of all {led(status.lead, words)}"
     if status.cells:
         yield f"  where   {words.words(status.cells)}"
     if status.new:
-        yield f"  new     {words.words(status.new)}: no off-line episode was there"
+        yield f"  new     {words.words(status.new)}: no recorded episode visited it"
     yield f"  error   {promise(status)}"
     for note in status.notes:
         yield f"  note    {note}"
 
 
 def headline(watch: Watch, status: Status) -> str:
-    """Return the account in one line, for logs and diagnostics."""
+    """Return the status in one line, for logs and diagnostics."""
     parts = [f"{_missions(status.missions)}, {_passed(status)}"]
     for bound, evidence in status.bounds:
         if evidence is not None:
@@ -55,19 +55,19 @@ def headline(watch: Watch, status: Status) -> str:
 
 
 def vocabulary(watch: Watch, status: Status) -> Vocabulary:
-    """Return how cells are called."""
+    """Return the names of cells."""
     return Vocabulary(watch.fixture.sensors, {*watch.fixture.sample.cells, *status.new})
 
 
 def stated(bound: Bound) -> str:
-    """Return what a bound promises."""
+    """Describe a bound."""
     if bound.what == "success":
         return f"at least {_percent(bound.least)} of missions pass ({_percent(bound.confidence)} confidence)"
     return f"a mission earns at least {bound.least:.4g} on average ({_percent(bound.confidence)} confidence)"
 
 
 def found(evidence: Evidence | None, alpha: float) -> str:
-    """Return how much evidence there is against a statement, and since when."""
+    """Describe the evidence against a hypothesis and its onset."""
     if evidence is None:
         return "nothing to test"
     now = f"evidence {_number(evidence.now)}, alarm at {1.0 / alpha:.4g}"
@@ -79,13 +79,13 @@ def found(evidence: Evidence | None, alpha: float) -> str:
 
 
 def led(score: Score, words: Vocabulary) -> str:
-    """Return which score differs most, and how."""
+    """Describe the score that differs most."""
     what = SCORES[score.name] if score.cell is None else f"what {words.words([score.cell])} brings"
     return f"{what} {SIDES[score.side]}"
 
 
 def promise(status: Status) -> str:
-    """Return how often there would be an alarm without reason."""
+    """Describe the probability of a false alarm."""
     tested = [bound for bound, evidence in status.bounds if evidence is not None]
     text = f"a false alarm, ever: at most {_percent(status.alpha)} (alpha)"
     if not tested:

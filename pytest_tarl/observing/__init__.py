@@ -1,1 +1,1 @@
-"""A node on a robot, watched: its steps, its sensors and its reward, appended to a log that `--tarl-log` reads."""
+"""Observe a node on a robot: append its steps, sensor values and rewards to a log, which `--tarl-log` reads."""

@@ -1,4 +1,4 @@
-"""`python -m pytest_tarl observe node.py`: run a node where it is at home and write down its missions."""
+"""`python -m pytest_tarl observe node.py`: run a node on its robot and log its missions."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tarl_lint.api import analyse
 
 @dataclass(frozen=True)
 class Order:
-    """What is asked for on the command line."""
+    """The arguments of the command line."""
 
     node: Path
     argv: tuple[str, ...] = ()
@@ -36,12 +36,12 @@ class Order:
     mission: str = ""
     idle: float | None = None
     step: float | None = None
-    log_size: int = 0  # bytes at which the log is set aside; 0 for never
-    log_keep: int = 0  # how many that were set aside stay; 0 for all
+    log_size: int = 0  # bytes at which the log is rotated; 0 for never
+    log_keep: int = 0  # number of rotated logs to keep; 0 for all
 
 
 def observe(order: Order) -> str:
-    """Run the node until it ends; return what is to be told. Raises LogError, and whatever the node ends in."""
+    """Run the node until it ends; return the lines to print. Raises LogError, or the node's own exception."""
     _check(order)
     fixture = load(order.fixture or _fixture_of(order.node))
     sites = _sites(order)
@@ -99,7 +99,7 @@ def _run(order: Order, observer: Observer, sites: Plan) -> None:
 
 @contextmanager
 def _collected_before() -> Iterator[None]:
-    """Keep what was imported and analysed so far out of the garbage collections that the node pays for."""
+    """Exclude objects of imports and analysis from garbage collections, which would delay the node."""
     gc.collect()
     gc.freeze()
     try:
@@ -130,7 +130,7 @@ def _sites(order: Order) -> Plan:
 
 
 def _fixture_of(node: Path) -> Path:
-    """Return the one utility fixture below the working directory whose taint lists name the node's file."""
+    """Return the only recording below the working directory whose taint lists contain the node's file."""
     found = [path for path in sorted(Path.cwd().glob("**/.tarl/utility/*.npz")) if _names(load(path), node)]
     if len(found) != 1:
         listed = ", ".join(str(path.relative_to(Path.cwd())) for path in found) or "none"
@@ -166,7 +166,7 @@ def _warn_of_mute_sensors(fixture: Fixture) -> None:
 
 @contextmanager
 def _steps(order: Order, observer: Observer) -> Iterator[None]:
-    """Close a step every so often, where no topic does."""
+    """Close steps at a fixed interval if no topic does."""
     over = threading.Event()
 
     def tick() -> None:

@@ -1,11 +1,11 @@
 """The log: a line that names the format, then records, each with its length and a checksum, appended one by one.
 
-A record is `length, crc32` (two little-endian 32-bit numbers) and that many bytes of zlib-compressed JSON. Whatever
-ends the writer, everything before the last whole record can be read; what is torn is cut off when writing goes on.
+A record is `length, crc32` (two little-endian 32-bit numbers) and that many bytes of zlib-compressed JSON. However the
+writer ends, all complete records can be read; the next writer truncates an incomplete one.
 
 FORMAT history:
 1  Records start, mission, steps, end. Where there are formulas, steps and end also hold `changes` of signals, steps
-   the `times` at which they were closed, and end how long the mission `lasted`; older readers pass over them.
+   the `times` at which they were closed, and end how long the mission `lasted`; older readers ignore them.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ MAGIC = b"tarl log 1\n"
 _HEAD = struct.Struct("<II")
 HEAD = _HEAD.size  # bytes before a record's payload
 unpack_head = _HEAD.unpack_from  # length and checksum of the payload, from a buffer and an offset
-LARGEST = 1 << 26  # bytes of a record; a longer one is a damaged length
+LARGEST = 1 << 26  # most bytes of a record; a larger length is damaged
 
 Record = dict[str, Any]
 
 
 class LogFile:
-    """A log that is open for appending, by one process at a time."""
+    """A log opened for appending, by one process at a time."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -67,13 +67,13 @@ class LogFile:
 
     @property
     def size(self) -> int:
-        """Return how many bytes the log holds."""
+        """Return the size of the log in bytes."""
         return self._file.tell()
 
     def set_aside(self, keep: int = 0) -> None:
-        """Give the file the next free number (`missions.log.7`) and go on in a new one of the old name.
+        """Rotate: rename the file with the next free number (`missions.log.7`) and continue in a new file.
 
-        With `keep`, only so many of those that were set aside stay; the oldest goes first.
+        `keep` is the number of rotated files to keep; the oldest are removed.
         """
         self.close()
         older = set_aside(self.path)
@@ -84,11 +84,11 @@ class LogFile:
         self._open()
 
     def append(self, record: Record) -> None:
-        """Append a record; `sync` makes it last."""
+        """Append a record; call `sync` to make it durable."""
         self._file.write(encoded(record))
 
     def sync(self) -> None:
-        """Have everything that was appended survive a power cut."""
+        """Flush all records to disk, so that they survive a power cut."""
         self._file.flush()
         os.fsync(self._file.fileno())
 
@@ -105,18 +105,18 @@ def encoded(record: Record) -> bytes:
 
 
 def set_aside(path: Path) -> list[Path]:
-    """Return the files that a log was set aside in when it grew too long, the oldest first."""
+    """Return the rotated files of a log, the oldest first."""
     found = [one for one in path.parent.glob(f"{glob.escape(path.name)}.*") if one.suffix[1:].isdecimal()]
     return sorted(found, key=lambda one: int(one.suffix[1:]))
 
 
 def records(path: Path) -> Iterator[Record]:
-    """Yield the whole records of a log; what comes after the last one is passed over. Raises LogError."""
+    """Yield the complete records of a log; ignore an incomplete last one. Raise LogError on failure."""
     try:
         file = path.open("rb")
     except OSError as problem:
         raise LogError(
-            f"{path} cannot be read ({problem.strerror}): look at the path after --tarl-log."
+            f"{path} cannot be read ({problem.strerror}): check the path after --tarl-log."
         ) from None
     with file:
         _check_magic(file, path)
@@ -125,7 +125,7 @@ def records(path: Path) -> Iterator[Record]:
 
 
 def _whole(file: BinaryIO, path: Path) -> int:
-    """Return where the last whole record ends."""
+    """Return the offset after the last complete record."""
     file.seek(0)
     start = file.read(len(MAGIC))
     if start != MAGIC:
@@ -144,7 +144,7 @@ def _check_magic(file: BinaryIO, path: Path) -> None:
 
 
 def next_record(file: BinaryIO) -> bytes | None:
-    """Return the payload of the record at the file's position, None where no whole one is there."""
+    """Return the payload of the record at the file's position, None if no whole one is there."""
     head = file.read(HEAD)
     if len(head) < HEAD:
         return None
@@ -157,5 +157,5 @@ def next_record(file: BinaryIO) -> bytes | None:
 
 def _foreign(path: Path) -> LogError:
     return LogError(
-        f"{path} is no log of `python -m pytest_tarl observe`, or one of another version: name such a log."
+        f"{path} is not a log of `python -m pytest_tarl observe` of this version: name such a log."
     )

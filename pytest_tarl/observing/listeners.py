@@ -1,4 +1,4 @@
-"""Where an observer listens: beside the node, in its own process, on topics that the node need not know."""
+"""Subscribe the observer to topics, in the node's process but independently of its own subscriptions."""
 
 from __future__ import annotations
 
@@ -20,27 +20,28 @@ WORD = "std_msgs/msg/String"
 
 @dataclass(frozen=True)
 class Topics:
-    """What is listened to: message types by topic, and who is told."""
+    """The observed topics: message types by topic, and the observer."""
 
     types: Mapping[str, str]
     reward: str = ""
     mission: str = ""
-    own: Mapping[str, str] = field(default_factory=dict)  # types that the command line gave
+    own: Mapping[str, str] = field(default_factory=dict)  # types given on the command line
 
     def type_of(self, topic: str) -> str:
-        """Return the message type of a topic. Raises LogError where nobody has told it."""
+        """Return the message type of a topic. Raise LogError if it is unknown."""
         usual = {self.reward: NUMBER, self.mission: WORD}
         found = self.own.get(topic) or self.types.get(topic) or usual.get(topic)
         if not found:
             raise LogError(
-                f"The type of {topic} is not known: the fixture names none. Record it again, or write {topic}:TYPE."
+                f"The type of {topic} is unknown, because the recording does not contain it. Record again, or write "
+                f"{topic}:TYPE."
             )
         return found
 
 
 @contextmanager
 def watched(library: str, observer: Observer, topics: Topics, *, idle: bool) -> Iterator[None]:
-    """Have the observer told while a node of this client library runs."""
+    """Pass messages to the observer while a node of this client library runs."""
     import_module(library)  # before any message: it settles of which generation they are
     listeners = _listeners(observer, topics)
     undo = _watch_rospy(listeners) if library == "rospy" else _watch_rclpy(listeners)

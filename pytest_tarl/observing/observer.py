@@ -1,4 +1,4 @@
-"""What is watched: sensors latched when their message comes, rewards, missions; a thread that passes it on."""
+"""Observe a node: latch sensors at their messages, track rewards and missions, and pass them on from a thread."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from pytest_tarl.observing.stream import Stream
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.sensors import Cell, Sensor, reading
 
-PERIOD = 0.02  # seconds between two cuts at least: few events each, so that a cut is short
-PATIENCE = 0.1  # seconds after which a cut is made though no step was closed
+PERIOD = 0.02  # least seconds between two cuts: few events each, so that a cut is short
+PATIENCE = 0.1  # seconds after which to cut even if no step was closed
 OUTCOMES = {"succeeded": True, "failed": False}
 
 
@@ -26,9 +26,9 @@ NEVER = Rotation()
 
 
 class Observer:
-    """One node under observation. Messages may come from any thread.
+    """The observer of a node. Messages may come from any thread.
 
-    What takes time, from columns to the disk, is done by a process of its own. Raises LogError where it cannot write.
+    What takes time, from columns to the disk, is done by a process of its own. Raise LogError if it cannot write.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class Observer:
         self._readings: list[list[Any]] = []
         self._active = monotonic()
         self.running = False  # whether a mission runs
-        self.problem = ""  # the first thing that went wrong in here: nothing of it may reach the node
+        self.problem = ""  # the first error in here: errors must not reach the node
         self._lock = threading.RLock()  # order of records
         self._over = False
         self._wake = threading.Lock()  # taken while the thread sleeps; a step that is closed gives it back
@@ -70,7 +70,7 @@ class Observer:
         self._thread.start()
 
     def told(self, sensor: Sensor, message: Any) -> None:
-        """Latch a sensor: its message is about to reach the node."""
+        """Latch a sensor whose message is about to reach the node."""
         try:
             value = reading(message, sensor.field or "")
             self._values[sensor.name] = value
@@ -84,7 +84,7 @@ class Observer:
             self.problem = self.problem or f"Sensor {sensor.name!r}: {problem}"
 
     def signalled(self, signal: Signal, message: Any) -> None:
-        """Note the value of a signal."""
+        """Record the value of a signal."""
         try:
             if self._following:
                 self._note(signal.name, reading(message, signal.field or ""))
@@ -99,7 +99,7 @@ class Observer:
                 self._changes.append([monotonic() - self._begun, name, number])
 
     def step(self, reward: float) -> None:
-        """Close a step with its reward; NaN where the test's own `judge` is to say it later."""
+        """Close a step with its reward; NaN if the test's own `judge` is to say it later."""
         with self._lock:
             now = monotonic()
             self._times.append(now - self._begun)
@@ -110,7 +110,7 @@ class Observer:
                 self._wake.release()  # now, when the cycle is over: not when the next one begins
 
     def begin(self) -> None:
-        """Begin a mission; one that still runs has ended, well as far as anybody knows."""
+        """Begin a mission; a running one ends as succeeded."""
         with self._lock:
             self.end(passed=True)
             self._flush()
@@ -136,20 +136,20 @@ class Observer:
             self.running = False
 
     def active(self) -> None:
-        """Note that the node does something; with `idle`, this begins a mission."""
+        """Register activity of the node; with `idle`, this begins a mission."""
         self._active = monotonic()
         if self._idle is not None and not self.running:
             self.begin()
 
     def order(self, word: str) -> None:
-        """Follow what the mission topic says: begin, succeeded or failed."""
+        """Follow a message of the mission topic: begin, succeeded or failed."""
         if word == "begin":
             self.begin()
         elif word in OUTCOMES:
-            self.end(passed=OUTCOMES[word], failure="" if OUTCOMES[word] else "the mission topic said so")
+            self.end(passed=OUTCOMES[word], failure="" if OUTCOMES[word] else "reported on the mission topic")
 
     def close(self) -> None:
-        """Write what is left."""
+        """Write the remaining records."""
         self._over = True
         with self._lock:
             if self._wake.locked():

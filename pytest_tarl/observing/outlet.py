@@ -1,4 +1,4 @@
-"""The way of an observer's messages out of the node's process: a pipe to a writer of its own."""
+"""Send an observer's messages from the node's process through a pipe to a writer process."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from pytest_tarl.errors import LogError
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.observing.writer_main import LENGTH, READY
 
-MOST_WAITING = 1 << 26  # bytes of messages that wait for the disk; beyond, nothing is taken off the stream
+MOST_WAITING = 1 << 26  # most bytes of waiting messages; beyond, the stream is not read
 _PIPE = 1 << 20  # bytes that the pipe itself holds, where the system allows
 _PLAIN = 2  # the version of marshal that does not look for objects which occur twice
 
@@ -27,7 +27,7 @@ class Outlet:
     """Messages to the writer. `put` and `pump` never wait; `pump` belongs to one thread."""
 
     def __init__(self, log: Path, about: Mapping[str, Any], rotation: Rotation) -> None:
-        self.problem = ""  # why nothing more is written
+        self.problem = ""  # why writing stopped
         self._waiting: deque[bytes | memoryview] = deque()
         self._put = self._sent = 0  # bytes
         order = {"log": str(log), "about": dict(about), "rotation": [rotation.size, rotation.keep]}
@@ -43,18 +43,18 @@ class Outlet:
 
     @property
     def full(self) -> bool:
-        """Tell whether so much waits for the disk that nothing more should be put."""
+        """Return whether so much waits for the disk that nothing more should be put."""
         return self._put - self._sent > MOST_WAITING
 
     def put(self, *message: Any) -> None:
-        """Line up a message. Callers hold a lock of theirs, so that messages stay in order."""
+        """Queue a message. Callers hold a lock to keep messages in order."""
         if not self.problem:
             text = marshal.dumps(message, _PLAIN)
             self._waiting.append(LENGTH.pack(len(text)) + text)
             self._put += LENGTH.size + len(text)
 
     def pump(self) -> None:
-        """Send as much of what is lined up as the pipe takes now."""
+        """Send as many queued bytes as the pipe accepts now."""
         try:
             while self._waiting and not self.problem:
                 piece = self._waiting.popleft()
@@ -66,7 +66,7 @@ class Outlet:
             self._waiting.appendleft(piece)
         except OSError:
             self.problem = (
-                self._said() or "The process that writes the log was ended: what came after is lost."
+                self._said() or "The process that writes the log was ended: later records are lost."
             )
             self._waiting.clear()
 

@@ -1,4 +1,4 @@
-"""A recorder that is emptied while the node runs, so that memory stays bounded however long a mission lasts."""
+"""A recorder drained while the node runs, so that memory stays bounded for missions of any length."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MOST_ENTRIES = 4_000_000  # halves of events that wait for the disk; beyond, the
 
 @dataclass(frozen=True)
 class Chunk:
-    """What happened between two emptyings.
+    """The events between two cuts.
 
     Event columns have shape (events,), step columns (steps,); `step` counts from the first step of the chunk, and
     events after its last reward belong to a step that the next chunk closes.
@@ -36,7 +36,7 @@ class Chunk:
 
     @property
     def empty(self) -> bool:
-        """Tell whether there is nothing to write."""
+        """Return whether there is nothing to write."""
         return not self.site.size and not self.reward.size
 
 
@@ -51,12 +51,12 @@ class Cut(NamedTuple):
 
     @property
     def empty(self) -> bool:
-        """Tell whether there is nothing to write."""
+        """Return whether there is nothing to write."""
         return not self.rewards and not any(entries for entries, _ in self.threads)
 
 
 class Stream(Recorder):
-    """Record without end: `cut` takes what is there."""
+    """An endless recorder: `cut` takes the events recorded so far."""
 
     _packing = False  # from any thread, so no other may
 
@@ -66,7 +66,7 @@ class Stream(Recorder):
         self._told = 0  # cells that earlier cuts hold
 
     def cut(self, drop: bool = False) -> Cut:
-        """Return what was recorded since the last time, and forget it. From any thread; slices of lists, no more.
+        """Return and drop the events recorded since the last call. Callable from any thread; it only slices lists.
 
         With `drop` the events are left out and counted, for lack of room: rewards and cells are kept.
         """

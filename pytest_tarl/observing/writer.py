@@ -1,4 +1,4 @@
-"""What the writer's process makes of the messages of an observer: records of the log.
+"""Convert the messages of an observer to records of the log, in the writer process.
 
 Columns, base64, JSON, compression and syncing happen here, so that the node's process never waits for them.
 """
@@ -22,14 +22,14 @@ MOST_HELD = 100_000  # events of a record, roughly, so that memory stays bounded
 
 @dataclass(frozen=True)
 class Rotation:
-    """When a log is set aside: before a mission begins, once it holds `size` bytes; `keep` 0 keeps all."""
+    """When to rotate a log: before a mission begins, once it has `size` bytes; `keep` 0 keeps all."""
 
     size: int = 0  # 0: never
     keep: int = 0
 
 
 class Writer:
-    """Turns messages into records. A message is a tuple: what it tells, then its parts (`take`)."""
+    """Convert messages to records. A message is a tuple: its kind, then its parts (`take`)."""
 
     def __init__(self, log: LogFile, about: Mapping[str, Any], rotation: Rotation) -> None:
         self._log = log
@@ -45,12 +45,12 @@ class Writer:
         self._held = 0  # events of the chunks
 
     def take(self, message: tuple[Any, ...]) -> None:
-        """Take one message; `sync` writes down what belongs to the running mission."""
+        """Take one message; `sync` writes pending events of the running mission."""
         what, *parts = message
         getattr(self, f"_take_{what}")(*parts)
 
     def sync(self) -> None:
-        """Write what has come, and have it survive a power cut."""
+        """Write pending events and flush them to disk."""
         self._write_steps()
         self._log.sync()
 

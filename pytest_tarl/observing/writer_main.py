@@ -1,6 +1,6 @@
-"""The writer's process: messages of an observer from standard input to its log.
+"""The writer process: copy messages of an observer from standard input to its log.
 
-It ends when it is told to, or when the node's process is gone, however that came; what had been sent is written.
+It ends on request, or when the node's process is gone, and writes all messages that were sent.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ def main() -> int:
         return 1
     except OSError as problem:
         print(
-            f"{order['log']} cannot be written any more ({problem.strerror}): what came after is lost. Make room, "
-            "or name another place with --log.",
+            f"{order['log']} can no longer be written ({problem.strerror}): later records are lost. Free some space, "
+            "or name another file with --log.",
             flush=True,
         )
         return 1

@@ -52,7 +52,7 @@ class RealBus(Bus):
         raise NotImplementedError
 
     def send(self, place: Topic, message: Any, latch: bool) -> None:
-        """Hand a message to the real ROS. Raises RecordingError where a subscriber wants another type."""
+        """Hand a message to the real ROS. Raise RecordingError if a subscriber wants another type."""
         raise NotImplementedError
 
     def heard(self, topic: str, message: Any) -> None:
@@ -77,7 +77,7 @@ class RealBus(Bus):
         wanted = find_class(self.kind, package, short) if short else None
         if wanted is None:
             raise RecordingError(
-                f"The message published on {topic} is not valid: {own.__name__} is no message type of the ROS that "
+                f"The message published on {topic} is not valid: {own.__name__} is not a message type of the ROS that  "
                 "is installed here."
             )
         return message if wanted is own else translate(message, wanted)

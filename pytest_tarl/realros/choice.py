@@ -15,14 +15,14 @@ from pytest_tarl.ros import Ros
 KINDS = ("embedded", "real", "auto")
 Library = Literal["rospy", "rclpy"]
 _INSTALL = {
-    "rospy": "rospy is not installed here: apt-get install python3-rospy python3-rosmaster (Debian, Ubuntu), or "
+    "rospy": "rospy is not installed: apt-get install python3-rospy python3-rosmaster (Debian, Ubuntu), or "
     "source the setup.bash of your ROS",
-    "rclpy": "rclpy is not installed here: source the setup.bash of your ROS, or pip install 'ros-rclpy[fastrtps]'",
+    "rclpy": "rclpy is not installed: source the setup.bash of your ROS, or pip install 'ros-rclpy[fastrtps]'",
 }
 
 
 def make_ros(kind: str, nodes: Iterable[Path]) -> Ros:
-    """Return the ROS of an episode. Raises SettingsError where the real one is asked for and is not there."""
+    """Return the ROS of an episode. Raise SettingsError if the real one is asked for and is not there."""
     if kind == "embedded":
         return Ros()
     wanted = libraries(nodes)
@@ -36,7 +36,7 @@ def make_ros(kind: str, nodes: Iterable[Path]) -> Ros:
 
 
 def check_kind(kind: str) -> str:
-    """Return the kind. Raises SettingsError for one that is not known."""
+    """Return the kind. Raise SettingsError for one that is not known."""
     if kind not in KINDS:
         raise SettingsError(
             f"--tarl-ros does not know {kind!r}; it takes {', '.join(KINDS[:-1])} or {KINDS[-1]}."

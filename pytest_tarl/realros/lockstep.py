@@ -1,4 +1,4 @@
-"""Lock-step: what was sent is counted, and nobody goes on before all of it has arrived.
+"""Lock-step: count sent messages, and let no node continue before all have arrived.
 
 Messages travel by a real network, in threads of the client library; this is where they come back into the one
 sequence that the scheduler plays.
@@ -53,7 +53,7 @@ class Wire:
             if not self._arrival.wait_for(lambda: self._boxes.get(way), PATIENCE):
                 raise RecordingError(
                     f"A message from {way.sender} to {way.receiver} on {way.topic} did not arrive within "
-                    f"{PATIENCE:g} s: look whether the network of this machine lets processes talk on 127.0.0.1."
+                    f"{PATIENCE:g} s: check that processes on this machine can communicate through 127.0.0.1."
                 )
             return way, self._boxes[way].popleft()
 

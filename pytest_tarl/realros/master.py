@@ -37,7 +37,7 @@ class Master:
 
     @property
     def answers(self) -> bool:
-        """Tell whether it is there."""
+        """Return whether it is there."""
         try:
             with xmlrpc.client.ServerProxy(self.uri) as server:
                 return bool(server.getPid("/tarl")[0] == 1)  # type: ignore[index]

@@ -43,7 +43,7 @@ class SharedParticipant:
         self._up = True
 
     def ok(self) -> bool:
-        """Tell whether ROS is up."""
+        """Return whether ROS is up."""
         return self._up and not (self.process is not None and self.process.ending)
 
     def destroy(self) -> None:

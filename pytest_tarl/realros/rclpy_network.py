@@ -50,7 +50,7 @@ class RclpyNetwork:
         self._told = -1
 
     def close(self) -> None:
-        """Leave the network."""
+        """Shut the network down."""
         self.world.destroy_node()
         self.context.try_shutdown()
         for name, value in self._environment.items():
@@ -145,7 +145,7 @@ class RclpyNetwork:
             self.expected[subscription] -= 1
 
     def under_way(self, executor: Any) -> bool:
-        """Tell whether something was sent to a node of the executor that it could take and that is not here yet.
+        """Return whether something was sent to a node of the executor that it could take and that is not here yet.
 
         It must not choose among what is here before: which of two topics comes first would be a matter of threads.
         """
@@ -187,7 +187,7 @@ class RclpyNetwork:
         ]
 
     def compatible(self, offered: Any, requested: Any) -> bool:
-        """Tell whether the middleware connects two profiles."""
+        """Return whether the middleware connects two profiles."""
         answer, _ = self.rclpy.qos.qos_check_compatible(offered, requested)
         return bool(answer != self.rclpy.qos.QoSCompatibility.ERROR)
 

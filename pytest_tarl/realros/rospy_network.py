@@ -216,7 +216,7 @@ def spawn_callback(process: Process, callback: Any, message: Any, arguments: Any
 
 
 def mismatch(publisher: Any, subscriber: Any) -> bool:
-    """Tell whether two ends of a topic are of different types."""
+    """Return whether two ends of a topic are of different types."""
     sums = (publisher.data_class._md5sum, subscriber.data_class._md5sum)
     return "*" not in sums and sums[0] != sums[1]
 

@@ -167,7 +167,7 @@ def rospy_network() -> RospyNetwork:
 
 
 def close_network() -> None:
-    """Stop everything that the run has started."""
+    """Stop all processes and nodes of the run."""
     if rospy_network.cache_info().currsize:
         rospy_network().close()
         rospy_network.cache_clear()

@@ -92,7 +92,7 @@ class ServiceCalls:
             self._arrival.notify()
 
     def _attend(self) -> None:
-        """Wait for all that is on the wire, then let it go on. Raises RecordingError."""
+        """Wait for all that is on the wire, then let it go on. Raise RecordingError on failure."""
         if not self._on_wire:
             return
         with self._arrival:

@@ -10,14 +10,14 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.extras import install_command
 from pytest_tarl.workers.pool import Pool, Post
 
-REACHED = 10  # seconds in which the scheduler has to answer
-RETRIES = 2  # times that an episode goes to another machine when its own is lost
+REACHED = 10  # seconds to wait for the scheduler
+RETRIES = 2  # retries of an episode on another machine after its machine is lost
 
 _pools: list[Pool] = []  # of this process, a worker of the cluster
 
 
 def serve_here(post: Post, request: bytes) -> bytes:
-    """Let a process on this machine answer."""
+    """Run a request in a process on this machine."""
     if not _pools:
         _pools.append(Pool())
     return _pools[0].serve(post, request)

@@ -23,7 +23,7 @@ from pytest_tarl.workers.pool import TRIES, Pool, Post, WorkerDiedError, WorkerH
 
 Serve = Callable[[Post, bytes], bytes]
 
-# What a worker must not do, or not share with others: reports, caches of results, debuggers, workers of its own.
+# Plugins that a worker must not load or share: reports, caches of results, debuggers, nested workers.
 OFF: Mapping[str, Any] = {
     "cacheclear": False,
     "collectonly": False,
@@ -49,7 +49,7 @@ OFF: Mapping[str, Any] = {
 
 @dataclass(frozen=True)
 class EpisodeExecutor:
-    """A rollout whose episodes run elsewhere."""
+    """A rollout whose episodes run on workers."""
 
     executor: Executor
     serve: Serve
@@ -57,7 +57,7 @@ class EpisodeExecutor:
     workers: int
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
-        """Run one episode. Raises TarlError where the test cannot be run as asked, pytest's Exit and Skipped."""
+        """Run one episode. Raise TarlError if the test cannot be run as asked, pytest's Exit and Skipped."""
         return self.begin(plan).result()
 
     def begin(self, plan: EpisodePlan) -> Answer:
@@ -73,26 +73,26 @@ class Answer:
     future: Future[bytes]
 
     def result(self) -> EpisodeRun:
-        """Wait for it. Raises TarlError where it could not be run, pytest's Exit and Skipped."""
+        """Wait for it. Raise TarlError if it could not be run, pytest's Exit and Skipped."""
         try:
             return protocol.answered(self.plan, self.future.result())
         except WorkerDiedError as died:
             raise RecordingError(
                 f"The worker process of the episode with seed {self.plan.seed} {died}, {TRIES} times in {TRIES}: run "
-                "it without --tarl-workers to see what its node does, or use fewer workers if memory is short."
+                "it without --tarl-workers to debug its node, or use fewer workers if memory is short."
             ) from None
         except WorkerHeldError as held:
             raise RecordingError(
-                f"Stopped at an episode (seed {self.plan.seed}) that came to no end: a node held the interpreter, at "
-                f"{held}, in one call that never returns (a loop in C, a runaway regular expression). Its worker was "
-                "ended and replaced. Bound that call."
+                f"Stopped at an episode (seed {self.plan.seed}) that did not end: a node held the interpreter at "
+                f"{held} in one call that does not return (a loop in C, a runaway regular expression). TARL replaced "
+                "its worker. Bound that call."
             ) from None
         except protocol.SkippedError as skipped:
             pytest.skip(str(skipped))
         except protocol.EndedError as ended:
             pytest.exit(str(ended))
         except CancelledError:
-            raise RecordingError("The cluster took back an episode: look at its scheduler's log.") from None
+            raise RecordingError("The cluster cancelled an episode: check its scheduler's log.") from None
 
     def cancel(self) -> bool:
         """Do without it, if no worker has begun it."""
@@ -103,7 +103,7 @@ class Answer:
 def opened(
     item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor], options: Options
 ) -> Iterator[EpisodeExecutor]:
-    """Open an executor for a test and end all its workers afterwards, whatever happens meanwhile."""
+    """Open an executor for a test; end all its workers on exit."""
     post = posted(item, instruments, sensors)
     if options.cluster is not None:
         from pytest_tarl.workers.cluster import joined, serve_here

@@ -1,4 +1,4 @@
-"""Worker processes and how they are spoken to; a worker that dies costs its episode another try, not the run."""
+"""Worker processes. If a worker dies, its episode is retried, at most TRIES times in total."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from pytest_tarl.held_interpreter import SIGNAL
 from pytest_tarl.ros.blame import describe_first
 from pytest_tarl.workers import protocol
 
-TRIES = 3  # times that an episode is run whose worker dies
-PATIENCE = 5.0  # seconds in which a worker may finish its fixtures before it is ended
-SILENCE = 180  # looks, one a second, without a sign of life; one that is stopped does not look
+TRIES = 3  # most runs of an episode whose worker dies
+PATIENCE = 5.0  # seconds for a worker to finish its fixtures before it is ended
+SILENCE = 180  # checks, one per second, without a sign of life; a suspended process does not check
 _FRAME = re.compile(r'^ *File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
 WORKER_MAIN = Path(__file__).with_name("worker_main.py")
 
 
 class WorkerDiedError(TarlError):
-    """A worker process ended in the middle of an episode."""
+    """A worker process ended during an episode."""
 
 
 class WorkerHeldError(TarlError):
-    """A node held the interpreter of a worker, which was ended; doing it again would take as long again."""
+    """A node held the interpreter of a worker, which was ended; a retry would take as long again."""
 
 
 @dataclass(frozen=True)
 class Post:
-    """What a worker is there for: where it is started, what pytest is set up with, and its first message."""
+    """The job of a worker: its folder, pytest's configuration, and its first message."""
 
     folder: str
     start: str
@@ -62,7 +62,7 @@ class Worker:
         self._over = threading.Event()
 
     def greet(self) -> None:
-        """Wait until it holds its test ready. Raises TarlError where it cannot, WorkerDiedError."""
+        """Wait until it holds its test ready. Raise TarlError if it cannot, WorkerDiedError."""
         greeting = self.ask(self._post.first)
         if greeting != protocol.READY:
             protocol.refused(greeting)
@@ -88,7 +88,7 @@ class Worker:
         return answer
 
     def _listen(self) -> None:
-        """End it when it gives no sign of life: a worker that cannot end itself must not hold up the run."""
+        """End the worker if it shows no sign of life, so that it cannot block the run."""
         while not self._over.wait(1.0):
             self._silent += self._asked
             if self._silent > SILENCE:
@@ -112,7 +112,7 @@ class Worker:
         return ""
 
     def dismiss(self) -> None:
-        """Let it tear down its fixtures and go; end it when that takes too long."""
+        """Let the worker tear down its fixtures and exit; end it after PATIENCE seconds."""
         with suppress(OSError, ValueError):
             protocol.write(self._pipes()[0], b"")
         with suppress(subprocess.TimeoutExpired):
@@ -120,7 +120,7 @@ class Worker:
         self.end()
 
     def end(self) -> None:
-        """End it now, whatever it does."""
+        """End the worker immediately."""
         self._over.set()
         self._process.kill()
         self._process.wait()
@@ -136,7 +136,7 @@ class Worker:
 
 
 def place_held(log: str) -> str:
-    """Return the user's innermost line that faulthandler wrote down; empty where there is none."""
+    """Return the user's innermost line that faulthandler wrote down; empty if there is none."""
     ours = str(WORKER_MAIN.parent.parent)
     frames = [
         (file, int(line), function)
@@ -147,7 +147,7 @@ def place_held(log: str) -> str:
 
 
 class Pool:
-    """The workers of this process, by what they are there for; started as they are needed."""
+    """The workers of this process by job, started on demand."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -156,7 +156,7 @@ class Pool:
         self._closed = False
 
     def serve(self, post: Post, request: bytes) -> bytes:
-        """Let a free worker answer. Raises WorkerDiedError when as many as `TRIES` died of it."""
+        """Run a request on a free worker. Raise WorkerDiedError if as many as `TRIES` died of it."""
         for _ in range(TRIES - 1):
             with suppress(WorkerDiedError):
                 return self._once(post, request)

@@ -1,4 +1,4 @@
-"""What goes between a run and its workers, as bytes: JSON, and after it the columns of a trace."""
+"""Messages between a run and its workers: JSON, followed by the columns of a trace."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ COLUMNS = ("site", "flow", "event_cell", "event_step", "step_cell", "reward")
 TOLD = ("passed", "failure", "broken", "topics", "crashed", "stuck", "values")
 LENGTH = struct.Struct("<Q")
 READY = b"ready"
-ALIVE = b""  # says nothing but that the worker's threads run
+ALIVE = b""  # sign of life: the worker's threads run
 
 
 def write(pipe: BinaryIO, message: bytes) -> None:
-    """Send one message. Raises OSError where nobody reads any more."""
+    """Send one message. Raise OSError if nobody reads any more."""
     pipe.write(LENGTH.pack(len(message)))
     pipe.write(message)
     pipe.flush()
 
 
 def read(pipe: BinaryIO) -> bytes | None:
-    """Receive one message; None where the other side is gone, or broke off in the middle of one."""
+    """Receive one message; None if the other side is gone, or broke off in the middle of one."""
     head = pipe.read(LENGTH.size)
     if len(head) < LENGTH.size:
         return None
@@ -56,7 +56,7 @@ def planned(message: bytes) -> EpisodePlan:
 
 
 def run_message(run: EpisodeRun) -> bytes:
-    """Write what came of an episode; its plan stays with whoever made it."""
+    """Write the result of an episode, without its plan."""
     trace = run.trace
     arrays = {name: getattr(trace, name) for name in COLUMNS}
     arrays |= {f"part {name}": column for name, column in trace.parts.items()}
@@ -78,7 +78,7 @@ def run_message(run: EpisodeRun) -> bytes:
 
 
 def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
-    """Read what came of an episode. Raises the TarlError that ended it, SkippedError and EndedError among them."""
+    """Read the result of an episode. Raises the TarlError that ended it, SkippedError and EndedError among them."""
     head, arrays = _parted(message)
     if "error" in head:
         raise _error(head["error"])(head["text"])
@@ -101,7 +101,7 @@ def refused(message: bytes) -> None:
 
 
 def error_message(problem: TarlError) -> bytes:
-    """Write what kept an episode from being run."""
+    """Write the error that prevented an episode."""
     return _joined({"error": type(problem).__name__, "text": str(problem)}, {})
 
 

@@ -1,4 +1,4 @@
-"""What a worker process does: hold one test ready and run an episode of it whenever it is asked to."""
+"""The main loop of a worker process: prepare one test and run an episode of it per request."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ ENDED = 70  # exit status of a worker whose run is gone
 
 
 def serve(requests: int, answers: int, config: Config | None, problem: str) -> None:
-    """Serve the process that started this one until it says that there is no more, or is gone.
+    """Serve the parent process until it ends the session or exits.
 
     The arguments are the descriptors of the pipes, and pytest's configuration or why there is none.
     """
@@ -49,7 +49,7 @@ def serve(requests: int, answers: int, config: Config | None, problem: str) -> N
 
 
 class Server:
-    """The pytest plugin of a worker: in place of running tests it answers requests."""
+    """The pytest plugin of a worker, which answers requests instead of running tests."""
 
     def __init__(self, post: dict[str, Any], requests: BinaryIO, answers: BinaryIO) -> None:
         self.post = post
@@ -83,7 +83,7 @@ class Server:
         item = wanted[0]
         marked = designated(item)
         if marked is None:
-            self.refuse(f"{item.nodeid} has no marker")
+            self.refuse(f"{item.nodeid} has no tarl marker")
             return True
         self.serving = True
         edges = {name: tuple(ends) for name, ends in self.post["edges"].items()}
@@ -117,7 +117,7 @@ class Server:
 
 
 def answer(rollout: Rollout, request: bytes) -> bytes:
-    """Run the episode that is asked for; what goes wrong is an answer too."""
+    """Run the requested episode; return errors as answers."""
     try:
         return protocol.run_message(rollout(protocol.planned(request)))
     except TarlError as problem:
@@ -128,7 +128,7 @@ def answer(rollout: Rollout, request: bytes) -> bytes:
         return protocol.error_message(protocol.EndedError(str(ended)))
     except Exception:
         return protocol.error_message(
-            TarlError(f"An episode broke in a worker process:\n{traceback.format_exc()}")
+            TarlError(f"An episode failed in a worker process:\n{traceback.format_exc()}")
         )
 
 

@@ -1,4 +1,4 @@
-"""The first thing that a worker process runs, as a script: pytest wants to be there before anything of ours is."""
+"""Entry script of a worker process; it imports pytest before any of our modules."""
 
 from __future__ import annotations
 

@@ -50,8 +50,8 @@ def test_auto_takes_the_embedded_ros_where_no_other_is(
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("import rospy", "rospy is not installed here: apt-get install"),
-        ("import rclpy", "rclpy is not installed here: source"),
+        ("import rospy", "rospy is not installed: apt-get install"),
+        ("import rclpy", "rclpy is not installed: source"),
         ("import math", "no node of the marker imports rospy or rclpy"),
     ],
 )

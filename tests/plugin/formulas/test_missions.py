@@ -107,7 +107,7 @@ def test_a_formula_over_what_no_log_holds_is_left_out_and_told(tank: pytest.Pyte
     changed(tank, "test_tank", "always (flow > -1)", "always (unheard > 0)")
     told = tank.runpytest("-q", "--tarl-online", f"--tarl-log={observed}")
     text = " ".join(told.stdout.str().split())
-    assert "missions.log does not hold all signals of 'always (unheard > 0)': not judged there" in text
+    assert "missions.log lacks signals of 'always (unheard > 0)', which is not judged" in text
     assert rows(tank)["always (unheard > 0)"]["online"] is None
 
 

@@ -104,32 +104,32 @@ def test_require_finds_its_signals_without_any_word_in_the_marker(pytester: pyte
 
 
 MISTAKES = {
-    "no text": ("requires=[3]", OBSERVE, "a formula is a text"),
+    "no text": ("requires=[3]", OBSERVE, "a formula is a string"),
     "a text in place of a list": ('requires="always (wet > 0)"', OBSERVE, "requires lists formulas"),
     "a typing error in a signal": (
         'requires=["always (gip > 0)"], signals=["gap"]',
         OBSERVE,
-        "names 'gip', which is no signal; did you mean 'gap'?",
+        "names 'gip', which is not a signal; did you mean 'gap'?",
     ),
     "an unknown signal": (
         'requires=["always (speed > 0)"]',
         OBSERVE,
-        "names 'speed', which is no signal (wet, gap): it is no sensor, and no tarl.observe in the test's own",
+        "names 'speed', which is not a signal (wet, gap): it is not a sensor, and no tarl.observe in the test's",
     ),
     "a typing error in a name that is observed and not declared": (
         'requires=["always (gip > 0)"]',
         "tarl.observe(gap=gap); tarl.reward(1.0)",
-        "names 'gip', which is no signal; did you mean 'gap'?",
+        "names 'gip', which is not a signal; did you mean 'gap'?",
     ),
     "a name that the test computes": (
         'requires=["always (gap > 0)"]',
         "tarl.observe(**{'g' + 'ap': gap}); tarl.reward(1.0)",
-        "which cannot be read from its source; declare this one in the marker, signals=['gap'].",
+        "so TARL cannot read them from its source; declare this one in the marker, signals=['gap'].",
     ),
     "a name that only another test observes": (
         'requires=["always (ahead > 0)"]',
         OBSERVE + "\n\n\ndef test_other(tarl):\n    tarl.observe(ahead=1)",
-        "names 'ahead', which is no signal (wet, gap): it is no sensor, and no tarl.observe in",
+        "names 'ahead', which is not a signal (wet, gap): it is not a sensor, and no tarl.observe in",
     ),
     "an observation without any formula": (
         "drifts={}",
@@ -144,7 +144,7 @@ MISTAKES = {
     "an unknown signal in the body": (
         "",
         "tarl.require('always (gip > 0)'); tarl.observe(gap=gap); tarl.reward(1.0)",
-        "tarl.require: the formula 'always (gip > 0)' names 'gip', which is no signal; did you mean 'gap'?",
+        "tarl.require: the formula 'always (gip > 0)' names 'gip', which is not a signal; did you mean 'gap'?",
     ),
     "a typing error in an operator": ('requires=["alway (wet > 0)"]', OBSERVE, "did you mean 'always'?"),
     "a bracket that is not closed": ('requires=["always (wet > 0"]', OBSERVE, "it ends too early"),
@@ -171,9 +171,9 @@ MISTAKES = {
     "too late": (
         'requires=["always[30:40] (wet > 0)"], lasts=20',
         OBSERVE,
-        "can never be judged: a part of it is looked at after 30 s at the earliest, and no episode lasts longer",
+        "can never be judged: a part of it is evaluated after 30 s at the earliest, and no episode lasts longer",
     ),
-    "texts": ('requires=["always (mode > 0)"]', OBSERVE, "a sensor of texts"),
+    "texts": ('requires=["always (mode > 0)"]', OBSERVE, "a sensor with string values"),
     "a name twice": (
         'requires=[], signals=["wet"]',
         OBSERVE,
@@ -185,15 +185,15 @@ MISTAKES = {
     "a word of the language": (
         'requires=["always (s > 0)"], signals=["s"]',
         OBSERVE,
-        "s is a word of the language",
+        "s is a keyword of the formula language",
     ),
     "another reward": ('requires=["always wet"], reward="speed"', OBSERVE, 'reward must be "robustness"'),
     "a reward of nothing": ('reward="robustness"', OBSERVE, "is that of the formulas in requires"),
-    "a cap of nothing": ('requires=["always wet"], robustness_cap=3', OBSERVE, "robustness_cap goes with"),
+    "a cap of nothing": ('requires=["always wet"], robustness_cap=3', OBSERVE, "robustness_cap needs"),
     "two rewards": (
         'requires=["always wet"], reward="robustness", signals=["gap"]',
         OBSERVE,
-        "take tarl.reward out of the test",
+        "remove tarl.reward from the test",
     ),
     "a signal that is never given": (
         'requires=["always (gap > 0)"], signals=["gap"]',
@@ -204,7 +204,7 @@ MISTAKES = {
     "a signal that is a text": (
         'requires=["always (gap > 0)"], signals=["gap"]',
         "tarl.observe(gap='near')",
-        "The signal 'gap' got 'near', which is no number",
+        "The signal 'gap' got 'near', which is not a number",
     ),
     "a division by zero": (
         'requires=["always (1 / gap > 0)"], signals=["gap"]',
@@ -276,6 +276,4 @@ def test_on_a_newer_python_a_sentence_says_which_ones_do(
     from pytest_tarl.formulas import parsing
 
     monkeypatch.setattr(parsing, "NEWEST", (3, 9))
-    assert "runs on Python 3.10 to 3.12, and this is Python 3." in told(
-        run(pytester, 'requires=["always wet"]')
-    )
+    assert "runs on Python 3.10 to 3.12; this is Python 3." in told(run(pytester, 'requires=["always wet"]'))

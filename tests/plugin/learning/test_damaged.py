@@ -127,8 +127,8 @@ DAMAGED: dict[str, Callable[[], bytes]] = {
     "objects": lambda: stored(steps=header_of("(1,)", "'|O'")),
     "records": lambda: stored(steps=header_of("(1,)", "[('a', '<i8')]")),
     "texts": lambda: stored(steps=header_of("(0,)", "'<U5'")),
-    "no array": lambda: stored(steps=b"these are no steps"),
-    "a member that is no array": lambda: stored(**{"notes.txt": b"hello"}),
+    "not an array": lambda: stored(steps=b"these are no steps"),
+    "a member that is not an array": lambda: stored(**{"notes.txt": b"hello"}),
     "a folder": lambda: stored(**{"folder/": b""}),
     "no header": lambda: stored(header=b""),
     "header of floats": lambda: stored(header=header_of("(0,)", "'<f8'")),
@@ -141,7 +141,7 @@ DAMAGED: dict[str, Callable[[], bytes]] = {
     "a format that is a list": lambda: forged_text(b'{"format": [2]}'),
     "bomb": lambda: stored(bomb=npy("", bytes(600_000_000))),
     "many members": lambda: stored(**{f"m{i}": b"" for i in range(3000)}),
-    "one name twice": lambda: twice(),
+    "a name twice": lambda: twice(),
 }
 
 
@@ -239,16 +239,18 @@ def test_a_broken_fixture_is_told_before_the_first_episode_and_recording_replace
         path.mkdir()
         done = tank.runpytest("--tarl-record", "--tarl-episodes=4")
         done.assert_outcomes(failed=1)
-        done.stdout.fnmatch_lines(["*cannot be written (Is a directory): something else is in its place*"])
+        done.stdout.fnmatch_lines(
+            ["*cannot be written (Is a directory): another kind of file is in its place*"]
+        )
         return
-    for broken in (good[: len(good) // 2], DAMAGED["deep JSON"](), DAMAGED["no array"]()):
+    for broken in (good[: len(good) // 2], DAMAGED["deep JSON"](), DAMAGED["not an array"]()):
         path.write_bytes(broken)
         online = tank.runpytest("--tarl-online", "--tarl-episodes=4")
-        online.stdout.fnmatch_lines(["*utility fixture*is damaged*--tarl-record*"])
+        online.stdout.fnmatch_lines(["*recording*is damaged*--tarl-record*"])
         assert "Traceback" not in online.stdout.str()
         done = tank.runpytest("--tarl-record", "--tarl-episodes=4")
         done.assert_outcomes(passed=1)
         told = done.stdout.str()
-        sentence = "What is recorded now replaces it."
-        assert told.index(sentence) < told.index("off-line ATR")
+        sentence = "The new recording replaces it."
+        assert told.index(sentence) < told.index("recorded ATR")
         assert path.read_bytes() == good

@@ -107,7 +107,7 @@ def test_a_fixture_of_an_older_version_is_named_with_the_command_that_makes_a_ne
     save(example(), path)
     monkeypatch.undo()
     with pytest.raises(
-        FixtureError, match=r"a\.npz has format 1, this version of tarl reads 2\..*--tarl-record"
+        FixtureError, match=r"a\.npz has format 1, but this version of tarl reads 2\..*--tarl-record"
     ):
         load(path)
 
@@ -119,7 +119,7 @@ def test_a_fixture_of_a_newer_version_asks_for_that_version(
     monkeypatch.setattr(fixtures, "FORMAT_VERSION", 3)
     save(example(), path)
     monkeypatch.undo()
-    with pytest.raises(FixtureError, match=r"has format 3.*Take the version of tarl"):
+    with pytest.raises(FixtureError, match=r"has format 3.*Use the version of tarl"):
         load(path)
 
 
@@ -128,7 +128,7 @@ def test_a_header_that_fits_its_digest_but_lacks_parts_is_refused_too(tmp_path: 
     header["digest"] = fixtures._digest(header, {})
     path = tmp_path / "a.npz"
     np.savez(path, header=np.frombuffer(json.dumps(header).encode(), dtype=np.uint8))
-    with pytest.raises(FixtureError, match=r"a\.npz does not hold what one of format"):
+    with pytest.raises(FixtureError, match=r"a\.npz is not valid in format"):
         load(path)
 
 
@@ -163,10 +163,10 @@ def test_a_changed_column_is_noticed_by_the_digest(tmp_path: Path) -> None:
 def test_a_foreign_archive_and_a_pickle_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.npz"
     np.savez(path, other=np.arange(3))
-    with pytest.raises(FixtureError, match="damaged or is not one"):
+    with pytest.raises(FixtureError, match="damaged or is not a recording"):
         load(path)
     np.savez(path, header=np.array([{}], dtype=object))
-    with pytest.raises(FixtureError, match="damaged or is not one"):
+    with pytest.raises(FixtureError, match="damaged or is not a recording"):
         load(path)
 
 
@@ -180,7 +180,7 @@ def test_another_format_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_missing_file_says_what_to_run(tmp_path: Path) -> None:
-    with pytest.raises(FixtureError, match=r"no utility fixture.*--tarl-record"):
+    with pytest.raises(FixtureError, match=r"no such recording.*--tarl-record"):
         load(tmp_path / "a.npz")
 
 

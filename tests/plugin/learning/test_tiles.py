@@ -75,5 +75,5 @@ def test_each_site_has_tiles_of_its_own_and_none_where_it_was_not_executed() -> 
 def test_tilings_need_bins() -> None:
     from pytest_tarl.errors import SettingsError
 
-    with pytest.raises(SettingsError, match="tilings are for a sensor with bins"):
+    with pytest.raises(SettingsError, match="tilings must be at least 1 and needs a sensor with bins"):
         Sensor("mode", categories=("a", "b"), tilings=2)

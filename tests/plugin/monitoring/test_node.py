@@ -57,5 +57,5 @@ def test_it_publishes_ok_then_that_the_world_changed(root: Path, library: str) -
 def test_a_library_that_is_not_installed_is_named(root: Path) -> None:
     log(root / "m.log", walks(3, 2))
     order = Order((root / "m.log",), root / "f.npz", root / "s.npz", ros="rospy")
-    with pytest.raises(SettingsError, match="--diagnostics rospy needs rospy, which is not installed here"):
+    with pytest.raises(SettingsError, match="--diagnostics rospy needs rospy, which is not installed"):
         run(order)

@@ -245,7 +245,7 @@ def test_a_log_that_was_cut_short_is_named_and_nothing_counts_twice(tmp_path: Pa
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])
     reading.read()
-    assert "was cut short or changed" in reading.problems[0]
+    assert "was truncated or changed" in reading.problems[0]
     path.write_bytes(whole + content(some[:1]))
     reading.read()
     assert reading.rewards == sums([*some, some[0]])
@@ -266,8 +266,8 @@ def test_another_log_in_its_place_is_read_from_its_beginning(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        ({"sensors": ["y"]}, "was written with the sensors y, the fixture"),
-        ({"test": "test_other.py::test_x"}, "was written for the fixture of test_other.py::test_x"),
+        ({"sensors": ["y"]}, "was written with the sensors y, but the recording"),
+        ({"test": "test_other.py::test_x"}, "was written for the recording of test_other.py::test_x"),
         ({"bins": "0123"}, "had other bins"),
     ],
 )
@@ -313,9 +313,9 @@ def test_files_that_are_none_or_not_there_are_named(tmp_path: Path) -> None:
     reading = Reading(other, tmp_path / "none.log", tmp_path)
     assert reading.read() == 0
     assert [
-        next(words for words in ("is no log", "is not there yet", "cannot be read") if words in one)
+        next(words for words in ("is not a log", "does not exist yet", "cannot be read") if words in one)
         for one in reading.problems
-    ] == ["is no log", "is not there yet", "cannot be read"]
+    ] == ["is not a log", "does not exist yet", "cannot be read"]
     log(tmp_path / "none.log", walks(1, 0))
     assert reading.read() == 1
 

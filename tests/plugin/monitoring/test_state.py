@@ -80,7 +80,7 @@ def test_the_state_of_another_recording_alpha_or_seed_is_refused(world: Path, tm
     other = tmp_path / "other"
     other.mkdir()
     fixture(other / "f.npz", walks(60, 9))
-    with pytest.raises(MonitorError, match="another recording of the fixture"):
+    with pytest.raises(MonitorError, match="another recording of the test"):
         watch.begun([world / "a.log"], other / "f.npz", tmp_path / "s.npz", alpha=0.05, seed=0)
 
 

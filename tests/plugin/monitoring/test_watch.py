@@ -24,7 +24,7 @@ from tests.plugin.monitoring.missions import Walk, content, fixture, log, walks
 
 @pytest.fixture
 def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The working directory, with the fixture of a small world."""
+    """The working directory, with but the recording of a small world."""
     monkeypatch.chdir(tmp_path)
     fixture(tmp_path / "f.npz", walks(80, 1))
     return tmp_path
@@ -64,7 +64,7 @@ def test_new_cells_are_named(root: Path, capsys: pytest.CaptureFixture[str]) -> 
     elsewhere = [Walk((*one.cells, (3, 5)), (*one.reward, 1.0), True) for one in walks(30, 4)]
     log(root / "m.log", elsewhere)
     assert main(["watch", "m.log", "--fixture", "f.npz", "--once"]) == 1
-    assert "new     x 3-4, wet 5: no off-line episode was there" in capsys.readouterr().out
+    assert "new     x 3-4, wet 5: no recorded episode visited it" in capsys.readouterr().out
 
 
 def test_logs_of_other_worlds_are_named_and_the_others_counted(
@@ -75,20 +75,20 @@ def test_logs_of_other_worlds_are_named_and_the_others_counted(
     assert main(["watch", "m.log", "other.log", "none.log", "--fixture", "f.npz", "--once"]) == 2
     said = capsys.readouterr()
     assert "5 missions" in said.out
-    assert "other.log was written with the sensors speed, the fixture of" in said.err
-    assert "none.log is not there yet" in said.err
+    assert "other.log was written with the sensors speed, but the recording of" in said.err
+    assert "none.log does not exist yet" in said.err
 
 
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["--alpha", "1.5"], "--alpha is a probability between 0 and 1"),
-        (["--interval", "0"], "--interval is a number of seconds above 0"),
-        (["--once", "--until-alarm"], "--once reads what is there and ends"),
+        (["--alpha", "1.5"], "--alpha must be a probability between 0 and 1"),
+        (["--interval", "0"], "--interval must be a number of seconds above 0"),
+        (["--once", "--until-alarm"], "--once reads the logs once and ends"),
         (["--once", "--state", "."], "The state . is a folder: name a file with --state."),
-        (["--once", "--json", "m.log"], "--json m.log would write over what is read"),
-        (["--once", "--fixture", "none.npz"], "There is no utility fixture none.npz"),
-        (["--once", "--state", "f.npz"], "The state f.npz is damaged or is none of `tarl watch`"),
+        (["--once", "--json", "m.log"], "--json m.log would overwrite an input file"),
+        (["--once", "--fixture", "none.npz"], "none.npz: no such recording"),
+        (["--once", "--state", "f.npz"], "The state f.npz is damaged or not a state of `tarl watch`"),
         (["--once", "--state", "f.npz/s"], "cannot be written"),
         (["--once", "--json", "f.npz/s"], "f.npz/s cannot be written"),
     ],
@@ -221,10 +221,7 @@ def test_totals_outside_of_the_declared_range_are_told(
     one = walks(1, 3)[0]
     log(root / "m.log", [replace(one, reward=(-100.0,) * len(one.cells)), one])
     main(["watch", "m.log", "--fixture", "g.npz", "--once"])
-    assert (
-        "1 mission with a total outside of the declared range: counted as at its end"
-        in capsys.readouterr().out
-    )
+    assert "1 mission with a total outside the declared range: clipped to its ends" in capsys.readouterr().out
 
 
 def test_a_fixture_of_one_world_states_no_bound(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -232,7 +229,7 @@ def test_a_fixture_of_one_world_states_no_bound(root: Path, capsys: pytest.Captu
     log(root / "m.log", walks(1, 1) * 200)
     assert main(["watch", "m.log", "--fixture", "g.npz", "--once"]) == 0
     out = capsys.readouterr().out
-    assert "episodes are all the same, so it states no bound that could be tested" in out
+    assert "episodes of the recording are equal, so it has no bound to test" in out
     assert "a false alarm, ever: at most 5 % (alpha)\n" in out
 
 

@@ -88,7 +88,7 @@ def test_orders_begin_and_end_missions_and_other_words_do_nothing(tmp_path: Path
     found = [(one["kind"], one.get("passed"), one.get("failure")) for one in records(tmp_path / "log")][1:]
     begun = ("mission", None, None)
     assert found == [
-        *(begun, ("end", True, ""), begun, ("end", False, "the mission topic said so")),
+        *(begun, ("end", True, ""), begun, ("end", False, "reported on the mission topic")),
         *(begun, ("end", True, "")),
     ]
 

@@ -55,9 +55,9 @@ def test_a_damaged_record_ends_what_is_read(tmp_path: Path) -> None:
 def test_another_file_is_neither_read_nor_written_over(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "other"
     path.write_bytes(content)
-    with pytest.raises(LogError, match="is no log"):
+    with pytest.raises(LogError, match="is not a log"):
         list(records(path))
-    with pytest.raises(LogError, match="is no log"):
+    with pytest.raises(LogError, match="is not a log"):
         LogFile(path)
     assert path.read_bytes() == content
 

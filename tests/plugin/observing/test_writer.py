@@ -135,7 +135,7 @@ def test_a_writer_that_is_ended_is_told_and_the_node_goes_on(tmp_path: Path) -> 
     until(lambda: observer._outlet.problem)
     mission(observer, 100)
     observer.close()
-    assert observer.problem == "The process that writes the log was ended: what came after is lost."
+    assert observer.problem == "The process that writes the log was ended: later records are lost."
 
 
 def test_a_disk_that_stands_still_costs_events_and_no_time(
@@ -163,7 +163,7 @@ def test_a_disk_that_stands_still_costs_events_and_no_time(
 @pytest.mark.parametrize("content", [b"PK\x03\x04 a fixture", b"tarl log 2\n"])
 def test_a_log_that_cannot_be_taken_is_refused_before_the_node_starts(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "log").write_bytes(content)
-    with pytest.raises(LogError, match="is no log of"):
+    with pytest.raises(LogError, match="is not a log of"):
         Observer([SENSOR], tmp_path / "log", ABOUT)
     assert (tmp_path / "log").read_bytes() == content
     observer = Observer([SENSOR], tmp_path / "other", ABOUT)
