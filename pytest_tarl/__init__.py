@@ -1,4 +1,4 @@
-"""Record what robot code is worth in simulation, see where another world breaks it, repair it."""
+"""Record the utility of robot code in simulation, locate what breaks it in another world, and repair it."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -23,7 +23,7 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import what is asked for when it is: every pytest run loads this package, few use it."""
+    """Import public names on first use: every pytest run loads this package, few use it."""
     if name in _HOMES:
         from pytest_tarl.extras import missing_extra
 

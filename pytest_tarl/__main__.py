@@ -1,4 +1,4 @@
-"""`python -m pytest_tarl` is the command `tarl`, for robots where it is not on the PATH."""
+"""Run `python -m pytest_tarl` as the command `tarl`, for robots where `tarl` is not on the PATH."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`--tarl-bag FILE`: recorded missions as the on-line side of a comparison."""
+"""`--tarl-bag FILE`: compare recorded missions with the recording of a test."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from pytest_tarl.seeds import episode_seeds
 
 @dataclass(frozen=True)
 class BaggedMissions:
-    """A rollout in which each seed stands for a bag that is replayed in place of the test's own world."""
+    """A rollout in which each seed stands for a bag, replayed in place of the test's world."""
 
     rollout: Rollout
     bags: Mapping[int, Path]
-    notes: tuple[str, ...] = ()  # on those that take no part
+    notes: tuple[str, ...] = ()  # one per bag that is left out
 
     @property
     def workers(self) -> int:
-        """Return how many missions are replayed at a time."""
+        """Return the number of missions replayed in parallel."""
         return self.rollout.workers
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
@@ -35,34 +35,34 @@ class BaggedMissions:
         return self.rollout(replace(plan, bag=self.bags[plan.seed]))
 
     def begin(self, plan: EpisodePlan) -> Pending:
-        """Ask for a mission without waiting for it."""
+        """Start replaying a mission without waiting for it."""
         return self.rollout.begin(replace(plan, bag=self.bags[plan.seed]))
 
 
 def bagged(rollout: Rollout, fixture: Fixture, designation: Designation, options: Options) -> BaggedMissions:
-    """Return the bags as episodes. Raises LogError or SettingsError where none can be compared."""
+    """Return the bags as episodes. Raise LogError or SettingsError if none can be compared."""
     _check(designation)
     taking_part: list[Path] = []
     notes: list[str] = []
     for path in options.bags:
         if not path.exists():
-            raise LogError(f"There is no bag {path}.")
+            raise LogError(f"{path}: no such bag.")
         try:
             problem = misfit(opened(path), fixture)
         except LogError as unreadable:
             problem = str(unreadable).rstrip(".")
         if problem:
-            notes.append(f"{problem}: it took no part.")
+            notes.append(f"{problem}: bag skipped.")
         else:
             taking_part.append(path)
     if not taking_part:
-        raise LogError("No bag can be compared. " + " ".join(notes))
+        raise LogError("No bag can be compared with the recording. " + " ".join(notes))
     seeds = episode_seeds(options.seed, "bag", len(taking_part))
     return BaggedMissions(rollout, dict(zip(seeds, taking_part, strict=True)), tuple(notes))
 
 
 def misfit(bag: Bag, fixture: Fixture) -> str:
-    """Return why a bag cannot be held against the fixture, without a full stop; empty where it can."""
+    """Return why a bag cannot be compared with the recording, without a full stop; empty if it can."""
     held = {absolute(topic): one for topic, one in bag.channels.items()}
     for sensor in fixture.sensors:
         if sensor.topic is None:
@@ -70,13 +70,13 @@ def misfit(bag: Bag, fixture: Fixture) -> str:
         channel = held.get(absolute(sensor.topic))
         if channel is None:
             return (
-                f"{bag.path.name} lacks {sensor.topic}, which the sensor {sensor.name!r} is read from (it holds "
+                f"{bag.path.name} has no messages on {sensor.topic}, the topic of sensor {sensor.name!r} (it holds "
                 f"{_listed(sorted(held))})"
             )
         designed = fixture.topics.get(sensor.topic, "")
         if designed and designed != channel.type:
             return (
-                f"{bag.path.name} has {channel.type} on {sensor.topic}, the sensor {sensor.name!r} is read from "
+                f"{bag.path.name} has {channel.type} on {sensor.topic}, but sensor {sensor.name!r} reads "
                 f"{designed}"
             )
     return ""
@@ -89,7 +89,7 @@ def _check(designation: Designation) -> None:
     mute = next((sensor.name for sensor in designation.sensors if sensor.topic is None), None)
     if mute is not None:
         raise SettingsError(
-            f"Sensor {mute!r} has no topic, so no bag can hold it: give it a topic and a field in the marker and "
+            f"Sensor {mute!r} has no topic, so its values are in no bag: give it a topic and a field in the marker and "
             "record again."
         )
 

@@ -1,4 +1,4 @@
-"""`--tarl-online`: run the test in the deployed world and compare it with the fixture."""
+"""`--tarl-online`: run the test in the deployed world and compare it with the recording."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import Cell, Sensor
 from pytest_tarl.settling import within
 
-Tables = tuple[Floats, Floats]  # utility of one list off-line and on-line, shape (cells, sites)
+Tables = tuple[Floats, Floats]  # utility of one list, designed and deployed, each (cells, sites)
 
 
 @dataclass(frozen=True)
 class Online:
-    """An on-line run: what was found, the recording it was found in, and the paper's tables of that recording."""
+    """The result of a comparison, the deployed-world sample behind it, and the paper's tables of that sample."""
 
     comparison: Comparison
     recorded: Recorded
@@ -56,9 +56,9 @@ def run_online(
     progress: Progress,
     changeable: Collection[str] | None = None,
 ) -> Online:
-    """Run the on-line episodes of one scenario, or read the missions of a log, and compare them with the fixture.
+    """Run the episodes of one scenario, or read the missions of a log, and compare them with the recording.
 
-    `changeable` are the ids of the sites that hold an operand, where they are known: they are ranked before others.
+    `changeable` holds the ids of sites with an operand, if known: these rank before other sites.
     """
     members = current_members(fixture, plan)
     learner = _learner(fixture, options)
@@ -113,7 +113,7 @@ def run_online(
 
 
 def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> list[Tables]:
-    """Return the tables, those off-line with what cells alike are worth when some sensors are left out."""
+    """Return the tables; if sensors are left out, the designed one takes its values from similar cells."""
     return [
         (lent(before, one, offline.cells, without), after)
         for (before, after), one in zip(tables, offline.lists, strict=True)
@@ -121,7 +121,7 @@ def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> 
 
 
 def _sizes(designation: Designation, drift: str | None, drawn_by: Sequence[int]) -> dict[str, Sizes]:
-    """Return the ranges of a drift, and what the episodes of the seeds drew from them."""
+    """Return the ranges of a drift and the sizes that the seeds' episodes drew from them."""
     if drift is None:
         return {}
     whole = designation.drifts[drift]
@@ -134,7 +134,7 @@ def _sizes(designation: Designation, drift: str | None, drawn_by: Sequence[int])
 
 @dataclass(frozen=True)
 class _Side:
-    """Where on-line episodes come from: by which seeds they are asked for, how often to look, what is to be said."""
+    """The source of the deployed episodes: their seeds, the number of interim looks, and notes for the user."""
 
     rollout: Rollout
     seeds: Sequence[int]
@@ -145,7 +145,7 @@ class _Side:
 def _side(
     rollout: Rollout, fixture: Fixture, designation: Designation, options: Options, plan: Plan
 ) -> _Side:
-    """Return the test's own world, a log or bags, as asked for."""
+    """Return the source that the options select: the test's own world, a log, or bags."""
     if options.log is not None:
         logged = read_log(options.log, fixture, plan, designation.judge, designation.requirements)
         return _Side(logged, range(logged.count), 1, logged.notes)
@@ -157,15 +157,15 @@ def _side(
 
 
 def _learner(fixture: Fixture, options: Options) -> str:
-    """Return the rule by which tables are learned, that of the fixture. Raises FixtureError when asked for another."""
+    """Return the learning rule of the recording. Raise FixtureError if the options name another one."""
     if fixture.learner not in LEARNERS:
         raise FixtureError(
-            f"The utility fixture of {fixture.test} holds a table learned by {fixture.learner!r}, which this version "
-            "of tarl does not know: record it again with `pytest --tarl-record`."
+            f"The recording of {fixture.test} holds a table learned by {fixture.learner!r}, which this version of "
+            "tarl does not support: record it again with `pytest --tarl-record`."
         )
     if options.learner not in ("", fixture.learner):
         raise FixtureError(
-            f"The utility fixture of {fixture.test} holds a table learned by {fixture.learner}, not by "
+            f"The recording of {fixture.test} holds a table learned by {fixture.learner}, not by "
             f"{options.learner}: record it again with `--tarl-record --tarl-utility={options.learner}`."
         )
     return fixture.learner
@@ -173,7 +173,7 @@ def _learner(fixture: Fixture, options: Options) -> str:
 
 @dataclass
 class _Watch:
-    """Compares after as many episodes as planned, and tells when the verdict is certain."""
+    """Compare after each planned number of episodes, and stop the run once the verdict is certain."""
 
     offline: Sample
     designation: Designation
@@ -201,7 +201,7 @@ class _Watch:
 
 
 def current_members(fixture: Fixture, plan: Plan) -> tuple[tuple[int, ...], ...]:
-    """Return, per list of the fixture, the sites' numbers in the node as it is now; -1 for a site that is gone."""
+    """Return, per recorded list, each site's index in the current node; -1 for a site that no longer exists."""
     number = {place.id: n for n, place in enumerate(plan.places)}
     return tuple(tuple(number.get(site.id, -1) for site in one.sites) for one in fixture.lists)
 
@@ -215,7 +215,7 @@ def _current(fixture: Fixture, plan: Plan) -> list[TaintList]:
 
 
 def _solved_tables(offline: Sample, online: Sample, sensors: Sequence[Sensor]) -> list[Tables]:
-    """Return the batch solution off-line and on-line per list, shape (cells, sites); both samples share their cells."""
+    """Return the batch solutions of both worlds per list, shape (cells, sites); both samples share their cells."""
     cells, tiles = len(offline.cells), tiled(offline.cells, sensors)
     return [
         (tiled_batch(before, cells, scale, tiles), tiled_batch(after, cells, scale, tiles))
@@ -226,7 +226,7 @@ def _solved_tables(offline: Sample, online: Sample, sensors: Sequence[Sensor]) -
 def _learned_tables(
     fixture: Fixture, recorded: Recorded, learned: Sequence[Floats], cells: Sequence[Cell]
 ) -> list[Tables]:
-    """Return the learned tables off-line and on-line per list over the same cells, shape (cells, sites)."""
+    """Return the learned tables of both worlds per list over the same cells, shape (cells, sites)."""
     return [
         (_spread(before, fixture.sample.cells, cells), _spread(after, recorded.sample.cells, cells))
         for before, after in zip(fixture.sarsa, learned, strict=True)
@@ -236,7 +236,7 @@ def _learned_tables(
 def _compared(
     lists: Sequence[TaintList], tables: Sequence[tuple[Floats, Floats]], rows: Ints
 ) -> tuple[ListComparison, ...]:
-    """Return each list that still has sites with its tables and what they sum to over the region's rows."""
+    """Return each list that still has sites, with its tables and their sums over the rows of the region."""
     return tuple(
         ListComparison(one, before, after, localize.slices(one, before, after, rows))
         for one, (before, after) in zip(lists, tables, strict=True)
@@ -245,7 +245,7 @@ def _compared(
 
 
 def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Floats:
-    """Move a table's rows to where their cells stand in `cells`."""
+    """Move the rows of a table to the positions of their cells in `cells`; other rows are NaN."""
     place = {cell: i for i, cell in enumerate(cells)}
     wide = np.full((len(cells), table.shape[1]), np.nan)
     wide[[place[cell] for cell in rows]] = table
@@ -253,7 +253,7 @@ def _spread(table: Floats, rows: Sequence[Cell], cells: Sequence[Cell]) -> Float
 
 
 def _paper_cells(tables: Sequence[tuple[Floats, Floats]], cells: Sequence[Cell]) -> tuple[Cell, ...]:
-    """Return the paper's region: cells of any list whose utilities differ by half of the largest difference."""
+    """Return the paper's region: cells where the utilities of a list differ by half the largest difference or more."""
     rows: set[int] = set()
     for before, after in tables:
         rows.update(paper_region(before, after).tolist())
@@ -261,6 +261,6 @@ def _paper_cells(tables: Sequence[tuple[Floats, Floats]], cells: Sequence[Cell])
 
 
 def _rows(region: Region, otherwise: Sequence[Cell], cells: Sequence[Cell]) -> Ints:
-    """Return the rows that Eq. 2 sums over: the region, or the paper's where none was found."""
+    """Return the rows that Eq. 2 sums over: the region, or the paper's region if the test found none."""
     chosen = {*region.cells, *region.novel} or set(otherwise)
     return np.array([i for i, cell in enumerate(cells) if cell in chosen], dtype=np.int64)

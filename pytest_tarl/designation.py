@@ -1,4 +1,4 @@
-"""What the user says of a test: the arguments of its marker, checked. Frozen, without pytest."""
+"""The checked arguments of a test's marker. Frozen, without pytest."""
 
 from __future__ import annotations
 
@@ -25,21 +25,23 @@ MARKER_ARGUMENTS = (
 
 @dataclass(frozen=True)
 class Designation:
-    """The arguments of `@pytest.mark.tarl`: what makes a simulation test one that TARL records and compares."""
+    """The arguments of `@pytest.mark.tarl`, which makes TARL record and compare a simulation test."""
 
     nodes: tuple[str, ...]
     sensors: tuple[Sensor, ...]
     drifts: Mapping[str, Drift] = field(default_factory=dict)
     episodes: int = 200
     min_success: float = 1.0
-    confidence: float | None = None  # with which min_success is to be shown, however many episodes that takes
-    total_range: tuple[float, float] | None = None  # between which every episode's total lies
+    confidence: float | None = (
+        None  # confidence level at which to show min_success, however many episodes that takes
+    )
+    total_range: tuple[float, float] | None = None  # bounds on every episode's total reward
     tolerance: float | None = None
     judge: Callable[[Mapping[str, Any], Mapping[str, Any]], float] | None = (
-        None  # of steps that a log has no reward of
+        None  # computes the reward of steps for which a log has none
     )
     monitor: Callable[[Any], float | Mapping[str, float]] | None = (
-        None  # of missions in a bag; or a class of such
+        None  # computes the rewards of a bag's missions; or a class of such functions
     )
     requirements: Requirements = NOTHING_REQUIRED
     purpose: str = ""  # first paragraph of the test's docstring
@@ -48,9 +50,9 @@ class Designation:
 def designation(
     where: str, positional: Sequence[Any], arguments: Mapping[str, Any], said: Said = NOTHING_SAID
 ) -> Designation:
-    """Check a marker's arguments; `said` is what the test says of formulas elsewhere.
+    """Check a marker's arguments; `said` holds the formulas and signals named in the test's body.
 
-    Raises SettingsError with a sentence that says which one and how to mend it.
+    Raise SettingsError naming the argument and how to fix it.
     """
     if positional:
         raise SettingsError(
@@ -84,8 +86,8 @@ def _confidence(where: str, arguments: Mapping[str, Any]) -> float | None:
     confidence = float(number_within(where, "confidence", value, float, 0.5, 1 - 1e-9))
     if arguments.get("min_success", 1.0) >= 1:
         raise SettingsError(
-            f"{where}: confidence={value!r} is for a min_success below 1: that all missions ever succeed cannot be "
-            "shown, however many of them do. Say what is to be shown, for instance min_success=0.99."
+            f"{where}: confidence={value!r} needs a min_success below 1, because no number of successful missions "
+            "shows that all succeed. Set for example min_success=0.99."
         )
     return confidence
 
@@ -97,7 +99,7 @@ def _total_range(where: str, value: Any) -> tuple[float, float] | None:
     low, high = ends if len(ends) == 2 else (None, None)
     if low is None or high is None or not -math.inf < low < high < math.inf:
         raise SettingsError(
-            f"{where}: total_range must be two finite numbers between which every episode's total reward lies, such as "
+            f"{where}: total_range must be two finite bounds on every episode's total reward, such as "
             f"total_range=(-20, 10), got {value!r}."
         )
     return low, high
@@ -106,7 +108,8 @@ def _total_range(where: str, value: Any) -> tuple[float, float] | None:
 def _monitor(where: str, value: Any) -> Any:
     if value is not None and not callable(value):
         raise SettingsError(
-            f"{where}: monitor must be a function of the recorded messages, or a class of such, got {value!r}."
+            f"{where}: monitor must be a function of the recorded messages, or a class with such a method, got "
+            f"{value!r}."
         )
     return value
 
@@ -127,7 +130,7 @@ def _nodes(where: str, nodes: Any) -> tuple[str, ...]:
         or not all(isinstance(node, str) for node in nodes)
     ):
         raise SettingsError(
-            f'{where}: name the files of the node under test, for instance nodes=["my_node.py"] '
+            f'{where}: name the files of the node under test, for example nodes=["my_node.py"] '
             "(relative to the test's folder)."
         )
     return tuple(nodes)
@@ -136,20 +139,22 @@ def _nodes(where: str, nodes: Any) -> tuple[str, ...]:
 def _sensors(where: str, sensors: Any) -> tuple[Sensor, ...]:
     if not isinstance(sensors, Sequence) or not sensors or not all(isinstance(s, Sensor) for s in sensors):
         raise SettingsError(
-            f'{where}: declare what the node is told, for instance sensors=[Sensor("x", topic="/odom", '
+            f'{where}: declare the inputs of the node, for example sensors=[Sensor("x", topic="/odom", '
             'field="pose.pose.position.x", low=0, high=10, bins=24)] with `from pytest_tarl import Sensor`.'
         )
     names = [sensor.name for sensor in sensors]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise SettingsError(f"{where}: the sensor name {twice[0]!r} is used twice; give each its own.")
+        raise SettingsError(
+            f"{where}: the sensor name {twice[0]!r} is used twice; give each sensor its own name."
+        )
     return tuple(sensors)
 
 
 def _drifts(where: str, drifts: Any) -> Mapping[str, Drift]:
     if not isinstance(drifts, Mapping) or not all(isinstance(name, str) and name for name in drifts):
         raise SettingsError(
-            f"{where}: drifts maps names to values of the fixture tarl_drift, for instance "
+            f"{where}: drifts maps names to values of the fixture tarl_drift, for example "
             'drifts={"mud": 0.15}.'
         )
     return {name: drift(where, name, value) for name, value in drifts.items()}

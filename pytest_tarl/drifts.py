@@ -1,4 +1,4 @@
-"""What a drift scenario gives the test: a value, a range that each episode draws from, or a dictionary of them."""
+"""Values of drift scenarios: a plain value, a range from which each episode draws, or a dictionary of them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pytest_tarl.errors import SettingsError
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """A closed range of numbers; an episode gets one of them, uniformly."""
+    """A closed range of numbers, from which each episode draws uniformly."""
 
     low: float
     high: float
@@ -21,9 +21,9 @@ class Span:
 
 @dataclass(frozen=True)
 class Drift:
-    """The value of a drift scenario, or of a part of one in a dictionary.
+    """The value of a drift scenario, or of one part of it in a dictionary.
 
-    With `permanent` the world has changed for good: a repair need not work in the old world any more.
+    `permanent` means that the world has changed for good: a repair need not work in the old world.
     """
 
     value: Any
@@ -31,7 +31,7 @@ class Drift:
 
     @classmethod
     def range(cls, low: float, high: float, *, permanent: bool = False) -> Drift:
-        """Return a drift whose size differs from episode to episode. Raises SettingsError where the range is none."""
+        """Return a drift whose size varies between episodes. Raise SettingsError for an invalid range."""
         numbers = all(isinstance(end, int | float) and not isinstance(end, bool) for end in (low, high))
         if not numbers or not isfinite(low) or not isfinite(high) or not low < high:
             raise SettingsError(
@@ -41,38 +41,38 @@ class Drift:
 
     @property
     def spans(self) -> Mapping[str, Span]:
-        """Return the ranges in it by the name of their part; that of the whole value is empty."""
+        """Return its ranges by the name of their part; the name is empty for the whole value."""
         return dict(_spans(self.value, ""))
 
 
 def drift(where: str, name: str, value: Any) -> Drift:
-    """Return a scenario of a marker as a Drift. Raises SettingsError where its parts contradict each other."""
+    """Return a scenario of a marker as a Drift. Raise SettingsError if its parts contradict each other."""
     whole = value if isinstance(value, Drift) else Drift(value)
     if isinstance(whole.value, Drift):
-        raise SettingsError(f"{where}: the drift {name!r} is a Drift in a Drift: one of them is enough.")
+        raise SettingsError(f"{where}: the drift {name!r} is a Drift inside a Drift: remove one of them.")
     parts = list(_parts(whole.value))
     lasting = [part for part, inner in parts if inner.permanent]
     passing = [part for part, inner in parts if not inner.permanent]
     if lasting and passing and not whole.permanent:
         raise SettingsError(
-            f"{where}: in the drift {name!r}, {lasting[0]!r} is permanent and {passing[0]!r} is not. A scenario "
-            "changes for good as a whole or not at all: make two of them."
+            f"{where}: in the drift {name!r}, {lasting[0]!r} is permanent and {passing[0]!r} is not. All parts of a "
+            "scenario must agree on `permanent`: split it into two scenarios."
         )
     return Drift(whole.value, whole.permanent or bool(lasting))
 
 
 def drawn(whole: Drift, name: str, seed: int) -> Any:
-    """Return what the episode of a seed gets of the scenario `name`: plain values, one drawn from every range."""
+    """Return the value of the scenario `name` in a seed's episode: plain values, one drawn from every range."""
     return _plain(whole.value, name, seed)
 
 
 def sizes(whole: Drift, name: str, seed: int) -> Mapping[str, float]:
-    """Return what the episode of a seed draws from each range, by the name of its part."""
+    """Return the number that a seed's episode draws from each range, by the name of its part."""
     return {part: _draw(span, _stream(name, part), seed) for part, span in whole.spans.items()}
 
 
 def combined(values: Sequence[Any]) -> Any:
-    """Return what a test gets of several changes at a time: dictionaries are united, else the last one counts."""
+    """Combine several drift values: merge dictionaries; otherwise the last value wins."""
     if all(isinstance(value, Mapping) for value in values):
         return {key: part for value in values for key, part in value.items()} if values else None
     return values[-1]

@@ -1,4 +1,4 @@
-"""What a designated test sees as `tarl`: one episode, from seed to trace."""
+"""The fixture `tarl` of a designated test: one episode, from seed to trace."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from pytest_tarl.instrumentation.trace import Trace
     from pytest_tarl.ros import Bus, Ros
 
-LARGEST = 1e100  # size of a reward; that of a flow value is bounded by the same number
+LARGEST = 1e100  # largest magnitude of a reward; flow values have the same bound
 
 
 class Tarl:
@@ -60,7 +60,7 @@ class Tarl:
         self._ros: Ros | None = None
         self._origin = 0  # of virtual time, in ns
         self._requirements = requirements
-        self._alone = alone  # whether it is the only episode of a plain test run
+        self._alone = alone  # True for the single episode of a plain test run
         self._formulas = EpisodeFormulas(requirements, tuple(sensors), lambda: self._now)
         self._situation = Situation(tuple(sensors), requirements, self._formulas, recorder)
         self.topics = self._situation.topics
@@ -69,7 +69,7 @@ class Tarl:
         self._open.enter_context(imports)
 
     def rng(self, name: str) -> np.random.Generator:
-        """Return this episode's stream of random numbers with that name; asked again, it goes on where it was."""
+        """Return this episode's random stream of that name; later calls return the same stream, which continues."""
         if name not in self._streams:
             self._streams[name] = seeds.generator(self.seed, name)
         return self._streams[name]
@@ -91,12 +91,12 @@ class Tarl:
 
     @property
     def bus(self) -> Bus:
-        """The topics, as the world sees them: `publish` to the nodes, `latest` from them."""
+        """The topics as seen by the simulated world: `publish` to the nodes, read `latest` from them."""
         return self.ros.bus
 
     @property
     def judged(self) -> tuple[Judged, ...]:
-        """What the formulas came to, once the episode is concluded."""
+        """The results of the formulas, once the episode is concluded."""
         return self._formulas.judged
 
     @property
@@ -114,16 +114,16 @@ class Tarl:
         entry: str | None = None,
         launch: str | Literal[False] | None = None,
     ) -> None:
-        """Start a node: a file relative to the test's folder, run as a program. Raises NodeError when it fails.
+        """Start a node: a file relative to the test's folder, run as a program. Raise NodeError if it fails.
 
-        `entry` names the function that an entry point of `setup.py` calls, where there is one: `entry="main"` for
-        `driver = robot.driver:main`. `argv` as on its command line, remappings included; `parameters` are added to
-        those of all nodes. Those that the test does not state come from the launch file of the workspace that starts
-        the script: from `launch` if that names one, from none with `launch=False`.
+        `entry` names the function that an entry point in `setup.py` calls: `entry="main"` for
+        `driver = robot.driver:main`. `argv` is its command line, remappings included; `parameters` are added to
+        those of all nodes. Other parameters come from the launch file of the workspace that starts the script:
+        from `launch` if given, or from none with `launch=False`.
         """
         path = (self._folder / script).resolve()
         if not path.is_file():
-            raise SettingsError(f"tarl.start: there is no file {script!r} in {self._folder}.")
+            raise SettingsError(f"tarl.start: {script!r}: no such file in {self._folder}.")
         self.drives_ros = True
         self.ros.use_definitions_around(path.parent)
         self.ros.give(parameters or {})
@@ -139,19 +139,17 @@ class Tarl:
         self.ros.start(program, name=name or path.stem, argv=argv)
 
     def step(self, dt: float) -> None:
-        """Let the nodes run and virtual time advance by `dt` seconds, until every node waits again."""
+        """Run the nodes and advance virtual time by `dt` seconds, until every node waits again."""
         seconds = as_number(dt)
         if seconds is None or not 0 <= seconds < math.inf:
-            raise SettingsError(
-                f"tarl.step got {dt!r}: time advances by a finite number of seconds, such as 0.1."
-            )
+            raise SettingsError(f"tarl.step got {dt!r}: give a finite number of seconds, such as 0.1.")
         if self._replay is not None:
             self._replayed(self._replay, seconds)
         self.ros.step(seconds)
         self._stepped()
 
     def _replayed(self, replay: Replay, dt: float) -> None:
-        """Let a recorded mission take the place of the rest of the test's body."""
+        """Replay a recorded mission in place of the rest of the test's body."""
         from pytest_tarl.bags.replay import MissionReplayed
 
         def close(judgement: Judgement | None) -> None:
@@ -165,34 +163,35 @@ class Tarl:
         raise MissionReplayed("The recorded mission is over.")
 
     def message(self, topic: str, message: Any) -> None:
-        """Tell what is being delivered to the node, in a test that delivers messages itself."""
+        """Report a message delivered to the node, for a test that delivers messages itself."""
         if not isinstance(topic, str):
             raise SettingsError(
-                f"tarl.message got {topic!r} as topic: it takes the name first, tarl.message('/odom', message)."
+                f"tarl.message got {topic!r} as topic: the topic name comes first, as in tarl.message('/odom', "
+                "message)."
             )
         self._situation.hear(topic, message)
 
     def observe(self, **values: Any) -> None:
-        """Give the values of sensors that have no topic, and of signals that formulas name."""
+        """Set the values of sensors without a topic and of signals used in formulas."""
         self._situation.observe(values)
 
     def require(self, formula: str) -> None:
-        """Require a formula of this episode, judged with those of the marker when the body is over.
+        """Require that a formula holds in this episode; it is evaluated when the test's body ends.
 
-        Raises SettingsError for what is no formula over the test's signals.
+        Raise SettingsError if it is not a formula over the test's signals.
         """
         self._formulas.require(formula, begun=self._situation.begun)
 
     def reward(self, total: float | None = None, /, **parts: float) -> None:
-        """Give the monitor's judgement of this simulation step, once a step; parts are summed and reported apart."""
+        """Give the reward of this simulation step, once a step; named parts are summed and reported separately."""
         if total is None and not parts:
             raise SettingsError(
                 "tarl.reward needs a number, or parts such as tarl.reward(progress=0.2, clearance=-1)."
             )
         if self._requirements.rewarding:
             raise SettingsError(
-                'The marker says reward="robustness", so each step has its reward by the formulas: take tarl.reward '
-                "out of the test, or reward out of the marker."
+                'The marker has reward="robustness", so the formulas give the reward of each step: remove '
+                "tarl.reward from the test, or reward from the marker."
             )
         given = {name: _reward(value) for name, value in parts.items()}
         amount = _reward(sum(given.values()) if total is None else total)
@@ -200,15 +199,15 @@ class Tarl:
         self._rewards += 1
 
     def conclude(self, ended: BaseException | None) -> None:
-        """Judge the formulas when the body is over, which `ended` ended. Raises RequirementError where one is violated.
+        """Evaluate the formulas after the body, which raised `ended` or None. Raise RequirementError for a violation.
 
-        A body that failed by itself fails for its own reason.
+        If the body itself failed, its own error is reported instead.
         """
         whole = ended is None or (self._replay is not None and self._replay.done)
         self._formulas.conclude(whole=whole, alone=self._alone)
 
     def rewarded(self, trace: Trace) -> Trace:
-        """Return the trace with the rewards that formulas give, where they do."""
+        """Return the trace, with rewards computed from the formulas under reward="robustness"."""
         rewards = self._formulas.rewards()
         if rewards is None:
             return trace
@@ -217,34 +216,34 @@ class Tarl:
         return replace(trace, reward=np.array(rewards, np.float64))
 
     def close(self) -> None:
-        """End the nodes and forget the episode."""
+        """Shut the nodes down and release the episode."""
         self._open.close()
 
     def notes(self) -> tuple[str, ...]:
-        """Return what the user should hear, though the episode counts; known once it is closed."""
+        """Return notes for the user on an episode that counts; complete once it is closed."""
         late = self._ros.shutdown_errors if self._ros is not None else ()
-        ended = [f"{error} It was being ended, so the episode counts all the same." for error in late]
+        ended = [f"{error} The node was being shut down, so the episode still counts." for error in late]
         missing = [
             f"nothing can be recorded at {path.name}:{', '.join(map(str, sorted({line for line, _ in positions})))}: "
-            "the slices there stay empty."
+            "their slices stay empty."
             for path, positions in self._imports.unrecorded.items()
         ]
         started = self._ros.notes if self._ros is not None else ()
         return (*ended, *missing, *started, *(self._replay.notes if self._replay is not None else ()))
 
     def problem(self) -> RecordingError | None:
-        """Return why the episode cannot be learned from: no reward, a silent sensor, a mute node; None when it can."""
+        """Return why the episode is unusable (no reward, silent sensor, silent node), or None if it is usable."""
         if self._replay is not None:
             return self._unplayed(self._replay)
         if not self._rewards and self._requirements.rewarding:
             return RecordingError(
-                'The test never called tarl.step, so there is no step to reward: reward="robustness" counts steps of '
-                "virtual time."
+                'The test never called tarl.step, so there is no step to reward: reward="robustness" rewards '
+                "steps of virtual time."
             )
         if not self._rewards:
             return RecordingError(
-                "The test never called tarl.reward: call it once a simulation step with the monitor's judgement, "
-                "for instance tarl.reward(world.monitor())."
+                "The test never called tarl.reward: call it once in each simulation step, for example "
+                "tarl.reward(world.monitor())."
             )
         problem = self._situation.problem()
         if problem is not None:
@@ -252,7 +251,7 @@ class Tarl:
         if self.drives_ros and not self.ros.published:
             heard = ", ".join(sorted(self.ros.subscribed)) or "no topic"
             return RecordingError(
-                "The node published nothing in the whole episode, so nothing can be learned: look whether it gets "
+                "The node published nothing in the whole episode, so nothing can be learned: check that it receives "
                 f"the messages that it waits for (it subscribes to {heard})."
             )
         return None
@@ -261,18 +260,18 @@ class Tarl:
         name = replay.bag.path.name
         if not replay.begun:
             return RecordingError(
-                f"{name} was not replayed: the test ended before it called tarl.step, at which the recorded mission "
-                "takes over. Only nodes that are run with tarl.start and tarl.step can be told what a bag holds."
+                f"{name} was not replayed: the test ended before its first tarl.step, where the replay begins. Only "
+                "nodes that run through tarl.start and tarl.step receive the messages of a bag."
             )
         if not self._rewards:
             return RecordingError(
-                f"Nothing was learned from {name}: its sensors were never all known at the end of a step."
+                f"Nothing was learned from {name}: no step ended with a value for every sensor."
             )
         return None
 
     @property
     def _now(self) -> int:
-        """Return the virtual nanoseconds since the episode, or the recorded mission, began."""
+        """Return the virtual time since the start of the episode, or of the recorded mission, in ns."""
         return 0 if self._ros is None else self._ros.scheduler.time - self._origin
 
     def _stepped(self) -> None:
@@ -287,7 +286,7 @@ def _reward(value: Any) -> float:
         raise SettingsError(f"tarl.reward got {reprlib.repr(value)}: rewards must be finite numbers.")
     if abs(number) > LARGEST:
         raise SettingsError(
-            f"tarl.reward got {reprlib.repr(value)}: rewards are at most {LARGEST:g} in size, else sums of their "
-            "squares overflow. Scale the monitor's judgement."
+            f"tarl.reward got {reprlib.repr(value)}: rewards are at most {LARGEST:g} in magnitude, because sums of "
+            "their squares overflow. Scale the reward."
         )
     return number

@@ -1,18 +1,18 @@
-"""What can go wrong for a user. Every message says what is wrong, where, and what to do next."""
+"""Errors shown to users. Every message says what is wrong, where, and what to do next."""
 
 from __future__ import annotations
 
 
 class TarlError(Exception):
-    """Base of all errors that are meant for the user: shown as one sentence, without a traceback."""
+    """Base of all errors shown to the user as a sentence, without a traceback."""
 
 
 class SettingsError(TarlError):
-    """A marker, an option or an ini value is not usable."""
+    """A marker, an option or an ini value is invalid."""
 
 
 class FixtureError(TarlError):
-    """A utility fixture is missing, damaged, foreign or of another format; `what` leaves the advice out."""
+    """A recording is missing, damaged, of another test or format; `what` is the message without the advice."""
 
     def __init__(self, what: str, advice: str = "") -> None:
         super().__init__(f"{what} {advice}".rstrip())
@@ -20,7 +20,7 @@ class FixtureError(TarlError):
 
 
 class AnalysisError(TarlError):
-    """The named nodes cannot be analysed, or hold no flow from a subscription to a publish call."""
+    """The named nodes cannot be analysed, or have no flow from a subscription to a publish call."""
 
 
 class RecordingError(TarlError):
@@ -28,7 +28,7 @@ class RecordingError(TarlError):
 
 
 class RequirementError(AssertionError):
-    """A formula does not hold in an episode: a failed mission, told without a traceback."""
+    """A formula does not hold in an episode, so the mission failed."""
 
 
 class LogError(TarlError):
@@ -36,32 +36,32 @@ class LogError(TarlError):
 
 
 class MonitorError(TarlError):
-    """Missions cannot be watched: the state of the watch is damaged, in use, or belongs to something else."""
+    """Missions cannot be watched: the watch's state is damaged, in use, or belongs to another watch."""
 
 
 class NodeError(TarlError):
-    """A node misbehaves towards the simulation: it never waits, or ends in an exception."""
+    """A node never waits, or raised an exception."""
 
 
 class StuckNodeError(NodeError):
-    """A node kept the processor without ever waiting; each such episode costs seconds."""
+    """A node computed without ever waiting. Each such episode takes seconds, so the run stops at the first."""
 
 
 class UnsupportedApiError(TarlError):
-    """A node asks the in-process ROS for something that it does not have."""
+    """A node uses a part of the ROS API that the in-process ROS does not implement."""
 
 
 class RepairError(TarlError):
-    """A mutation cannot be written into the source."""
+    """A mutation cannot be written to the source."""
 
 
 class StaleTextError(TarlError):
-    """A candidate was written into a file, and the text of before ran."""
+    """A candidate was written to a file, but the previous text ran."""
 
 
 class SearchError(TarlError):
-    """A search that was plugged in does not do what is asked of it."""
+    """A plugged-in search breaks the search protocol."""
 
 
 class RefusedError(TarlError):
-    """A command can be understood but would do harm as things are, so nothing was changed."""
+    """A command is valid but would cause harm in the current state, so it changed nothing."""

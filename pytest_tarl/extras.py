@@ -1,4 +1,4 @@
-"""What the plugin and the commands need beyond the linter, and what to say where that is not installed."""
+"""Packages that the plugin and the commands need beyond the linter, and messages if they are not installed."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ SERVER = ("pygls",)
 
 
 def missing_packages() -> list[str]:
-    """Return the packages of the extra `pytest` that are not installed, by name. Nothing is imported."""
+    """Return the names of packages in the extra `pytest` that are not installed, without importing any."""
     return [name for name in NEEDED if find_spec(name) is None]
 
 
 def missing_extra(what: str) -> str | None:
-    """Return a sentence saying what `what` needs of this environment, or None where all of it is there."""
+    """Return a sentence on what `what` needs in this environment, or None if everything is installed."""
     return _sentence(what, missing_packages(), "pytest") or no_lock(what)
 
 
 def missing_server(what: str) -> str | None:
-    """Return a sentence saying that `what` needs the extra `lsp`, or None where it is installed."""
+    """Return a sentence that `what` needs the extra `lsp`, or None if it is installed."""
     return _sentence(what, [name for name in SERVER if find_spec(name) is None], "lsp")
 
 
@@ -56,9 +56,9 @@ def _sentence(what: str, missing: list[str], extra: str) -> str | None:
 
 
 def no_lock(what: str) -> str | None:
-    """Return a sentence where Python runs without its global interpreter lock (3.13t, 3.14t), else None.
+    """Return a sentence if Python runs without its global interpreter lock (3.13t, 3.14t), else None.
 
-    Recording relies on it: events are appended by one thread while another one takes them off.
+    Recording relies on the lock: one thread appends events while another removes them.
     """
     enabled = getattr(sys, "_is_gil_enabled", None)  # from 3.13 on
     if enabled is None or enabled():

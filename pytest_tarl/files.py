@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all."""
+"""Write files atomically."""
 
 from __future__ import annotations
 
@@ -14,16 +14,18 @@ DIFFERENT = (errno.EROFS, errno.EACCES, errno.EPERM)
 
 
 def advice_on(problem: OSError) -> str:
-    """Return what to do where a file cannot be written."""
+    """Return advice for a file that cannot be written."""
     if problem.errno in FULL:
-        return "the disk is full, or your quota of it: free some space and run it again."
+        return "the disk or your quota is full: free some space and run the command again."
     if problem.errno in DIFFERENT:
-        return "give yourself the right to write there, or run in a copy."
-    return "something else is in its place, or the disk fails: look there and run it again."
+        return "make the folder writable, or work in a copy."
+    return (
+        "another kind of file is in its place, or the disk fails: check the path and run the command again."
+    )
 
 
 def check_writable(path: Path) -> None:
-    """Find out whether a file can be written later, and leave nothing behind. Raises OSError where it cannot."""
+    """Check that a file can be written later, leaving nothing behind. Raise OSError if it cannot."""
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     made = [folder for folder in path.parents if not folder.exists()]  # the innermost first
@@ -34,19 +36,19 @@ def check_writable(path: Path) -> None:
         Path(name).unlink()
     finally:
         for folder in made:
-            with suppress(OSError):  # another run has put something there, or the folder was never made
+            with suppress(OSError):  # another run has written there, or the folder was never made
                 folder.rmdir()
 
 
 def slug(text: str) -> str:
-    """Return a text as part of a file name."""
+    """Return a text as a valid part of a file name."""
     return re.sub(r"[^A-Za-z0-9]+", "-", text.replace(".py", "")).strip("-")[:60]
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write to a temporary file beside `path` and rename it, making folders as needed. Raises OSError.
+    """Write a temporary file beside `path` and rename it, making folders as needed. Raise OSError on failure.
 
-    What is no file, as a device or a pipe, is written to and never replaced.
+    Write directly to a device or a pipe, which a rename would replace.
     """
     if path.exists() and not path.is_file():
         path.write_bytes(content)

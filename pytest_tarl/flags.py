@@ -10,15 +10,15 @@ PREFIX = "--tarl-"
 
 
 class Flag(NamedTuple):
-    """One flag of the command line; one without `metavar` is a switch."""
+    """A command line flag; a switch if it has no `metavar`."""
 
     name: str
     help: str
-    asks: bool = False  # whether the flag starts a TARL run; the others configure one
+    asks: bool = False  # whether the flag starts a TARL run; other flags configure one
     metavar: str | None = None
     type: type = str
-    default: Any = None  # where neither the command line nor the ini file has a value
-    many: bool = False  # whether the flag may be repeated
+    default: Any = None  # used if neither the command line nor the ini file sets a value
+    many: bool = False  # whether the flag may be given several times
 
     @property
     def key(self) -> str:

@@ -1,4 +1,4 @@
-"""What a test says of formulas in its own modules: the calls of `observe` and `require`, read and never run."""
+"""Read the calls of `observe` and `require` in a test's modules from the source, without running it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ CALLS = (b".observe(", b".require(")
 
 
 def said(test: str, root: Path) -> Said:
-    """Return what a test, named by its node id, says of formulas; other tests of its file are left out."""
+    """Return the signals and formulas that a test, given by node id, names; skip other tests of its file."""
     name, *parts = test.partition("[")[0].split("::")
     first = (root / name).resolve()
     try:
@@ -38,7 +38,7 @@ def said(test: str, root: Path) -> Said:
 
 
 def _calls(tree: ast.AST, test: set[str] | None) -> Iterator[tuple[str, ast.Call]]:
-    """Yield the calls of methods in a tree; `test` holds the names of class and function in the test's own file."""
+    """Yield the method calls in a tree; `test` holds the class and function names of the test in its own file."""
     for node in ast.iter_child_nodes(tree):
         named = node.name if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)) else ""
         if test is not None and named.lower().startswith("test") and named not in test:
@@ -53,7 +53,7 @@ def _names(word: ast.keyword) -> list[str]:
 
 
 def _keys(value: ast.expr) -> list[str] | None:
-    """Return the keys of a dictionary that is written out; None where some are computed."""
+    """Return the keys of a dictionary literal; None if some are computed."""
     if not isinstance(value, ast.Dict):
         return None
     keys = [one.value for one in value.keys if isinstance(one, ast.Constant) and isinstance(one.value, str)]

@@ -1,4 +1,4 @@
-"""How much memory is free, where the system says so."""
+"""Query the free memory, on systems that report it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _MEMINFO = Path("/proc/meminfo")  # Linux
 
 
 def available() -> int | None:
-    """Return the bytes that can be had without swapping; None where nobody knows."""
+    """Return the bytes available without swapping; None if the system does not report it."""
     try:
         found = re.search(r"^MemAvailable:\s+(\d+) kB$", _MEMINFO.read_text(), re.MULTILINE)
     except OSError:

@@ -1,7 +1,7 @@
-"""A node that holds the interpreter, in a loop of C: no thread of Python runs any more, so the system ends it.
+"""End a node that holds the interpreter in a C loop, where no Python thread runs any more.
 
-Its timer counts CPU time of the process and is set anew as long as threads run. When it rings, faulthandler writes
-where every thread stands, to the standard error that pytest was started with, and the process ends by SIGVTALRM.
+A timer counts the CPU time of the process and is re-armed as long as Python threads run. When it expires,
+faulthandler writes the stack of every thread to pytest's original standard error, and SIGVTALRM ends the process.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ _registered = False
 
 
 def prepare() -> None:
-    """Keep the standard error of the process, before pytest captures it."""
+    """Save the process's standard error before pytest captures it."""
     global _stderr
     if _stderr is None:
-        with suppress(OSError):  # there is none, as under pythonw
+        with suppress(OSError):  # no standard error, as under pythonw
             _stderr = os.dup(2)
 
 
 def allow(seconds: float) -> None:
-    """Let the process compute for so long from now on; 0 for as long as it likes."""
+    """Limit the CPU time of the process from now on, in seconds; 0 for no limit."""
     if SIGNAL is not None and (_registered or (seconds and _register())):
         signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
 
 
 def _register() -> bool:
-    """Have the signal tell and end; tell whether nobody else has a use for it."""
+    """Make the signal dump all stacks and end the process; return False if another handler uses it."""
     global _registered
     if SIGNAL is None or signal.getsignal(SIGNAL) != signal.SIG_DFL:
         return False

@@ -1,4 +1,4 @@
-"""A test module that imports ROS where none is installed: say what to write instead."""
+"""Advice for a test module that imports ROS where none is installed."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pytest_tarl.ros.messages.packages import could_be_package
 
 
 def import_hint(error: BaseException | None) -> str | None:
-    """Return the advice for an import that failed while a test module was collected, None for any other error."""
+    """Return advice for an import that failed during collection; None for any other error."""
     while error is not None and not isinstance(error, ModuleNotFoundError):
         error = error.__cause__ or error.__context__
     if error is None or not error.name:
@@ -15,12 +15,12 @@ def import_hint(error: BaseException | None) -> str | None:
     package = error.name.partition(".")[0]
     if package in STANDINS:
         return (
-            f"No {package} is installed, and TARL's is there for nodes, while a test runs: import the node inside the "
-            "test function or start it by tarl.start, and let the test speak to it by tarl.bus."
+            f"{package} is not installed, and TARL provides it only to nodes while a test runs: import the node "
+            "inside the test function or start it by tarl.start, and communicate with it through tarl.bus."
         )
     if could_be_package(package):
         return (
-            f"No {package} is installed, and TARL's is there for nodes, while a test runs: in a test write "
+            f"{package} is not installed, and TARL provides it only to nodes while a test runs: in a test write "
             f"message_type('{package}/msg/TYPE'), from pytest_tarl.ros; '{package}/TYPE' is the type of ROS 1."
         )
     return None

@@ -21,7 +21,7 @@ SWITCHES = {
     "0": False,
 }
 MODES = ("record", "online", "repair")
-# Options for some modes only: runs in other modes ignore them in the ini file
+# Options of some modes only: runs in other modes ignore them in the ini file
 WITHIN: Mapping[str, tuple[str, ...]] = {
     "drift": ("record", "online"),
     "search": ("repair",),
@@ -49,9 +49,9 @@ def ini_name(flag: Flag) -> str:
 
 
 def mode_asked(config: pytest.Config) -> bool:
-    """Tell whether the command line asks for something of ours, or the ini file for a mode.
+    """Return whether the command line has a flag that starts a TARL run, or the ini file selects a mode.
 
-    Raises SettingsError where the ini file holds no such value.
+    Raise SettingsError for an invalid value in the ini file.
     """
     if any(config.getoption(flag.name) for flag in FLAGS if flag.asks):
         return True
@@ -59,7 +59,7 @@ def mode_asked(config: pytest.Config) -> bool:
 
 
 def value_of(config: pytest.Config, key: str) -> Any:
-    """Return the value of one flag: as typed, else as in the ini file, else its default. Raises SettingsError."""
+    """Return a flag's value from the command line, the ini file, or its default. Raise SettingsError if invalid."""
     flag = next(flag for flag in FLAGS if flag.key == key)
     typed = config.getoption(flag.name)
     if typed not in (None, False):
@@ -69,9 +69,9 @@ def value_of(config: pytest.Config, key: str) -> Any:
 
 
 def values(config: pytest.Config) -> tuple[dict[str, Any], list[Flag]]:
-    """Return the value of every flag by its key, and the flags whose value is from the ini file.
+    """Return the value of every flag by its key, and the flags that the ini file sets.
 
-    Raises SettingsError.
+    Raise SettingsError for an invalid value.
     """
     found = {flag.key: value_of(config, flag.key) for flag in FLAGS}
     chosen = [flag for flag in FLAGS if config.getoption(flag.name) in (None, False)]
@@ -85,7 +85,7 @@ def _from_ini(config: pytest.Config, flag: Flag) -> Any:
     name = ini_name(flag)
     try:
         text = config.getini(name)
-    except (TypeError, ValueError) as error:  # a value of TOML's own types that is another one
+    except (TypeError, ValueError) as error:  # a TOML value of another type
         raise SettingsError(f"{config.inipath}: {name}: {error}") from None
     if text is None or text == []:
         return None
@@ -104,5 +104,5 @@ def _from_ini(config: pytest.Config, flag: Flag) -> Any:
 
 
 def _resolved(config: pytest.Config, flag: Flag, value: Any) -> Any:
-    """Let the path of a file begin where the ini file is."""
+    """Resolve a file's path against the folder of the ini file."""
     return str(config.rootpath / value) if flag.metavar == "FILE" else value

@@ -1,4 +1,4 @@
-"""What an on-line run leaves on disk: result, recording, page; and what is told where the disk takes nothing."""
+"""Write the files of a comparison (result, sample, page), and report those that cannot be written."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.report import json_result
 
 @dataclass(frozen=True)
 class Kept:
-    """The page where there is one, and lines about what is not installed and what could not be written."""
+    """The page if it was written, and lines on missing packages and unwritten files."""
 
     page: Path | None
     missing: tuple[str, ...]
@@ -25,7 +25,7 @@ class Kept:
 
 
 def keep(comparison: Comparison, online: Online, episodes: Mapping[str, int], root: Path, name: str) -> Kept:
-    """Write all files of a run below `root`; the verdict needs none of them, so that a full disk never hides it."""
+    """Write all files of a run below `root`; the verdict does not depend on them, so a full disk never hides it."""
     folder = root / ".tarl"
     result, recording, page = (
         folder / where / f"{name}{ending}"
@@ -62,7 +62,7 @@ def _problem(write: Callable[[], None]) -> TarlError | None:
 
 
 def _unwritten(failed: Mapping[Path, OSError], root: Path) -> list[str]:
-    """Return one line for each reason why files were not written, with what to do."""
+    """Return one line for each reason why files were not written, with advice."""
     reasons: dict[tuple[str, str], list[str]] = {}
     for path, problem in failed.items():
         shown = path.relative_to(root).as_posix()
@@ -74,15 +74,18 @@ def _unwritten(failed: Mapping[Path, OSError], root: Path) -> list[str]:
 
 
 def by_hand(repair: Repair | None) -> list[str]:
-    """Return an accepted patch that is in no file, line by line."""
+    """Return the lines of an accepted patch that could not be written to a file."""
     if repair is None or not repair.accepted or repair.patch:
         return []
-    told = "  The patch could not be written below .tarl/patches. Save what follows as a file and `tarl apply` it:"
+    told = (
+        "  The patch could not be written below .tarl/patches. Save the following lines to a file and run `tarl "
+        "apply` on it:"
+    )
     return [told, *repair.diff.splitlines()]
 
 
 def as_fixture(comparison: Comparison, online: Online) -> Fixture:
-    """Return the on-line recording in the form of a fixture, so that it can be looked at later."""
+    """Return the deployed-world sample in the format of a recording, for later inspection."""
     return Fixture(
         test=comparison.test,
         seed=comparison.seed,

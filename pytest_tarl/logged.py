@@ -1,4 +1,4 @@
-"""`--tarl-log FILE`: missions that a robot has run, as the on-line side of a comparison."""
+"""`--tarl-log FILE`: compare missions that a robot has run with the recording of a test."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from pytest_tarl.observing.frames import Record, records, set_aside
 from pytest_tarl.observing.writer import unpacked
 from pytest_tarl.rollout import Deferred, EpisodePlan, EpisodeRun, Pending
 
-FEWEST = 2  # missions that make a comparison
+FEWEST = 2  # fewest missions that can be compared
 Judge = Callable[[Mapping[str, Any], Mapping[str, Any]], float]
 _COLUMNS = {"site": "int32", "flow": "float64", "cell": "int32", "step": "int32", "thread": "int32"}
 
 
 @dataclass
 class Mission:
-    """One mission as it is read."""
+    """A mission while its chunks are being read."""
 
     sites: Sequence[str]
     chunks: list[Record] = field(default_factory=list)
@@ -39,9 +39,9 @@ class Mission:
 
 
 def missions(path: Path, fixture: Fixture) -> list[Mission]:
-    """Read all missions of a log and of what was set aside of it, unfinished ones too.
+    """Read all missions of a log and of its rotated parts, including unfinished ones.
 
-    Raises LogError where it does not belong to the fixture.
+    Raise LogError if the log does not belong to the recording.
     """
     found: list[Mission] = []
     sites: Sequence[str] = ()
@@ -62,7 +62,7 @@ def missions(path: Path, fixture: Fixture) -> list[Mission]:
 
 
 class LoggedMissions:
-    """A rollout that has happened: the n-th episode is the n-th finished mission of the log."""
+    """A rollout that already happened: the n-th episode is the n-th finished mission of the log."""
 
     def __init__(
         self,
@@ -78,10 +78,10 @@ class LoggedMissions:
         self._judged = judged
         self.count = len(whole)
         self.workers = 1
-        self.notes = notes  # what is to be said about the rest
+        self.notes = notes  # on the missions that were left out
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
-        """Return the mission whose number is the plan's seed."""
+        """Return the mission whose index is the plan's seed."""
         mission, found = self._whole[plan.seed], self._judged[plan.seed]
         return EpisodeRun(
             plan,
@@ -93,7 +93,7 @@ class LoggedMissions:
         )
 
     def begin(self, plan: EpisodePlan) -> Pending:
-        """Ask for a mission: it is there already."""
+        """Return a mission as an episode that has already run."""
         return Deferred(self, plan)
 
 
@@ -104,13 +104,13 @@ def read_log(
     judge: Judge | None,
     requirements: Requirements = NOTHING_REQUIRED,
 ) -> LoggedMissions:
-    """Return the finished missions of a log as episodes. Raises LogError where they cannot be compared."""
+    """Return the finished missions of a log as episodes. Raise LogError if they cannot be compared."""
     everything = missions(path, fixture)
     whole = [one for one in everything if one.ended and any(chunk["step_cell"] for chunk in one.chunks)]
     if len(whole) < FEWEST:
         raise LogError(
             f"{path} holds {len(whole)} finished missions with rewards; a comparison needs at least {FEWEST}. "
-            "Tell missions apart with --mission-topic or --idle, and look whether the reward arrives."
+            "Separate the missions with --mission-topic or --idle, and check that the reward arrives."
         )
     number = {place.id: n for n, place in enumerate(plan.places)}
     followed = [one.followed for one in whole]
@@ -130,7 +130,7 @@ def trace(
     judge: Judge | None,
     by_formulas: Sequence[float] | None = None,
 ) -> Trace:
-    """Join a mission's chunks; sites that the node no longer has are left out."""
+    """Join the chunks of a mission; leave out sites that the node no longer has."""
     here = np.array([number.get(site, -1) for site in mission.sites] or [-1], np.int32)
     cells = tuple(tuple(cell) for cell in mission.chunks[-1]["cells"])
     parts: list[dict[str, Any]] = []
@@ -166,13 +166,13 @@ def trace(
 
 
 def _judged(reward: Floats, mission: Mission, fixture: Fixture, judge: Judge | None) -> Floats:
-    """Return the rewards, those that the log leaves open computed from the sensors before and after the step."""
+    """Return the rewards, shape (steps,); compute missing ones from the sensors before and after the step."""
     if not np.isnan(reward).any():
         return reward
     if judge is None:
         raise LogError(
-            "The log holds no rewards (it was written with --step): give the marker a function `judge=`, which is told "
-            "the sensors' values before and after a step, two mappings, and returns the reward of the step."
+            "The log holds no rewards (it was written with --step): give the marker a function `judge=` that takes "
+            "two mappings, the sensors' values before and after a step, and returns the reward of the step."
         )
     names = [sensor.name for sensor in fixture.sensors]
     readings = [dict(zip(names, one, strict=True)) for chunk in mission.chunks for one in chunk["readings"]]
@@ -188,8 +188,9 @@ def _check(start: Record, path: Path, fixture: Fixture) -> None:
     names = [sensor.name for sensor in fixture.sensors]
     if start["sensors"] != names:
         raise LogError(
-            f"{path} was written with the sensors {', '.join(start['sensors'])}, the fixture of {fixture.test} has "
-            f"{', '.join(names)}: observe again with that fixture, or name the log that belongs to it."
+            f"{path} was written with the sensors {', '.join(start['sensors'])}, but the recording of {fixture.test} "
+            "has "
+            f"{', '.join(names)}: observe again with that recording, or name the log that belongs to it."
         )
 
 
@@ -198,7 +199,7 @@ def _notes(everything: Sequence[Mission], whole: Sequence[Mission], path: Path) 
     left_out = len(everything) - len(whole)
     if left_out:
         which = "mission has" if left_out == 1 else "missions have"
-        notes.append(f"{left_out} {which} no end or no reward in {path.name} and took no part.")
+        notes.append(f"{left_out} {which} no end or no reward in {path.name}: skipped.")
     dropped = max((chunk["dropped"] for one in whole for chunk in one.chunks), default=0)
     if dropped:
         notes.append(f"{dropped} events were dropped on the robot because its disk could not keep up.")

@@ -1,4 +1,4 @@
-"""One designated test in one mode: analysis, the mode's work, files below `.tarl`, what is told."""
+"""Run one designated test in one mode: analyse it, record or compare, write files below `.tarl`, and report."""
 
 from __future__ import annotations
 
@@ -35,14 +35,12 @@ from pytest_tarl.unrecorded_nodes import silent_files
 from tarl_lint.api import Analysis, analyse
 
 RolloutWith = Callable[[Instruments, tuple[Sensor, ...]], Rollout]
-IGNORED = (
-    "# Only the recorded utility is worth committing.\n*\n!.gitignore\n!utility/\n!utility/**\nutility/.*\n"
-)
+IGNORED = "# Commit only the recorded utility.\n*\n!.gitignore\n!utility/\n!utility/**\nutility/.*\n"
 
 
 @dataclass(frozen=True)
 class Account:
-    """What a mode has to tell: lines for the summary, what fails the test, the patch to apply, what CI is told."""
+    """The report of a mode: summary lines, the test's failure, the patch to apply, and CI annotations."""
 
     lines: tuple[str, ...]
     problem: str = ""
@@ -51,7 +49,7 @@ class Account:
     properties: tuple[tuple[str, str], ...] = ()
     annotation: str = ""
     row: Row = ()
-    unrecorded: bool = False  # whether there is nothing to compare with
+    unrecorded: bool = False  # whether the test has no recording to compare with
 
 
 @dataclass(frozen=True)
@@ -66,24 +64,24 @@ class Other:
 
 @dataclass(frozen=True)
 class Mission:
-    """A designated test, where it stands, and how it is to be run."""
+    """A designated test, its location, and how to run it."""
 
     test: str
     folder: Path
     root: Path
-    started: Path  # the folder that pytest was started in
+    started: Path  # the folder in which pytest was started
     designation: Designation
     options: Options
     drift: str | None
     width: int
     progress: Progress
-    tell: Tell  # says a sentence at once, where there is a terminal
+    tell: Tell  # prints a sentence at once if there is a terminal
     others: tuple[Other, ...] = ()
 
     def run(self, rollout_with: RolloutWith) -> Account | Compared:
-        """Do the mode's work; what a comparison concludes is told when it is asked to.
+        """Run the mode. A comparison returns its result unreported: call `told` to write and report it.
 
-        Raises TarlError with a sentence where the work cannot be done.
+        Raise TarlError if the test cannot be recorded or compared.
         """
         fixture = None if self.options.mode == "record" else self._fixture()
         analysis = self._analysis()
@@ -100,12 +98,12 @@ class Mission:
 
     @property
     def fixture_path(self) -> Path:
-        """Return where the utility fixture of the test is."""
+        """Return the path of the test's recording."""
         return fixture_path(self.root, self.test)
 
     @property
     def target(self) -> str:
-        """Return the test as it is typed where pytest was started; parameters are left out, all of them run."""
+        """Return the test as a pytest argument for the folder where pytest was started, without parameters."""
         folder = os.path.relpath(self.root, self.started).replace(os.sep, "/")
         return f"{'' if folder == '.' else f'{folder}/'}{self.test.partition('[')[0]}"
 
@@ -115,7 +113,7 @@ class Mission:
         return self.root / ".tarl"
 
     def interrupted(self, done: int, total: int) -> str:
-        """Say what an interrupted recording leaves behind, in one line."""
+        """Return one line on what an interrupted recording left on disk."""
         path = self.fixture_path
         left = f"{path.relative_to(self.root)} is unchanged" if path.exists() else "nothing was written"
         return f"Interrupted in episode {done + 1} of {total}: {left}."
@@ -124,10 +122,8 @@ class Mission:
         paths = [(self.folder / node).resolve() for node in self.designation.nodes]
         for path, node in zip(paths, self.designation.nodes, strict=True):
             if not path.exists():
-                raise AnalysisError(
-                    f"The marker names the node {node!r}, but there is no such file in {self.folder}."
-                )
-        with _working_in(self.root):  # the analysis names files as they are seen from the working directory
+                raise AnalysisError(f"The marker names the node {node!r}: no such file in {self.folder}.")
+        with _working_in(self.root):  # the analysis names files relative to the working directory
             analysis = analyse(paths, root=self.root)
         if analysis.errors:
             first = analysis.errors[0]
@@ -140,7 +136,7 @@ class Mission:
         return analysis
 
     def _sensors(self, rollout_with: RolloutWith, fixture: Fixture | None) -> tuple[Sensor, ...]:
-        """Return the sensors with their bins: those of the fixture, or learned from episodes of their own."""
+        """Return the sensors with bins: those of the recording, or learned from separate episodes."""
         asked = self.designation.sensors
         if fixture is not None:
             return with_edges(asked, {one.name: one.edges for one in fixture.sensors if one.learned})
@@ -153,21 +149,21 @@ class Mission:
 
     @property
     def _recorded_drift(self) -> str | None:
-        """Return the drift to record under. Raises SettingsError where the marker does not say that it is for good."""
+        """Return the drift to record under. Raise SettingsError unless the marker declares it permanent."""
         name = self.options.drift if self.options.mode == "record" else None
         if name is None or (name == AS_WRITTEN and name not in self.designation.drifts):
             return name
         declared = self.designation.drifts[name]
         if not declared.permanent:
             raise SettingsError(
-                f"--tarl-record makes what it records the design, and the drift {name!r} is not for good: if it is, "
-                f'say so in the marker, drifts={{"{name}": Drift({declared.value!r}, permanent=True)}}, with `from '
+                f"--tarl-record makes the drift part of the design, but {name!r} is not permanent: if the world has "
+                f'changed for good, declare drifts={{"{name}": Drift({declared.value!r}, permanent=True)}}, with `from '
                 "pytest_tarl import Drift`."
             )
         return name
 
     def _silent(self, analysis: Analysis) -> Iterator[str]:
-        """Name the nodes' files in which nothing is recorded."""
+        """Return notes on the nodes' files in which nothing is recorded."""
         files = [(self.folder / node).resolve() for node in self.designation.nodes]
         return silent_files(files, analysis, self.root.resolve())
 
@@ -194,11 +190,11 @@ class Mission:
         return Account((*lines, *(f"  {note}" for note in notes)))
 
     def _test_side(self) -> Digests:
-        """Return the digests of the test's own modules."""
+        """Return the digests of the test's modules."""
         return digests(self.test, self.root, [self.folder / node for node in self.designation.nodes])
 
     def _adopted(self, sites: Plan) -> Iterator[str]:
-        """Say what the design is now, and which other tests of the node still have the old one."""
+        """Return lines on the new design, and on other tests of the node that still have the old one."""
         design = fixtures.load(self.fixture_path).design
         if not design:
             return
@@ -210,11 +206,13 @@ class Mission:
             with suppress(FixtureError):
                 other = fixtures.load(path)
                 paths = {site.path for one in other.lists for site in one.sites}
-                told = other.test == self.test or other.test in run  # recorded in this run, before or after
+                told = (
+                    other.test == self.test or other.test in run
+                )  # recorded in this run, before or after this test
                 if not told and paths & nodes and not {*design} <= {*other.design}:
                     yield (
-                        f"  {other.test} is recorded on the same node in the world as it was: declare {named} there, "
-                        f"too, and record it under it"
+                        f"  {other.test} has a recording of the same node in the old world: declare {named} there, "
+                        "too, and record it under that drift"
                     )
 
     def _online(self, rollout: Rollout, sites: Plan, analysis: Analysis, fixture: Fixture) -> Compared:
@@ -255,16 +253,16 @@ class Mission:
         return Compared(self, told, online, episodes, interrupted)
 
     def _design_lost(self, fixture: Fixture) -> Iterator[str]:
-        """Tell that a scenario and the design do not go together."""
+        """Return a note if a scenario replaces the design instead of changing it."""
         lost = replaced(self.designation.drifts, fixture.design, self.drift)
         if lost:
             yield (
-                f"the design has the drift {lost!r}, and tarl_drift was that of {self.drift!r} alone: let both be "
-                "dictionaries, then a scenario changes the design"
+                f"the design has the drift {lost!r}, but tarl_drift held only {self.drift!r}: make both "
+                "dictionaries, and the scenario is merged into the design"
             )
 
     def _neighbours(self) -> list[Neighbour]:
-        """Return the other tests of the run that have a recorded utility which can be read."""
+        """Return the other tests of the run that have a readable recording."""
         found = []
         for other in self.others:
             with suppress(FixtureError):
@@ -280,7 +278,7 @@ class Mission:
         return found
 
     def _not_run(self, found: Repair | None) -> Iterator[str]:
-        """Name recorded tests of a repaired file that this run did not collect, and so could not hold against it."""
+        """Return notes on recorded tests of a repaired file that this run did not collect and hence not check."""
         if found is None or not found.accepted:
             return
         run, edited = {self.test, *(other.test for other in self.others)}, {edit.path for edit in found.edits}
@@ -288,11 +286,11 @@ class Mission:
             try:
                 fixture = fixtures.load(path)
             except FixtureError as problem:
-                yield f"{problem.what} If its test is of the same node, the repair was not held against it"
+                yield f"{problem.what} If its test runs the same node, the repair was not checked against it"
                 continue
             sites = {site.path for one in fixture.lists for site in one.sites}
             if fixture.test not in run and sites & edited:
-                yield f"{fixture.test} is recorded on the same node and was not in this run: run it, too"
+                yield f"{fixture.test} has a recording of the same node but was not in this run: run it, too"
 
     def _fixture(self) -> Fixture:
         if not self.fixture_path.exists():
@@ -301,7 +299,7 @@ class Mission:
         fixture = fixtures.load(self.fixture_path)
         if [*map(declared, fixture.sensors)] != [*map(declared, self.designation.sensors)]:
             raise FixtureError(
-                f"The sensors of {self.test} are not those of its utility fixture: record it again with "
+                f"The sensors of {self.test} differ from those of its recording: record it again with "
                 f"`pytest {self.test} --tarl-record`."
             )
         return fixture
@@ -309,13 +307,13 @@ class Mission:
     def _ignore(self) -> None:
         ignore = self.tarl / ".gitignore"
         if not ignore.exists():
-            with suppress(OSError):  # whatever else is to be written tells it
+            with suppress(OSError):  # writing the other files reports the same problem
                 write_atomically(ignore, IGNORED.encode())
 
 
 @dataclass(frozen=True)
 class Compared:
-    """An on-line run that is over: to be told as it is, or with what a correction over all tests makes of it."""
+    """A finished comparison, ready to be reported as it is or corrected over all tests."""
 
     mission: Mission
     comparison: Comparison
@@ -324,7 +322,7 @@ class Compared:
     interrupted: bool = False
 
     def told(self) -> Account:
-        """Write result, recording and page, and say what they hold."""
+        """Write result, sample and page, and return the report."""
         mission, comparison = self.mission, self.comparison
         name = f"{slug(mission.test)}-{slug(mission.drift or 'online')}"
         kept = keep(comparison, self.online, self.episodes, mission.root, name)
@@ -347,7 +345,7 @@ class Compared:
 
 
 def jointly(compared: Sequence[Compared], alpha: float) -> list[Compared]:
-    """Return the runs with verdicts that are corrected over all of them."""
+    """Return the runs with verdicts corrected over all of them."""
     judged = corrected([one.comparison for one in compared], alpha)
     return [replace(one, comparison=comparison) for one, comparison in zip(compared, judged, strict=True)]
 
@@ -363,4 +361,4 @@ def _working_in(folder: Path) -> Iterator[None]:
 
 
 class NoFixtureError(FixtureError):
-    """Nothing was recorded yet: the test is skipped, or fails under `--tarl-strict`."""
+    """The test has no recording: it is skipped, or fails under `--tarl-strict`."""

@@ -1,4 +1,4 @@
-"""The values that the stages of the plugin hand on: frozen, no pytest, no numpy at import."""
+"""The values passed between the stages of the plugin: frozen, no pytest, no numpy at import."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ Reason = Literal[
 
 @dataclass(frozen=True, slots=True)
 class SitePlace:
-    """A site where it stands now: `id` is `str(tarl_lint.model.SiteId)`; lines count from 1."""
+    """The current place of a site: `id` is `str(tarl_lint.model.SiteId)`; lines count from 1."""
 
     id: str
     path: str
@@ -61,13 +61,13 @@ class TaintList:
 
     @property
     def name(self) -> str:
-        """Name the list for people: `/odom → /cmd_vel`."""
+        """Return the displayed name of the list: `/odom → /cmd_vel`."""
         return f"{self.source} → {self.sink}"
 
 
 @dataclass(frozen=True, slots=True)
 class Conjunct:
-    """One condition of a guard: `low <= sensor <= high`. Either end may be infinite; equal ends test a category."""
+    """One condition of a guard: `low <= sensor <= high`. Either end may be infinite; equal ends select a category."""
 
     sensor: Sensor
     low: float
@@ -76,17 +76,17 @@ class Conjunct:
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """When a mutation holds: all conjuncts, at most two; none means always."""
+    """The condition of a mutation: the conjunction of at most two conjuncts; always true if there are none."""
 
     conjuncts: tuple[Conjunct, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """Where the on-line world differs: cells that on-line episodes were in, and among them those never seen off-line.
+    """Where the deployed world differs: cells that its episodes visited, and those of them never seen in the recording.
 
-    `left` are cells of which on-line episodes differ by not being there. Where all on-line cells are new, `without` are
-    the sensors, by place, that were left out so that something could be compared.
+    `left` are recorded cells that deployed episodes avoid. If all deployed cells are new, `without` are the indices
+    of the sensors left out so that cells can be compared.
     """
 
     cells: tuple[Cell, ...] = ()
@@ -97,9 +97,9 @@ class Region:
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """One-sided bounds of a quantity, each at the confidence; infinite where too little was seen.
+    """One-sided bounds of a quantity, each at the stated confidence; infinite if there are too few episodes.
 
-    `exact` tells whether they hold at least as often as stated, whatever the distribution (learning/bounds.py).
+    `exact` is true if they have the stated coverage for every distribution (learning/bounds.py).
     """
 
     low: float
@@ -112,11 +112,11 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class Guarantee:
-    """What is stated of the next episodes of a world, from `episodes` of which `passed` did; each bound by itself.
+    """Bounds on future episodes of a world, from `episodes` of which `passed` passed; each bound holds separately.
 
-    At least 1 - `share` of the episodes earn `quantile` or more; it is None where they are too few, of the `needed`
-    ones, and where their number was decided by what they showed (`needed` is 0). Where none of them differ from each
-    other they have not `varied`, and tell of one world only.
+    At least 1 - `share` of the episodes earn `quantile` or more. It is None if there are fewer than `needed` episodes,
+    or if their number depended on their results (`needed` is 0). `varied` is false if all episodes are equal: then
+    they sample one world only.
     """
 
     episodes: int
@@ -128,11 +128,11 @@ class Guarantee:
     quantile: float | None
     needed: int
     varied: bool
-    declared: tuple[float, float] | None = None  # between which every total lies, where the marker says so
+    declared: tuple[float, float] | None = None  # the marker's bounds on every total, if given
 
 
 class LossInterval(NamedTuple):
-    """The losses per episode that what was seen leaves possible; infinite ends where too little was seen."""
+    """Confidence interval of the loss per episode; its ends are infinite if there are too few episodes."""
 
     low: float
     high: float
@@ -142,7 +142,7 @@ class LossInterval(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What the comparison concludes. `loss` and `detectable_loss` are rewards per episode."""
+    """The verdict of a comparison. `loss` and `detectable_loss` are rewards per episode."""
 
     result: Result
     p_drift: float
@@ -155,7 +155,7 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class Slice:
-    """Eq. 2 at one site: utility summed over the region, off-line and on-line."""
+    """Eq. 2 at one site: utility summed over the region, in the designed and in the deployed world."""
 
     site: SitePlace
     list_name: str
@@ -164,13 +164,13 @@ class Slice:
 
     @property
     def difference(self) -> float:
-        """Return on-line minus off-line; negative where the site is worth less than designed."""
+        """Return deployed minus designed utility; negative if the site is worth less than designed."""
         return self.online - self.offline
 
 
 @dataclass(frozen=True, slots=True)
 class OperandEffect:
-    """What simulation found out about one operand: its best value and the reward it gains per episode."""
+    """The simulated effect of one operand: its best value and the reward it gains per episode."""
 
     code: str
     value: float | None
@@ -181,7 +181,7 @@ class OperandEffect:
 
 @dataclass(frozen=True, slots=True)
 class Culprit:
-    """A ranked site. `method` is `slices` where nothing was simulated for it."""
+    """A ranked site. `method` is `slices` if no operand of it was simulated."""
 
     site: SitePlace
     score: float
@@ -191,21 +191,21 @@ class Culprit:
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """One repaired operand: where, its text, and the value it takes under the guard, or the factor on it."""
+    """One repaired operand: its place, its text, and the value that it takes under the guard, or the factor on it."""
 
     path: str
     line: int
     code: str
     value: float
     factor: bool = False
-    what: str = ""  # what a change of structure does, in words
+    what: str = ""  # description of a change of structure
 
 
 @dataclass(frozen=True, slots=True)
 class Attempt:
-    """A candidate that came near, and what became of it; `reason` is empty for the one that was accepted.
+    """A promising candidate and its outcome; `reason` is empty for the accepted one.
 
-    `mean` is its reward per episode over `episodes`, which were `fresh` where nothing had been chosen by them.
+    `mean` is its reward per episode over `episodes`; `fresh` ones were not used to choose it.
     """
 
     what: str
@@ -217,7 +217,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class Partial:
-    """A change that helps and is no repair: rewards an episode over the program as it is, on fresh seeds.
+    """A change that helps but is no repair: reward gained per episode over the unchanged program, on fresh seeds.
 
     `low` and `designed_low` are lower bounds; `patch` is a path below the root.
     """
@@ -235,9 +235,9 @@ class Partial:
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """What the search ended with. `guard` is Python as written in the patch; `diff` is empty when not accepted.
+    """The result of the search. `guard` is the Python condition of the patch; `diff` is empty unless accepted.
 
-    `mean` is the reward per episode of what was refused, in `episodes`; `history` is what was tried, in order.
+    `mean` is the reward per episode of the rejected candidate over `episodes`; `history` lists the attempts in order.
     """
 
     accepted: bool
@@ -249,25 +249,25 @@ class Repair:
     mean: float | None = None
     episodes: int = 0
     history: tuple[Attempt, ...] = ()
-    partial: Partial | None = None  # where none was accepted
+    partial: Partial | None = None  # set only if no repair was accepted
 
 
 @dataclass(frozen=True, slots=True)
 class Band:
-    """A part of the range that a drift is drawn from; `part` names the range in a dictionary, else it is empty."""
+    """An interval of a drift's range; `part` names the range in a dictionary, else it is empty."""
 
     part: str
     low: float
     high: float
 
     def __str__(self) -> str:
-        """Write it for people: `mud 0.1 to 0.27`."""
+        """Return the displayed text: `mud 0.1 to 0.27`."""
         return f"{self.part or 'sizes'} {self.low:.3g} to {self.high:.3g}"
 
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """A range and what was drawn from it: by world, aligned with its totals."""
+    """A range and the numbers drawn from it, by world, aligned with the totals."""
 
     part: str
     low: float
@@ -278,14 +278,14 @@ class Sizes:
 
     @property
     def bands(self) -> tuple[Band, ...]:
-        """Return the range in equal parts."""
+        """Divide the range into equal intervals."""
         ends = [self.low + (self.high - self.low) * at / self.BANDS for at in range(self.BANDS)] + [self.high]
         return tuple(Band(self.part, low, high) for low, high in pairwise(ends))
 
 
 @dataclass(frozen=True, slots=True)
 class SearchTrace:
-    """Average-total-reward curve of one search: `totals[i]` is the reward of its i-th episode, `labels[i]` what ran."""
+    """Learning curve of one search: `totals[i]` is the total reward of its i-th episode, `labels[i]` its candidate."""
 
     method: str
     totals: tuple[float, ...]
@@ -294,7 +294,7 @@ class SearchTrace:
 
 @dataclass(frozen=True)
 class ListComparison:
-    """One taint list under both worlds. Arrays have shape (cells, sites); NaN where never visited."""
+    """One taint list in both worlds. Arrays have shape (cells, sites); NaN for cells never visited."""
 
     taint_list: TaintList
     offline: Matrix
@@ -304,9 +304,9 @@ class ListComparison:
 
 @dataclass(frozen=True, slots=True)
 class FormulaWorld:
-    """A formula in one world: mean and least robustness, in how many episodes it was judged and violated.
+    """A formula in one world: mean and least robustness, and numbers of episodes that judged and violated it.
 
-    `first` is the earliest time in an episode at which it was violated, in s.
+    `first` is the earliest time of a violation in an episode, in s.
     """
 
     robustness: float
@@ -318,7 +318,7 @@ class FormulaWorld:
 
 @dataclass(frozen=True)
 class FormulaRow:
-    """What a formula came to by world: offline, online, repaired, nominal_repaired."""
+    """The results of a formula by world: offline, online, repaired, nominal_repaired."""
 
     formula: str
     worlds: Mapping[str, FormulaWorld]
@@ -326,7 +326,7 @@ class FormulaRow:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Everything that an on-line run found: what terminal, JSON result and report page are made from."""
+    """The result of a comparison, shown by the terminal, the JSON file and the report page."""
 
     test: str
     drift: str | None
@@ -342,14 +342,18 @@ class Comparison:
     searches: tuple[SearchTrace, ...] = ()
     repair: Repair | None = None
     notes: tuple[str, ...] = ()
-    ranking: str = ""  # how certain the order of the culprits is
-    parts: Mapping[str, tuple[float, float]] = field(default_factory=dict)  # part → mean off-line, on-line
-    lost: Mapping[str, tuple[Cell, ...]] = field(default_factory=dict)  # part → where it earns less on-line
-    target: str = ""  # the test as it is typed where pytest was started
-    flags: tuple[str, ...] = ()  # options of the run that are not the default ones
-    changes: Mapping[Cell, float] = field(default_factory=dict)  # how far on-line differs, by cell
-    stated: Mapping[str, Guarantee] = field(default_factory=dict)  # of the worlds that `totals` names
+    ranking: str = ""  # confidence in the order of the culprits
+    parts: Mapping[str, tuple[float, float]] = field(
+        default_factory=dict
+    )  # part → mean, designed and deployed
+    lost: Mapping[str, tuple[Cell, ...]] = field(
+        default_factory=dict
+    )  # part → cells where deployed earns less
+    target: str = ""  # the test as a pytest argument
+    flags: tuple[str, ...] = ()  # non-default options of the run
+    changes: Mapping[Cell, float] = field(default_factory=dict)  # by cell, difference between the worlds
+    stated: Mapping[str, Guarantee] = field(default_factory=dict)  # by the worlds of `totals`
     formulas: tuple[FormulaRow, ...] = ()
-    sizes: Mapping[str, Sizes] = field(default_factory=dict)  # by part of the drift, where it has a range
-    purpose: str = ""  # what the test is for and what earns reward: the first paragraph of its docstring
-    permanent: bool = False  # whether the drift is for good, so that the designed world is the old one
+    sizes: Mapping[str, Sizes] = field(default_factory=dict)  # by part of the drift, if it has a range
+    purpose: str = ""  # purpose and reward of the test: the first paragraph of its docstring
+    permanent: bool = False  # whether the drift is permanent, so that the designed world is the old one

@@ -1,7 +1,7 @@
-"""The test's own modules: its file, what that imports from below the root, conftest files; and what changed in them.
+"""Detect changes in a test's modules: its file, modules it imports from below the root, and conftest files.
 
-World, reward and helpers decide what a recording means as much as the node does. They are told by definition, without
-comments, layout and docstrings; marker arguments and other tests are left out. Data files are not looked at.
+World, reward and helpers determine a recording as much as the node does. Each definition has a digest that ignores
+comments, layout and docstrings; marker arguments, other tests and data files are left out.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
 DIGITS = 12  # of a digest, in hexadecimal
-SHOWN = 3  # definitions that a sentence names of a file, and files
-REST = ""  # the name of what is no definition
+SHOWN = 3  # at most so many definitions of a file, and files, in a message
+REST = ""  # the key of statements outside definitions
 
 Digests = Mapping[str, Mapping[str, str]]  # file, relative to the root → definition → digest
 
 
 def digests(test: str, root: Path, nodes: Collection[Path]) -> dict[str, dict[str, str]]:
-    """Return the digests of a test, named by its node id. Files that cannot be read or parsed are left out."""
+    """Return the digests of a test, given by node id. Skip files that cannot be read or parsed."""
     name, *parts = test.partition("[")[0].split("::")
     found: dict[str, dict[str, str]] = {}
     first = (root / name).resolve()
@@ -30,9 +30,9 @@ def digests(test: str, root: Path, nodes: Collection[Path]) -> dict[str, dict[st
 
 
 def modules(first: Path, root: Path, nodes: Collection[Path] = ()) -> Iterator[tuple[Path, ast.Module]]:
-    """Yield a test's file, what that imports from below the root, and its conftest files, each with its tree.
+    """Yield a test's file, the modules it imports from below the root, and its conftest files, each with its tree.
 
-    `nodes` are left out, and what cannot be read or parsed.
+    Skip `nodes`, and files that cannot be read or parsed.
     """
     waiting = [first, *_conftests(first.parent, root.resolve())]
     seen = {path.resolve() for path in nodes}
@@ -50,7 +50,7 @@ def modules(first: Path, root: Path, nodes: Collection[Path] = ()) -> Iterator[t
 
 
 def changes(before: Digests, after: Digests) -> Iterator[str]:
-    """Yield what changed, file by file; nothing where nothing was recorded, as by older versions."""
+    """Yield the changes of each file; nothing if the recording has no digests, as from older versions."""
     if not before:
         return
     for path in sorted({*before, *after}):
@@ -68,13 +68,13 @@ def changes(before: Digests, after: Digests) -> Iterator[str]:
 
 
 def remark(before: Digests, after: Digests) -> Iterator[str]:
-    """Yield a sentence that says what changed since the recording; none where nothing did."""
+    """Yield a sentence on what changed since the recording, if anything did."""
     found = list(changes(before, after))
     if found:
         more = f" and {len(found) - SHOWN} more files" if len(found) > SHOWN else ""
         yield (
-            f"the test itself was edited since the recording: {', '.join(found[:SHOWN])}{more}. What differs may come "
-            "from that and not from the drift. Record again with --tarl-record once the change is meant to stay."
+            f"the test itself was edited since the recording: {', '.join(found[:SHOWN])}{more}. Differences may come "
+            "from these edits instead of the drift. To keep the edits, record again with --tarl-record."
         )
 
 
@@ -84,7 +84,7 @@ def _conftests(folder: Path, root: Path) -> list[Path]:
 
 
 def _imported(tree: ast.Module, path: Path, root: Path) -> list[Path]:
-    """Return the files that imports anywhere in a module may mean; they need not exist."""
+    """Return the candidate files of all imports in a module; they need not exist."""
     package = path.parent
     while (package / "__init__.py").exists() and package != root:
         package = package.parent
@@ -112,7 +112,7 @@ def _files(base: Path, module: str) -> Iterator[Path]:
 
 
 def _definitions(tree: ast.Module, test: Collection[str] | None) -> dict[str, str]:
-    """Return the digest of every definition; `test` holds the names of class and function in the test's own file."""
+    """Return the digest of every definition; `test` holds the class and function names of the test in its own file."""
     for node in ast.walk(tree):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
             node.decorator_list = [one for one in node.decorator_list if not _marks(one)]
@@ -133,7 +133,7 @@ def _definitions(tree: ast.Module, test: Collection[str] | None) -> dict[str, st
 
 
 def _named(statement: ast.stmt) -> Iterator[tuple[str, str]]:
-    """Yield the definitions that a statement makes, methods apart, with their text."""
+    """Yield the definitions of a statement with their text; methods are separate definitions."""
     if isinstance(statement, (ast.Import, ast.ImportFrom)) or (
         isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
     ):

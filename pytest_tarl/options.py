@@ -1,4 +1,4 @@
-"""What the user asked of a run: its options, checked. Frozen, without pytest."""
+"""The checked options of a run. Frozen, without pytest."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ EDITS = ("auto", "use", "definition")
 RANKINGS = ("repair", "full")
 UTILITIES = ("batch", "sarsa", "expected-sarsa", "td-lambda")
 ROS_KINDS = ("embedded", "real", "auto")
-MOST_EPISODES = 10**6  # that a search may spend
+MOST_EPISODES = 10**6  # upper limit of --tarl-budget
 
 
 @dataclass(frozen=True)
@@ -28,45 +28,45 @@ class Options:
     mode: Mode = "plain"
     seed: int = 0
     drift: str | None = None
-    episodes: int | None = None  # overrides the marker off-line, the default on-line
+    episodes: int | None = None  # overrides the marker when recording, 40 when comparing
     alpha: float = 0.05
     searches: tuple[str, ...] = ("sweep",)
     localize: str = "repair"  # what ends the search: an accepted repair, or the ranking of all sites
-    budget: int = 300  # episodes that a search may spend
-    seconds: float | None = None  # that a search may take instead
-    edit: str = "auto"  # where a repair of a named constant without a condition is written
-    structure: bool = True  # whether changes of structure are tried where no constant suffices
+    budget: int = 300  # limit of a search, in episodes
+    seconds: float | None = None  # limit of a search in seconds, instead of episodes
+    edit: str = "auto"  # where to write an unconditional repair of a named constant
+    structure: bool = True  # whether to change the structure if no constant suffices
     strict: bool = False
     utility: str = "batch"
-    workers: int = 1  # episodes at a time, each in a process of its own when more than one
+    workers: int = 1  # parallel episodes; each has its own process if there are several
     cluster: str | None = None  # address of a Dask scheduler
     ros: str = "embedded"
-    looks: int | None = None  # at the verdict, at most
-    log: Path | None = None  # missions of a robot, instead of on-line episodes
-    holm: bool = False  # whether verdicts are corrected over all tests of the run
-    comparisons: int = 1  # how many those are
-    bags: tuple[Path, ...] = ()  # recorded missions, likewise
+    looks: int | None = None  # maximum number of interim looks at the verdict
+    log: Path | None = None  # missions of a robot, instead of simulated ones
+    holm: bool = False  # whether to correct verdicts over all tests of the run
+    comparisons: int = 1  # number of comparisons to correct for
+    bags: tuple[Path, ...] = ()  # recorded missions, instead of simulated ones
 
     ONLINE_EPISODES = 40
     LOOKS = 3
 
     @property
     def most_looks(self) -> int:
-        """Return how often the verdict may be looked at.
+        """Return the maximum number of looks at the verdict.
 
-        Once before a repair, which needs the region whole, and before a correction, which asks for smaller p-values
-        than those at which a run may end early.
+        One before a repair, which needs the whole region, and under a correction, whose p-values must be smaller than
+        those at which a run may end early.
         """
         return self.looks or (1 if self.mode == "repair" or self.holm else self.LOOKS)
 
     @property
     def learner(self) -> str:
-        """Return the rule that learns event by event, when one is asked for; empty for the batch solution."""
+        """Return the name of the incremental learning rule; empty for the batch solution."""
         return "" if self.utility == "batch" else self.utility
 
     @property
     def flags(self) -> tuple[str, ...]:
-        """Return the options that shape a comparison and are not the default ones, as they are typed."""
+        """Return the non-default options that affect a comparison, as command line arguments."""
         chosen = {
             "--tarl-episodes": (self.episodes, None),
             "--tarl-alpha": (self.alpha, 0.05),
@@ -86,20 +86,16 @@ class Options:
 
 
 def options(given: Mapping[str, Any]) -> Options:
-    """Check the flags of a run. Raises SettingsError with a sentence."""
+    """Check the flags of a run. Raise SettingsError for an invalid one."""
     _check_modes(given)
     searches = tuple(dict.fromkeys(given["search"] or ("sweep",)))
     for name in searches:
-        if not re.fullmatch(
-            r"[\w.]+:\w+", name
-        ):  # an optimiser of the user's own is looked for by the session
+        if not re.fullmatch(r"[\w.]+:\w+", name):  # the session imports a user's optimiser
             _known("--tarl-search", name, (*SEARCHES, "module:factory"))
     localize = given["localize"] or "repair"
     _known("--tarl-localize", localize, RANKINGS)
     if given["localize"] and not given["repair"]:
-        raise SettingsError(
-            "--tarl-localize goes with --tarl-repair: sites are ranked by what a search finds."
-        )
+        raise SettingsError("--tarl-localize needs --tarl-repair: the search ranks the sites.")
     _known("--tarl-utility", given["utility"], UTILITIES)
     _known("--tarl-edit", given["edit"], EDITS)
     _known("--tarl-ros", given["ros"], ROS_KINDS)
@@ -134,29 +130,29 @@ def options(given: Mapping[str, Any]) -> Options:
 
 
 def _check_modes(given: Mapping[str, Any]) -> None:
-    """Raise SettingsError where flags do not go together."""
+    """Raise SettingsError for flags that conflict or need another flag."""
     if not (given["record"] or given["online"] or given["repair"]):
         stray = next(
             (name for name in ("drift", "search", "localize", "strict", "log", "bag", "holm") if given[name]),
             "drift",
         )
-        also = ", or with --tarl-record for a drift that is for good" if stray == "drift" else ""
-        raise SettingsError(f"--tarl-{stray} goes with --tarl-online{also}, and does nothing without it.")
+        also = ", or --tarl-record for a permanent drift" if stray == "drift" else ""
+        raise SettingsError(f"--tarl-{stray} needs --tarl-online{also}.")
     if given["record"] and given["online"]:
         raise SettingsError("--tarl-record and --tarl-online are two runs: record first, then compare.")
     if given["repair"] and not given["online"]:
-        raise SettingsError("--tarl-repair goes with --tarl-online: it repairs what the comparison finds.")
+        raise SettingsError("--tarl-repair needs --tarl-online: it repairs what the comparison finds.")
     if given["holm"] and not given["online"]:
-        raise SettingsError("--tarl-holm goes with --tarl-online: it corrects the verdicts of its tests.")
+        raise SettingsError("--tarl-holm needs --tarl-online: it corrects the verdicts of comparisons.")
     if given["holm"] and given["repair"]:
         raise SettingsError(
-            "--tarl-holm and --tarl-repair are two runs: a verdict is corrected when all tests have run, a repair is "
-            "searched for while its test runs. Compare with --tarl-holm first, then repair the tests that are degraded."
+            "--tarl-holm and --tarl-repair are two runs: verdicts are corrected after all tests, but a repair is "
+            "searched during its test. Compare with --tarl-holm first, then repair the degraded tests."
         )
 
 
 def _budget(text: str) -> tuple[int, float | None]:
-    """Return how many episodes, or else how many seconds, a search may take: `300`, `90s`, `5min`, `1h`."""
+    """Return the limit of a search in episodes or else in seconds: `300`, `90s`, `5min`, `1h`."""
     found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*(s|min|h)?", text.strip())
     unit = found[2] if found else None
     if found is None or float(found[1]) <= 0 or (unit is None and not found[1].isdecimal()):
@@ -169,7 +165,7 @@ def _budget(text: str) -> tuple[int, float | None]:
 
 
 def _workers(text: str) -> int:
-    """Return how many episodes are run at a time; `auto` shares the cores with the workers of pytest-xdist."""
+    """Return the number of parallel episodes; `auto` shares the cores with the workers of pytest-xdist."""
     if text != "auto":
         return int(
             number_within("--tarl-workers", "it", int(text) if text.isdecimal() else text, int, 1, 1024)
@@ -190,18 +186,18 @@ def _log(given: Mapping[str, Any]) -> Path | None:
     if given["log"] is None:
         return None
     if not given["online"]:
-        raise SettingsError("--tarl-log goes with --tarl-online: its missions are the on-line side.")
+        raise SettingsError("--tarl-log needs --tarl-online: the comparison reads its missions.")
     for other in ("repair", "drift", "episodes"):
         if given[other]:
             raise SettingsError(
-                f"--tarl-log and --tarl-{other} exclude each other: a log holds what happened, and nothing can be run "
-                "again in it. Model what it shows as a drift scenario of the marker, and repair that."
+                f"--tarl-log and --tarl-{other} exclude each other: a log cannot be run again. Model its world as a "
+                "drift scenario of the marker, and use that."
             )
     return Path(given["log"]).absolute()
 
 
 def _typed(path: Path) -> str:
-    """Return a path as it is typed in the working directory."""
+    """Return a path relative to the working directory."""
     return str(path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path)
 
 
@@ -210,22 +206,22 @@ def _bags(given: Mapping[str, Any]) -> tuple[Path, ...]:
     if not paths:
         return ()
     if not given["online"]:
-        raise SettingsError("--tarl-bag goes with --tarl-online: its missions are the on-line side.")
+        raise SettingsError("--tarl-bag needs --tarl-online: the comparison replays its missions.")
     for other in ("repair", "drift", "episodes", "log"):
         if given[other]:
             raise SettingsError(
-                f"--tarl-bag and --tarl-{other} exclude each other: a bag holds what happened, and nothing can be run "
-                "again in it. Model what it shows as a drift scenario of the marker, and repair that."
+                f"--tarl-bag and --tarl-{other} exclude each other: a bag cannot be run again. Model its world as a "
+                "drift scenario of the marker, and use that."
             )
     if given["ros"] == "real":
-        raise SettingsError("--tarl-bag replays on the embedded ROS: leave --tarl-ros=real out.")
+        raise SettingsError("--tarl-bag replays on the embedded ROS: remove --tarl-ros=real.")
     return tuple(dict.fromkeys(Path(path).absolute() for path in paths))
 
 
 def number_within(
     where: str, name: str, value: Any, kind: type[int] | type[float], low: float, high: float
 ) -> Any:
-    """Return a number of that kind if it lies within the bounds. Raises SettingsError."""
+    """Return the value if it is a number of that kind within the bounds. Raise SettingsError otherwise."""
     takes = int if kind is int else (int, float)
     if isinstance(value, bool) or not isinstance(value, takes) or not low <= value <= high:
         what = "a whole number" if kind is int else "a number"

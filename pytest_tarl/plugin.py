@@ -1,4 +1,4 @@
-"""The pytest hooks of TARL: options, marker and fixtures. What a run with TARL's flags does is in session.py."""
+"""The pytest hooks of TARL: options, marker and fixtures. Runs with TARL's flags are in session.py."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MARKER = (
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Declare the flags; those that choose a mode do nothing unless given."""
+    """Declare the flags and ini options."""
     group = parser.getgroup("tarl", "TARL: record, compare and repair robot code in simulation")
     for flag in FLAGS:
         group.addoption(flag.name, **flag.declaration())
@@ -43,7 +43,7 @@ def pytest_load_initial_conftests(parser: pytest.Parser, args: list[str]) -> Gen
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Register the marker, and the session object when a mode is asked for."""
+    """Register the marker, and the session object if a mode is selected."""
     config.addinivalue_line("markers", MARKER)
     held_interpreter.prepare()
     if _asked(config):
@@ -57,7 +57,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.fixture
 def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
-    """The episode's random numbers, in-process ROS, sensors and reward."""
+    """Random numbers, in-process ROS, sensors and reward of an episode."""
     _require_extra("The fixture `tarl`")
     from pytest_tarl.repeating import opened
 
@@ -67,7 +67,7 @@ def tarl(request: pytest.FixtureRequest) -> Iterator[Tarl]:
 
 @pytest.fixture
 def tarl_drift(request: pytest.FixtureRequest) -> Any:
-    """The value of the drift scenario that this episode runs under; off-line None, or a change that is the design."""
+    """The value of this episode's drift scenario; without one, the permanent drift of the design, or None."""
     _require_extra("The fixture `tarl_drift`")
     from pytest_tarl.repeating import drift_value
 
@@ -76,7 +76,7 @@ def tarl_drift(request: pytest.FixtureRequest) -> Any:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, object]:
-    """Judge the formulas of an episode when its body is over."""
+    """Evaluate the formulas of an episode after its body."""
     episode: Any = pyfuncitem.funcargs.get("tarl")
     if episode is None or pyfuncitem.get_closest_marker("tarl") is None:
         return (yield)
@@ -93,7 +93,7 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Generator[None, object, o
 def pytest_runtest_makereport(
     item: pytest.Item, call: pytest.CallInfo[None]
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Keep what an episode ended with, and show a user's mistake as a sentence."""
+    """Keep the error of an episode, and show a user's mistake as a sentence."""
     report = yield
     if (
         call.excinfo is not None
@@ -133,7 +133,9 @@ def _require_extra(what: str) -> None:
 
 
 def _ours(error: BaseException) -> bool:
-    return type(error).__module__ == "pytest_tarl.errors"  # told by name: a plain run imports nothing of ours
+    return (
+        type(error).__module__ == "pytest_tarl.errors"
+    )  # compare names: a plain run must not import our modules
 
 
 def _at_line(excinfo: pytest.ExceptionInfo[BaseException], root: Path) -> str:
@@ -170,7 +172,7 @@ def _options(config: pytest.Config) -> Options:
 
 
 def _look_for_plugged(config: pytest.Config, options: Options) -> None:
-    """Look for searches of the user's own now, not after all the episodes of a comparison. Raises SettingsError."""
+    """Import a user's searches before the episodes of a comparison run. Raise SettingsError if one is missing."""
     named = [name for name in options.searches if ":" in name and options.mode == "repair"]
     if named:
         from pytest_tarl.searching.ask_tell import factory

@@ -1,6 +1,6 @@
-"""A line on the terminal that says how far the episodes are, how fast they run, and how long they will take.
+"""Show progress on a terminal: episodes done, their rate, and the time left.
 
-It is shown at once and at most ten times a second. The clock decides what is shown, never what is computed.
+The line appears at once and changes at most ten times a second. The clock affects only the display.
 """
 
 from __future__ import annotations
@@ -10,12 +10,12 @@ from dataclasses import dataclass, field
 from time import monotonic
 
 INTERVAL = 0.1  # seconds between two updates
-SETTLED = 0.5  # seconds after which a rate is worth showing
+SETTLED = 0.5  # seconds before the rate is stable enough to show
 
 
 @dataclass
 class ProgressLine:
-    """Episodes done of those planned, phase by phase; `write` replaces the line that was written before."""
+    """Episodes done and planned in each phase; `write` replaces the previous line."""
 
     name: str
     write: Callable[[str], None]
@@ -23,11 +23,11 @@ class ProgressLine:
     done: int = 0
     total: int = 0
     _phase: str = ""
-    _begun: tuple[float, int] = field(default=(0.0, 0))  # when the phase began, and what was done then
+    _begun: tuple[float, int] = field(default=(0.0, 0))  # start of the phase, and episodes done at that time
     _shown: float = 0.0
 
     def __call__(self, done: int, total: int, phase: str) -> None:
-        """Show that so many episodes of a phase are done."""
+        """Show the number of finished episodes of a phase."""
         now = self.clock()
         fresh = phase != self._phase or done < self.done
         if fresh:
@@ -46,7 +46,7 @@ class ProgressLine:
 
 
 def duration(seconds: float) -> str:
-    """Return a time in the two units that matter: `8 s`, `3 min 20 s`, `2 h 5 min`."""
+    """Return a time in its two largest units: `8 s`, `3 min 20 s`, `2 h 5 min`."""
     whole = max(0, round(seconds))
     if whole < 60:
         return f"{whole} s"

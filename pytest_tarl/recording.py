@@ -1,4 +1,4 @@
-"""`--tarl-record`: run the test off-line, keep what its software is worth."""
+"""`--tarl-record`: run the test in its designed world and record the utility of its software."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ Progress = Callable[[int, int, str], None]
 Tell = Callable[[str], None]
 Members = Sequence[Sequence[int]]
 
-PILOTS = 20  # episodes that bins are learned from
+PILOTS = 20  # episodes for learning bins
 
 NOT_REPRODUCIBLE = (
     "not reproducible: two runs with the same seed differ. Draw all random numbers from tarl.rng(name) and read no "
-    "wall clock, or the comparison will see differences that are none."
+    "wall clock, or comparisons will report spurious differences."
 )
 
 
 @dataclass(frozen=True)
 class Recorded:
-    """Episodes of one world: the first one's trace, the statistics of all, message types by sensor topic.
+    """The episodes of one world: the first one's trace, the statistics of all, message types by sensor topic.
 
-    `sarsa` has learned a table of each taint list, in the order of the seeds, by the rule that `learner` names.
+    `sarsa` holds a learner per taint list, updated in the order of the seeds by the rule `learner`.
     """
 
     first: Trace
@@ -66,7 +66,7 @@ class Recorded:
 
 @dataclass(frozen=True)
 class RecordResult:
-    """What `--tarl-record` has to tell; nothing was written when `problem` is not empty."""
+    """The result of `--tarl-record`; nothing was written if `problem` is not empty."""
 
     line: str
     problem: str = ""
@@ -86,11 +86,11 @@ def record(
     drift: str | None = None,
     world: Digests | None = None,
 ) -> RecordResult:
-    """Run the off-line episodes and write the fixture, unless too many of them fail.
+    """Run the episodes and write the recording, unless too many of them fail.
 
-    `world` are digests of the test's own modules. With a `drift`, which must be one for good, its world is the design
-    from now on. What is wrong with the fixture of before is told first. Raises FixtureError, before any episode, where
-    nothing can be written.
+    `world` holds the digests of the test's modules. A `drift`, which must be permanent, becomes part of the design.
+    Problems of the previous recording are reported first. Raise FixtureError, before any episode, if the file cannot
+    be written.
     """
     old, broken = _previous(path)
     for note in broken:
@@ -129,7 +129,7 @@ def record(
 
 
 def _refused(settling: Settling, recorded: Recorded) -> str:
-    """Say why no fixture is written; empty where one is."""
+    """Return why no recording is written; empty if one is."""
     if settling.failing:
         return _unfinished(settling.failing, recorded.failures)
     unjudged = never_judged(recorded.sample.judgements)
@@ -139,7 +139,7 @@ def _refused(settling: Settling, recorded: Recorded) -> str:
 def read_values(
     rollout: Rollout, seed: int, progress: Progress, drift: str | None = None
 ) -> dict[str, list[float]]:
-    """Return what the sensors read whose bins are to be learned, from episodes that nothing else is learned from."""
+    """Return the values of sensors with bins to learn, by sensor name, from episodes used for nothing else."""
     read: dict[str, list[float]] = {}
     plans = [EpisodePlan(each, drift) for each in episode_seeds(seed, "bins", PILOTS)]
     for done, episode in enumerate(in_order(rollout, plans)):
@@ -158,7 +158,7 @@ def run_episodes(
     learner: str = "sarsa",
     enough: Callable[[Sequence[Sample]], bool] | None = None,
 ) -> Recorded:
-    """Run one instrumented episode per seed, or as many as are enough, which is asked after each of them.
+    """Run one instrumented episode per seed, until `enough` returns true.
 
     Raises:
         RecordingError: the test itself is broken, or the node never waits.
@@ -171,7 +171,7 @@ def run_episodes(
     topics: dict[str, str] = {}
     plans = (EpisodePlan(seed, drift, record=True) for seed in seeds)
     for done, (seed, episode) in enumerate(zip(seeds, in_order(rollout, plans), strict=True)):
-        progress(done, len(seeds), drift or "off-line")
+        progress(done, len(seeds), drift or "episodes")
         run = sound(episode.result())
         first = first or run.trace
         counted = sample(run.trace, seed, run.passed, members)
@@ -185,34 +185,32 @@ def run_episodes(
         if enough is not None and enough(samples):
             break
     if first is None:
-        raise RecordingError("There is nothing to learn from: no episode was asked for.")
+        raise RecordingError("There is nothing to learn from: 0 episodes were requested.")
     return Recorded(first, merge(samples), learners, topics, tuple(failures), learner, tuple(notes))
 
 
 def sound(run: EpisodeRun) -> EpisodeRun:
-    """Return the run. Raises RecordingError where it was neither a success nor a failed mission, or got stuck."""
+    """Return the run. Raise RecordingError if it is neither a success nor a failed mission, or got stuck."""
     if run.stuck:
-        raise RecordingError(
-            f"Stopped at an episode (seed {run.plan.seed}) that came to no end: {run.failure}"
-        )
+        raise RecordingError(f"Stopped at an episode (seed {run.plan.seed}) that did not end: {run.failure}")
     if run.broken:
-        raise RecordingError(f"An episode (seed {run.plan.seed}) broke outside of the mission:\n{run.broken}")
+        raise RecordingError(f"An episode (seed {run.plan.seed}) failed outside the mission:\n{run.broken}")
     return run
 
 
 def sarsa_tables(recorded: Recorded, scales: Sequence[float]) -> tuple[Floats, ...]:
-    """Return the learned table of every taint list, shape (cells, sites); `scales` holds each list's F."""
+    """Return the learned table of each taint list, shape (cells, sites); `scales` holds each list's mean flow F."""
     cells = recorded.sample.cells
     return tuple(one.table(cells, scale) for one, scale in zip(recorded.sarsa, scales, strict=True))
 
 
 def mean_flows(offline: Sample) -> tuple[float, ...]:
-    """Return F of every taint list."""
+    """Return the mean flow F of every taint list."""
     return tuple(one.mean_flow for one in offline.lists)
 
 
 def identical(first: Trace, second: Trace) -> bool:
-    """Tell whether two traces are the same to the last bit."""
+    """Return whether two traces are identical to the last bit."""
     pairs = [(getattr(first, f.name), getattr(second, f.name)) for f in fields(first)]
     return all(
         np.array_equal(a, b, equal_nan=True) if isinstance(a, np.ndarray) else _plain(a) == _plain(b)
@@ -227,15 +225,16 @@ def _plain(value: object) -> object:
 def _unfinished(failing: str, failures: Sequence[str]) -> str:
     first = f" The first failure: {failures[0].rstrip('.')}." if failures else ""
     return (
-        f"{failing}, so this is not yet the software as designed and no utility was written.{first} Fix the node, or "
+        f"{failing}, so the software does not yet work as designed, and no recording was written.{first} Fix the "
+        "node, or "
         "lower min_success on the marker."
     )
 
 
 def _unjudged(formula: str, recorded: Sample) -> str:
     return (
-        f"The formula {formula!r} can never be judged: a part of it is looked at later than any of the "
-        f"{recorded.episodes} episodes lasts, so no utility was written. Shorten its bounds, or let the episodes last."
+        f"The formula {formula!r} can never be judged: its time bounds exceed the length of all {recorded.episodes} "
+        "episodes, so no recording was written. Shorten its bounds, or run longer episodes."
     )
 
 
@@ -244,22 +243,22 @@ def _silent_lists(recorded: Sample, plan: Plan) -> list[str]:
     silent = [
         t.name
         for t, one in zip(plan.lists, recorded.lists, strict=True)
-        if not one.visits.state.any()  # every episode visits its start, which is state 0
+        if not one.visits.state.any()  # state 0 is the start of every episode, so ignore it
     ]
     return [f"no step of {name} was executed: does the test drive that part of the node?" for name in silent]
 
 
 def _previous(path: Path) -> tuple[Sample | None, tuple[str, ...]]:
-    """Return what was recorded before, and why it cannot be read where something is there."""
+    """Return the previous recording, or else why an existing one cannot be read."""
     try:
         return (fixtures.load(path).sample if os.path.lexists(path) else None), ()
     except FixtureError as problem:
-        return None, (f"{problem.what} What is recorded now replaces it.",)
+        return None, (f"{problem.what} The new recording replaces it.",)
 
 
 def _summary(new: Sample, old: Sample | None) -> str:
     before = f"{old.total.mean():.3g} → " if old is not None else ""
     return (
-        f"off-line ATR {before}{new.total.mean():.3g}, success {new.passed.mean():.1%}, "
+        f"recorded ATR {before}{new.total.mean():.3g}, success {new.passed.mean():.1%}, "
         f"{new.episodes} episodes, {len(new.cells)} cells"
     )

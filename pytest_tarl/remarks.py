@@ -1,4 +1,4 @@
-"""What a comparison remarks beside its verdict: what was lost, what is new, what the reward does not say."""
+"""Remarks on a comparison beside its verdict: lost sites, new situations, failures that the reward does not show."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from pytest_tarl.options import Options
 from pytest_tarl.searching.accept import PASS_RATE_LOSS
 from pytest_tarl.sensors import Sensor
 
-MOST_NAMED = 3  # lost sites that a note names
+MOST_NAMED = 3  # lost sites named in a note
 
 
 def of_comparison(
     fixture: Fixture, plan: Plan, offline: Sample, online: Sample, difference: Difference, options: Options
 ) -> tuple[str, ...]:
-    """Return what is to be said of two samples that were compared, over the same cells."""
+    """Return the remarks on two compared samples over the same cells."""
     return (
         *unheard_of(offline, online, difference, fixture.sensors),
         *lost_sites(fixture, plan),
@@ -35,7 +35,7 @@ def of_comparison(
 
 
 def early(online: Sample, planned: int) -> tuple[str, ...]:
-    """Tell that not all episodes were needed."""
+    """Yield a remark if the run stopped early."""
     if online.episodes == planned:
         return ()
     return (
@@ -44,7 +44,7 @@ def early(online: Sample, planned: int) -> tuple[str, ...]:
 
 
 def lost_sites(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
-    """Tell which recorded sites the node no longer has; their slices are lost, verdict and region are not."""
+    """Yield a remark on recorded sites that the node no longer has: only their slices are lost."""
     present = {place.id for place in plan.places}
     gone: dict[str, SitePlace] = {}
     for one in fixture.lists:
@@ -56,14 +56,14 @@ def lost_sites(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
     return (
         (
             f"the node was edited since the recording: the slices of {', '.join(named)}{more} are lost; verdict and "
-            "region stand. Record again with --tarl-record once the change is meant to stay."
+            "region remain valid. To keep the edit, record again with --tarl-record."
         ),
         *_moved(fixture, plan),
     )
 
 
 def _moved(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
-    """Tell which recorded sites stand on another line: they keep their slices."""
+    """Describe recorded sites that moved to another line: they keep their slices."""
     now = {place.id: place for place in plan.places}
     moved = {
         f"`{site.code}` from line {site.line} to {now[site.id].line}": None
@@ -75,11 +75,11 @@ def _moved(fixture: Fixture, plan: Plan) -> tuple[str, ...]:
         return ()
     named = ", ".join(list(moved)[:MOST_NAMED])
     more = f" and {len(moved) - MOST_NAMED} more" if len(moved) > MOST_NAMED else ""
-    return (f"beside that, {named}{more} moved and keep their slices.",)
+    return (f"{named}{more} moved and keep their slices.",)
 
 
 def failing(offline: Sample, online: Sample, verdict: Verdict, options: Options) -> tuple[str, ...]:
-    """Tell when missions fail more often on-line and the reward does not say so."""
+    """Yield a remark if more missions fail in the deployed world without a loss of reward."""
     before, after = (world.passed.astype(np.float64) for world in (offline, online))
     draws = seeds.generator(options.seed, "success")
     if verdict.result == "degraded" or before.mean() - after.mean() <= PASS_RATE_LOSS:
@@ -88,9 +88,9 @@ def failing(offline: Sample, online: Sample, verdict: Verdict, options: Options)
         return ()
     return (
         (
-            f"missions succeed in {after.mean():.0%} of the on-line episodes and in {before.mean():.0%} off-line, but "
-            "no loss of reward was found: a mission that ends early may earn more than one that is carried on. Let "
-            "the reward count a failed mission."
+            f"missions succeed in {after.mean():.0%} of the deployed episodes and in {before.mean():.0%} of the "
+            "recorded ones, but no loss of reward was found: a mission that ends early may earn more than one that "
+            "continues. Add a negative reward for a failed mission."
         ),
     )
 
@@ -98,25 +98,25 @@ def failing(offline: Sample, online: Sample, verdict: Verdict, options: Options)
 def unheard_of(
     offline: Sample, online: Sample, difference: Difference, sensors: Sequence[Sensor]
 ) -> Iterator[str]:
-    """Say so where (nearly) every on-line situation is new, and what was compared all the same."""
+    """Yield a remark if (nearly) every deployed situation is new, and on what was compared instead."""
     if difference.verdict.result == "no difference" or not apart(offline, online):
         return
     names = [sensors[d].name for d in difference.region.without]
     if names:
         left = " and ".join(names)
         yield (
-            f"no on-line situation was seen off-line, because of {left}: statements cannot be compared in one and the "
-            f"same situation. They are compared, and ranked, in situations told without {left}."
+            f"no deployed situation occurs in the recording, because of {left}. Statements are compared and ranked "
+            f"in situations defined without {left}."
         )
     else:
         yield (
-            "no on-line situation was seen off-line, whatever sensors are left out: nothing can be compared statement "
-            "by statement, so no line is named. Declare sensors whose values occur in both worlds, or record again."
+            "no deployed situation occurs in the recording, whatever sensors are left out, so statements cannot be "
+            "compared and no line is named. Declare sensors whose values occur in both worlds, or record again."
         )
 
 
 def other_formulas(offline: Sample, online: Sample) -> tuple[str, ...]:
-    """Tell which formulas were not required when the test was recorded, and which no mission was long enough for."""
+    """Yield remarks on formulas that were not recorded, and on those that no mission was long enough to judge."""
     if online.judgements is None:
         return ()
     recorded = offline.judgements.formulas if offline.judgements is not None else ()
@@ -128,5 +128,5 @@ def other_formulas(offline: Sample, online: Sample) -> tuple[str, ...]:
             if added
             else ()
         ),
-        *((f"no on-line episode was long enough to judge {', '.join(late)}.",) if late else ()),
+        *((f"no deployed episode was long enough to judge {', '.join(late)}.",) if late else ()),
     )

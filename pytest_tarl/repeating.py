@@ -1,7 +1,7 @@
-"""Run the body of a test as one episode, as often as asked, with fresh function-scoped fixtures each time.
+"""Run the body of a test repeatedly as episodes, with fresh function-scoped fixtures each time.
 
-One pass is pytest's own run of an item (set-up, call, teardown, each with its report), except that the reports are not
-logged and that only the item's own fixtures are torn down: wider-scoped ones live until the item is done.
+An episode is pytest's own run of an item (setup, call, teardown, each with its report), except that the reports are
+not logged and only function-scoped fixtures are torn down: fixtures of wider scope live until the item is done.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Instruments:
-    """What is recorded of the nodes: by file the position of every site, and the sites that publish."""
+    """What to instrument in the nodes: by file, the position of every site, and the sites that publish."""
 
     positions: Mapping[Path, Positions] = field(default_factory=dict)
     publishes: frozenset[int] = frozenset()
@@ -49,29 +49,29 @@ NOTHING = Instruments()
 
 @dataclass
 class Episode:
-    """The episode that an item is about to run or has run: plan in, outcome out."""
+    """An episode of an item: its plan, and its outcome once it has run."""
 
     plan: EpisodePlan
     designation: Designation
     instruments: Instruments = NOTHING
     error: BaseException | None = None
-    problem: TarlError | None = None  # why it cannot be learned from
+    problem: TarlError | None = None  # why the episode is unusable
     trace: Trace | None = None
     topics: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     values: Mapping[str, Sequence[float]] = field(default_factory=dict)
-    replayed: bool = False  # a bag, to its end
+    replayed: bool = False  # whether a bag was replayed to its end
     judged: tuple[Judged, ...] = ()
-    older: tuple[Path, ...] = ()  # edited files that ran as they were before
+    older: tuple[Path, ...] = ()  # edited files of which the previous text ran
 
 
 EPISODE = pytest.StashKey[Episode]()
 LIMIT = pytest.StashKey[Any]()  # the settings of pytest-timeout for an item
-INTERRUPTS = (pytest.exit.Exception, KeyboardInterrupt)  # what ends the whole run
+INTERRUPTS = (pytest.exit.Exception, KeyboardInterrupt)  # exceptions that end the whole run
 
 
 def designated(item: pytest.Item) -> Designation | None:
-    """Return the item's marker, checked; None without one. Raises SettingsError."""
+    """Return the item's checked marker; None without one. Raise SettingsError for an invalid one."""
     marker = item.get_closest_marker("tarl")
     if marker is None:
         return None
@@ -86,7 +86,7 @@ def _first_paragraph(docstring: str | None) -> str:
 
 @contextmanager
 def opened(item: pytest.Item) -> Iterator[Tarl]:
-    """Open the item's episode, close it afterwards and keep its trace."""
+    """Open the item's episode; afterwards close it and keep its trace."""
     from pytest_tarl.episode import Tarl
     from pytest_tarl.instrumentation.datafiles import is_data, reading
     from pytest_tarl.instrumentation.importhook import NodeImports
@@ -134,7 +134,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
 
 
 def _replay(episode: Episode) -> Replay | None:
-    """Return the recorded mission that takes the place of the world, if there is one."""
+    """Return the recorded mission to replay in place of the world, or None."""
     if episode.plan.bag is None:
         return None
     from pytest_tarl.bags.reading import opened as opened_bag
@@ -151,7 +151,7 @@ def _replay(episode: Episode) -> Replay | None:
 
 
 def drift_value(item: pytest.Item) -> Any:
-    """Return the value of the scenario that the item's episode runs under; off-line that of the design, or None."""
+    """Return the value of the drift scenario of the item's episode; without one that of the design, or None."""
     from pytest_tarl import design
 
     episode = _episode(item)
@@ -161,7 +161,7 @@ def drift_value(item: pytest.Item) -> Any:
 
 
 def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestReport) -> None:
-    """Keep what ended a phase; a user's mistake becomes a sentence in the report."""
+    """Keep the error that ended a phase; a user's mistake becomes a sentence in the report."""
     if EPISODE in item.stash and item.stash[EPISODE].error is None:
         item.stash[EPISODE].error = error
     if isinstance(error, (TarlError, RequirementError)) and report.failed:
@@ -171,7 +171,7 @@ def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestRepor
 
 
 def in_the_node(excinfo: pytest.ExceptionInfo[BaseException]) -> pytest.ExceptionInfo[BaseException]:
-    """Return the exception of a node in place of what the test got, so that a debugger stops in the node."""
+    """Return the node's exception behind a NodeError, so that a debugger stops in the node."""
     from pytest_tarl.ros.accounts import of_node
 
     cause = excinfo.value.__cause__
@@ -182,7 +182,7 @@ def in_the_node(excinfo: pytest.ExceptionInfo[BaseException]) -> pytest.Exceptio
 
 
 def _episode(item: pytest.Item) -> Episode:
-    """Return the episode that is set up for the item, or the one of a plain test run."""
+    """Return the episode prepared for the item, or a new one in a plain test run."""
     if EPISODE in item.stash:
         return item.stash[EPISODE]
     marked = designated(item)
@@ -196,7 +196,7 @@ def _episode(item: pytest.Item) -> Episode:
 
 @dataclass(frozen=True)
 class ItemRollout:
-    """Runs episodes of one pytest item, here and now."""
+    """Run episodes of one pytest item in this process."""
 
     item: pytest.Function
     designation: Designation
@@ -204,17 +204,17 @@ class ItemRollout:
     workers = 1
 
     def begin(self, plan: EpisodePlan) -> Pending:
-        """Ask for an episode, to be run when its result is."""
+        """Return an episode that runs when its result is requested."""
         return Deferred(self, plan)
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
-        """Run one episode. Raises TarlError where the test cannot be run as asked, pytest's Exit on Ctrl-C."""
+        """Run one episode. Raise TarlError if the test cannot run as planned, pytest's Exit on Ctrl-C."""
         episode = Episode(plan, self.designation, self.instruments if plan.record else NOTHING)
         self.item.stash[EPISODE] = episode
-        self.item._report_sections.clear()  # else the output of all episodes would be kept, and shown
+        self.item._report_sections.clear()  # do not collect and show the output of all episodes
         _forget_instance(self.item)
         try:
-            # An item's parent keeps all that is wider than the item itself; pytest asks it for no more than that.
+            # Passing the item's own parent as next item keeps all fixtures of wider scope.
             with _heeding_interrupts(), _limited(self.item):
                 reports = runtestprotocol(self.item, log=False, nextitem=self.item.parent)  # type: ignore[arg-type]
         finally:
@@ -223,15 +223,15 @@ class ItemRollout:
 
 
 def _forget_instance(item: pytest.Function) -> None:
-    """Let the method of a class have an object of its own in each episode, as every test has."""
+    """Make a test method create a new instance of its class in each episode."""
     if item.cls is not None:
-        for name in ("_instance", "_obj"):  # pytest makes them anew when they are asked for
+        for name in ("_instance", "_obj"):  # pytest creates them again on access
             vars(item).pop(name, None)
 
 
 @dataclass(frozen=True)
 class BesideRollout(ItemRollout):
-    """Runs episodes of another item while one is at work: what the two do not share is set up anew."""
+    """Run episodes of another item during an item's run; fixtures that they do not share are set up again."""
 
     at_work: pytest.Function
 
@@ -246,7 +246,7 @@ class BesideRollout(ItemRollout):
 
 
 def defer_limit(item: pytest.Item, settings: Any) -> bool | None:
-    """Keep a limit that pytest-timeout is about to set, for each episode anew; None where one is running."""
+    """Apply the limit of pytest-timeout to each episode instead of the item; None if an episode is running."""
     if EPISODE in item.stash:
         return None
     item.stash[LIMIT] = settings
@@ -255,7 +255,7 @@ def defer_limit(item: pytest.Item, settings: Any) -> bool | None:
 
 @contextmanager
 def _limited(item: pytest.Function) -> Iterator[None]:
-    """Give one episode the time that pytest-timeout gives a test."""
+    """Apply the limit of pytest-timeout to one episode."""
     settings = item.stash.get(LIMIT, None)
     if settings is None:
         yield
@@ -269,10 +269,10 @@ def _limited(item: pytest.Function) -> Iterator[None]:
 
 @contextmanager
 def _heeding_interrupts() -> Iterator[None]:
-    """End the run on Ctrl-C even where a node catches it, as the main part of many does."""
+    """End the run on Ctrl-C even if a node catches KeyboardInterrupt, as many main functions do."""
     before = signal.getsignal(signal.SIGINT)
     if not callable(before) or threading.current_thread() is not threading.main_thread():
-        yield  # who ignores it, as a job in the background does, goes on doing so
+        yield  # keep ignoring SIGINT, as a background job does
         return
     seen = []
     passed_on = before
@@ -291,9 +291,9 @@ def _heeding_interrupts() -> Iterator[None]:
 
 
 def finish(item: pytest.Function, nextitem: pytest.Item | None) -> pytest.TestReport:
-    """Tear down what the next item does not need, once the last episode has run."""
-    # Not through pytest's hooks: the item itself was torn down after its last episode, perhaps in another process, and
-    # plugins count on that.
+    """Tear down fixtures that the next item does not need, after the last episode."""
+    # Do not call pytest's hooks: the item itself was torn down after its last episode, perhaps in another process, and
+    # plugins expect one teardown per item.
     state = item.session._setupstate
     call = pytest.CallInfo.from_call(
         lambda: state.teardown_exact(nextitem), when="teardown", reraise=INTERRUPTS
@@ -332,17 +332,17 @@ def _outcome(episode: Episode, reports: list[pytest.TestReport]) -> EpisodeRun:
 
 
 def _timed_out(error: BaseException | None) -> bool:
-    """Tell whether pytest-timeout ended the episode; it fails a test as `pytest.fail` does."""
+    """Return whether pytest-timeout ended the episode, which it does through `pytest.fail`."""
     return isinstance(error, pytest.fail.Exception) and str(error).startswith("Timeout (>")
 
 
 def _expected(report: pytest.TestReport) -> bool:
-    """Tell whether a mission failed under an xfail mark: a failed mission all the same."""
+    """Return whether a mission failed under an xfail mark; it still counts as failed."""
     return report.skipped and report.when == "call" and hasattr(report, "wasxfail")
 
 
 def _surprise(report: pytest.TestReport) -> bool:
-    """Tell whether a mission succeeded that a strict xfail mark expected to fail: nothing was raised."""
+    """Return whether a mission succeeded although a strict xfail mark expected a failure; nothing was raised."""
     return report.when == "call" and isinstance(report.longrepr, str) and report.longrepr.startswith("[XPASS")
 
 

@@ -1,4 +1,4 @@
-"""Episodes as the stages above ask for them: what to run, and what came of it."""
+"""The interface for running episodes: plans, results, and rollouts that turn one into the other."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from typing import Protocol
 from pytest_tarl.formulas.judging import Judged
 from pytest_tarl.instrumentation.trace import Trace
 
-AHEAD = 2  # episodes per worker that are begun before anybody asks for them
-KEPT = 6  # and that are kept though something else was asked for
+AHEAD = 2  # episodes per worker begun before their results are requested
+KEPT = 6  # begun episodes per worker kept while others are requested
 
 
 @dataclass(frozen=True)
 class EpisodePlan:
     """One run of the designated test. `overlay` replaces the text of files; `record` instruments the nodes.
 
-    With a `bag` the mission that it holds takes the place of the test's own world.
+    With a `bag`, its recorded mission replaces the test's world.
     """
 
     seed: int
@@ -31,15 +31,14 @@ class EpisodePlan:
 
 @dataclass(frozen=True)
 class EpisodeRun:
-    """What came of it. `failure` says why the test failed, one line; `topics` are message types by sensor topic.
+    """The result of an episode. `failure` is one line on why the test failed; `topics` maps topics to message types.
 
-    `crashed` tells that the node ended it before its time, `stuck` that it did so by never waiting. `notes` are
-    what else the user should hear. `values` is what sensors read whose bins are yet to be learned. `judged` tells of
-    formulas.
+    `crashed` is true if the node ended the episode early, `stuck` if it did so by never waiting. `notes` are further
+    notes for the user. `values` holds the values of sensors with bins to learn. `judged` holds the results of formulas.
 
-    `older` are files of the overlay whose text of before ran all the same: nothing can be learned of the overlay.
+    `older` lists files of the overlay whose previous text ran: such an episode says nothing about the overlay.
 
-    `broken` holds what is neither a pass nor a failed mission, such as an error in the test's own code, as text.
+    `broken` is the text of an error outside the mission, such as one in the test's own code.
     """
 
     plan: EpisodePlan
@@ -57,49 +56,49 @@ class EpisodeRun:
 
 
 class Pending(Protocol):
-    """An episode that was asked for."""
+    """A requested episode."""
 
     def result(self) -> EpisodeRun:
-        """Return what came of it, when it has been run. Raises TarlError where it could not be."""
+        """Return the result, waiting for it. Raise TarlError if the episode could not run."""
 
     def cancel(self) -> bool:
-        """Do without it; tell whether it will not be run."""
+        """Cancel the episode; return whether it will not run."""
 
 
 class Rollout(Protocol):
-    """Runs episodes of one test, `workers` at a time."""
+    """Run episodes of one test, `workers` in parallel."""
 
     @property
     def workers(self) -> int:
-        """Return how many episodes run at a time."""
+        """Return the number of parallel episodes."""
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
-        """Run one episode. Raises TarlError where the test cannot be run as asked."""
+        """Run one episode. Raise TarlError if the test cannot run as planned."""
 
     def begin(self, plan: EpisodePlan) -> Pending:
-        """Ask for an episode without waiting for it."""
+        """Request an episode without waiting for it."""
 
 
 @dataclass(frozen=True)
 class Deferred:
-    """An episode that is run when its result is asked for."""
+    """An episode that runs when its result is requested."""
 
     rollout: Rollout
     plan: EpisodePlan
 
     def result(self) -> EpisodeRun:
-        """Run it."""
+        """Run the episode and return its result."""
         return self.rollout(self.plan)
 
     def cancel(self) -> bool:
-        """Do without it."""
+        """Cancel the episode, which has not run."""
         return True
 
 
 def in_order(rollout: Rollout, plans: Iterable[EpisodePlan]) -> Iterator[Pending]:
-    """Yield the episodes in the order of their plans, with as many begun ahead as keep the workers busy.
+    """Yield the episodes in the order of their plans; begin enough of them ahead to keep the workers busy.
 
-    What is yielded does not depend on how many workers there are; whoever stops early wastes at most what was ahead.
+    The result does not depend on the number of workers. A caller that stops early wastes only the episodes begun ahead.
     """
     ahead = AHEAD * rollout.workers if rollout.workers > 1 else 0
     begun: deque[Pending] = deque()
@@ -116,26 +115,26 @@ def in_order(rollout: Rollout, plans: Iterable[EpisodePlan]) -> Iterator[Pending
 
 
 class Ahead:
-    """Begins episodes that are foreseen, so that workers are busy while one result is looked at.
+    """Begin foreseen episodes, so that workers stay busy while a result is evaluated.
 
-    What is run for whom does not depend on it: an episode that is asked for is the same, begun before or not, and one
-    that is never asked for leaves no trace but the time it took. Keys tell episodes apart.
+    This is a pure prefetch: a requested episode has the same result whether begun before or not, and one that is never
+    requested costs only time. Keys identify episodes.
     """
 
     def __init__(self, rollout: Rollout) -> None:
         self.rollout = rollout
         self._foreseen: Iterator[tuple[Hashable, EpisodePlan]] = iter(())
         self._begun: dict[Hashable, Pending] = {}
-        self._lately: set[Hashable] = set()  # begun since something was foreseen, and not asked for yet
+        self._lately: set[Hashable] = set()  # begun since the last forecast, and not requested yet
 
     def foresee(self, wanted: Iterable[tuple[Hashable, EpisodePlan]]) -> None:
-        """Tell what will probably be asked for next, in this order, in place of what was told before."""
+        """Replace the forecast of the episodes to be requested next, in this order."""
         if self.rollout.workers > 1:
             self._foreseen, self._lately = iter(wanted), set()
             self._begin()
 
     def __call__(self, key: Hashable, plan: EpisodePlan) -> EpisodeRun:
-        """Run an episode, or wait for it where it was begun. Raises TarlError where it cannot be run."""
+        """Run an episode, or wait for it if it was begun. Raise TarlError if it cannot run."""
         pending = self._begun.pop(key, None) or self.rollout.begin(plan)
         self._lately.discard(key)
         self._begin()

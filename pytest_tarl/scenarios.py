@@ -1,4 +1,4 @@
-"""Names of drift scenarios, and of the tests that they belong to, in the ids that pytest gives them."""
+"""Read the names of drift scenarios and of their tests from pytest's node ids."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ if TYPE_CHECKING:
 
 
 def scenario(item: pytest.Item) -> str | None:
-    """Return the name of the drift scenario that the item's id stands for."""
+    """Return the name of the item's drift scenario."""
     callspec = getattr(item, "callspec", None)
     name: str | None = callspec.params.get("tarl_drift") if callspec is not None else None
     return name
 
 
 def without_drift(item: pytest.Item) -> str:
-    """Return the node id as it is off-line, so that all scenarios of a test share its fixture."""
+    """Return the node id without its scenario, so that all scenarios of a test share its recording."""
     callspec = getattr(item, "callspec", None)
     if callspec is None or "tarl_drift" not in callspec.params:
         return item.nodeid

@@ -1,4 +1,4 @@
-"""Random numbers: one seed decides everything, every stream is told by its name."""
+"""Random numbers: one seed determines all streams; each stream has a name."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def episode_seed(seed: int, stream: str, index: int) -> int:
-    """Return the seed of a stream's index-th episode, below 2⁶³; streams do not overlap but by chance."""
+    """Return the seed of a stream's index-th episode, below 2⁶³; streams overlap only by chance."""
     return _hashed(f"{seed}/{stream}/{index}", 8) >> 1
 
 
@@ -20,14 +20,14 @@ def episode_seeds(seed: int, stream: str, count: int) -> tuple[int, ...]:
 
 
 def generator(seed: int, name: str) -> np.random.Generator:
-    """Return the Philox stream keyed by (seed, name): another name, other numbers, whatever was drawn before."""
+    """Return the Philox stream keyed by (seed, name): independent of other names and of earlier draws."""
     import numpy as np
 
     return np.random.Generator(np.random.Philox(key=_hashed(f"{seed}/{name}", 16)))
 
 
 def uniform(seed: int, name: str) -> float:
-    """Return one number from 0 to 1 that (seed, name) decides; needs no numpy."""
+    """Return a number from 0 to 1 determined by (seed, name), without numpy."""
     return _hashed(f"{seed}/{name}", 8) / 2**64
 
 

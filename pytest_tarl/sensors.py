@@ -1,4 +1,4 @@
-"""Sensors: what the node was told, binned into the cell that everything is learned by."""
+"""Sensors: inputs of the node, binned into the cell that indexes all learned values."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.variables import prefixes
 
 Cell = tuple[int, ...]  # one bin per sensor
-CALLED = "()"  # ends the name of a function that reads a sensor from a message
+CALLED = "()"  # suffix of the stored name of a function that reads a sensor from a message
 
 
 @dataclass(frozen=True)
 class Sensor:
-    """A declared input and how it is binned.
+    """A declared input and its binning.
 
-    With `topic` and `field` (dotted, or a function of the message) it is read from the messages delivered to the node;
-    with a dotted field it can appear in a guard. Without them the test gives its value through
-    `tarl.observe(name=value)`. Whatever it is read by, `expr` names a variable of the node that holds it, such as
-    `self.heading`, by which a guard can ask for it; without topic, dotted field and `expr` it is diagnostic only.
+    With `topic` and `field` (dotted, or a function of the message), TARL reads it from the messages delivered to the
+    node. Without them, the test sets it by `tarl.observe(name=value)`. A guard of a repair can test it if it has a
+    dotted field, or if `expr` names a variable of the node that holds it, such as `self.heading`; otherwise it only
+    serves for diagnosis.
 
-    `low`, `high` (units of the field) and `bins` make it numeric, with one more bin at either end for values outside;
-    `edges` do the same with bins of unequal width, and `bins` alone learns them from off-line episodes, so that each
-    holds about as many values. An `angle` wraps: its range, -π to π unless `low` and `high` tell another, is a circle.
-    `categories` lists the values of a text sensor. With none of these it takes booleans and small integers as they are.
-    With `tilings` its utility is not kept by bin but by that many overlapping grids of tiles, so that near values learn
-    from each other.
+    `low`, `high` (units of the field) and `bins` make it numeric, with one more bin at either end for values outside.
+    `edges` does the same with bins of unequal width; `bins` alone learns the edges from recorded episodes, with about
+    as many values in each bin. An `angle` wraps around: its range, -π to π unless `low` and `high` differ, is a circle.
+    `categories` lists the values of a text sensor. Without any of these, it takes booleans and small integers as they
+    are. `tilings` keeps the utility in that many overlapping grids of tiles instead of bins, so that near values share
+    what they learn.
     """
 
     name: str
@@ -47,7 +47,7 @@ class Sensor:
     edges: tuple[float, ...] = ()
     angle: bool = False
     tilings: int = 0
-    learned: int = 0  # how many bins were asked for, where the edges were learned
+    learned: int = 0  # number of bins requested, if the edges were learned
     expr: str = ""
 
     def __post_init__(self) -> None:
@@ -64,7 +64,8 @@ class Sensor:
         for given, what in ((self.topic, "topic"), (dotted, "field")):
             if given is not None and (not isinstance(given, str) or not given.strip("/.")):
                 raise SettingsError(
-                    f"Sensor {self.name!r}: {what} must be a text such as topic='/odom', field='pose.pose.position.x', "
+                    f"Sensor {self.name!r}: {what} must be a string such as topic='/odom', "
+                    "field='pose.pose.position.x', "
                     f"got {given!r}."
                 )
         if self.expr and not prefixes(self.expr):
@@ -80,10 +81,13 @@ class Sensor:
         self._check_categories()
         if self.categories and self.bins is not None:
             raise SettingsError(
-                f"Sensor {self.name!r} is either numeric (low, high, bins) or has categories."
+                f"Sensor {self.name!r} has both a numeric range and categories: remove low, high and bins, or the "
+                "categories."
             )
         if self.tilings and (not self.bins or self.tilings < 0):
-            raise SettingsError(f"Sensor {self.name!r}: tilings are for a sensor with bins, and at least 1.")
+            raise SettingsError(
+                f"Sensor {self.name!r}: tilings must be at least 1 and needs a sensor with bins."
+            )
 
     def _take_edges(self) -> None:
         edges = tuple(math.nan if (end := as_number(one)) is None else end for one in self.edges)
@@ -95,8 +99,8 @@ class Sensor:
             or given not in ((None,) * 3, (edges[0], edges[-1], len(edges) - 1))
         ):
             raise SettingsError(
-                f"Sensor {self.name!r}: edges must be rising, finite numbers (at least two for an angle), and stand in "
-                f"place of low, high and bins, got {self.edges}."
+                f"Sensor {self.name!r}: edges must be increasing, finite numbers (at least two for an angle), "
+                f"without low, high and bins, got {self.edges}."
             )
         self._set(edges=edges, low=edges[0], high=edges[-1], bins=len(edges) - 1)
 
@@ -106,9 +110,7 @@ class Sensor:
             raise SettingsError(
                 f"Sensor {self.name!r} needs low, high and bins together; or bins alone, to learn the edges."
             )
-        least = (
-            0 if len(self.edges) == 1 else 1
-        )  # of a single edge there are the two bins beyond the ends alone
+        least = 0 if len(self.edges) == 1 else 1  # a single edge has only the two outer bins
         whole = isinstance(self.bins, int) and not isinstance(self.bins, bool) and self.bins >= least
         low, high = (as_number(end) for end in ends)
         finite = ends == (None, None) or (
@@ -119,7 +121,8 @@ class Sensor:
         )
         if self.bins is not None and not (whole and finite):
             raise SettingsError(
-                f"Sensor {self.name!r}: low must be below high, both finite, and bins at least 1 and whole, got "
+                f"Sensor {self.name!r}: low must be below high, both finite, and bins a whole number of at least 1, "
+                "got "
                 f"low={self.low!r}, high={self.high!r}, bins={self.bins!r}."
             )
 
@@ -129,11 +132,11 @@ class Sensor:
 
     def _check_categories(self) -> None:
         given: Any = self.categories
-        if isinstance(given, list):  # else the sensor could not be hashed
+        if isinstance(given, list):  # keep the sensor hashable
             object.__setattr__(self, "categories", tuple(given))
         elif not isinstance(given, tuple):
             raise SettingsError(
-                f"Sensor {self.name!r}: categories lists the texts that it may get, for instance "
+                f"Sensor {self.name!r}: categories lists the strings that it may receive, for example "
                 f"categories=('auto', 'manual'), got {given!r}."
             )
         twice = next((one for one in self.categories if self.categories.count(one) > 1), None)
@@ -142,28 +145,28 @@ class Sensor:
 
     @property
     def numeric(self) -> bool:
-        """Tell whether values are binned by intervals."""
+        """Return whether values are binned by intervals."""
         return self.bins is not None
 
     @property
     def to_learn(self) -> bool:
-        """Tell whether its bins are yet to be learned."""
+        """Return whether its bins must still be learned."""
         return self.bins is not None and self.low is None
 
     @property
     def guardable(self) -> bool:
-        """Tell whether a node can read it, so that a guard may test it."""
+        """Return whether a node can read it, so that a guard can test it."""
         return bool(self.expr or self.path)
 
     @property
     def path(self) -> str:
-        """Return the dotted field; empty where there is none that a node could subscribe to."""
+        """Return the dotted field; empty if there is none that a node can read."""
         dotted = self.topic is not None and isinstance(self.field, str) and not self.field.endswith(CALLED)
         return str(self.field) if dotted else ""
 
     @property
     def ends(self) -> tuple[float, ...]:
-        """Return the ends of the bins, one more than there are bins; empty where there are none."""
+        """Return the edges of the bins, length bins + 1; empty without bins."""
         if self.edges or self.bins is None or self.low is None or self.high is None:
             return self.edges
         width = (self.high - self.low) / self.bins
@@ -171,12 +174,12 @@ class Sensor:
 
     @property
     def resolution(self) -> float:
-        """Return the width of the narrowest bin of a numeric sensor; of a single edge its last decimal."""
+        """Return the width of a numeric sensor's narrowest bin; for a single edge, the unit of its last decimal."""
         decimals = len(f"{abs(self.edges[0]):.6f}".rstrip("0").partition(".")[2]) if self.edges else 0
         return min((b - a for a, b in pairwise(self.ends)), default=10.0**-decimals)
 
     def bin(self, value: Any) -> int | None:
-        """Return the bin of `value`: 0 to bins-1, -1 and `bins` outside; None for NaN, which tells nothing."""
+        """Return the bin of `value`: 0 to bins-1, -1 and `bins` outside; None for NaN."""
         if self.bins is not None:
             number = self._measurement(value)
             return None if math.isnan(number) else self._place(number)
@@ -184,14 +187,14 @@ class Sensor:
             if value not in self.categories:
                 raise SettingsError(
                     f"Sensor {self.name!r} got {value!r}, which is not among its categories "
-                    f"{', '.join(map(repr, self.categories))}: add it there."
+                    f"{', '.join(map(repr, self.categories))}: add it to them."
                 )
             return self.categories.index(value)
         whole = as_number(value)
         if whole is None or not whole.is_integer():
             raise SettingsError(
                 f"Sensor {self.name!r} got {value!r}: give it low, high and bins for a measurement, "
-                "or categories for texts."
+                "or categories for strings."
             )
         return int(whole)
 
@@ -199,14 +202,15 @@ class Sensor:
         number = as_number(value)
         if number is None:
             raise SettingsError(
-                f"Sensor {self.name!r} got {value!r}, which is no number: correct its field, or give it categories for "
+                f"Sensor {self.name!r} got {value!r}, which is not a number: correct its field, or give it "
+                "categories for "
                 "strings."
             )
         return number
 
     def _place(self, number: float) -> int | None:
         if self.bins is None or self.low is None or self.high is None:
-            return 0  # nothing is learned yet, as in a plain run of the test
+            return 0  # edges are not learned yet, as in a plain run of the test
         if self.angle:
             if math.isinf(number):
                 return None
@@ -217,12 +221,12 @@ class Sensor:
             index = bisect_right(self.edges, number) - 1
         else:
             index = math.floor(max(-1.0, (number - self.low) / (self.high - self.low) * self.bins))
-        return min(index, self.bins - 1)  # the upper end is of the last bin
+        return min(index, self.bins - 1)  # the last bin includes its upper end
 
     def interval(self, first: int, last: int) -> tuple[float, float]:
-        """Return the values that bins `first` to `last` cover; infinite beyond the outer bins.
+        """Return the interval covered by bins `first` to `last`; infinite beyond the outer bins.
 
-        Of an angle, `last` may be beyond the last bin: the interval then begins above where it ends.
+        For an angle, `last` may exceed the last bin; the interval then wraps, and its start exceeds its end.
         """
         if self.bins is None or self.low is None or self.high is None:
             return float(first), float(last)
@@ -236,7 +240,7 @@ class Sensor:
         )
 
     def label(self, index: int) -> str:
-        """Name a bin for people: `4.0-4.4`, `true`, a category."""
+        """Return the displayed name of a bin: `4.0-4.4`, `true`, a category."""
         if self.numeric:
             low, high = self.interval(index, index)
             return f"{low:g}-{high:g}{self.unit and ' ' + self.unit}"
@@ -246,7 +250,7 @@ class Sensor:
 
 
 def as_number(value: Any) -> float | None:
-    """Return a real number, or a single one of numpy, as a float; None for anything else."""
+    """Return a real number or a numpy scalar as a float; None for anything else."""
     if not isinstance(value, Real) and getattr(value, "ndim", None) != 0:
         return None
     try:
@@ -258,7 +262,7 @@ def as_number(value: Any) -> float | None:
 
 
 def field_value(message: Any, field: str) -> Any:
-    """Follow a dotted field; a number indexes a sequence (`ranges.0`). Raises AttributeError or IndexError."""
+    """Follow a dotted field; a number indexes a sequence (`ranges.0`). Raise AttributeError or IndexError."""
     for part in field.split("."):
         if isinstance(message, Mapping):
             message = message[part]
@@ -270,12 +274,12 @@ def field_value(message: Any, field: str) -> Any:
 
 
 def reading(message: Any, field: str | Callable[[Any], Any]) -> Any:
-    """Return what a sensor reads of a message."""
+    """Return the value that a sensor reads from a message."""
     return field(message) if callable(field) else field_value(message, field)
 
 
 def stored(sensor: Sensor) -> Sensor:
-    """Return the sensor as it can be written down: a function by its name."""
+    """Return the sensor in serialisable form: a function is stored by its name."""
     if not callable(sensor.field):
         return sensor
     return replace(
@@ -284,13 +288,13 @@ def stored(sensor: Sensor) -> Sensor:
 
 
 def binning_digest(sensors: Iterable[Sensor]) -> str:
-    """Return a short digest of what sensors read and how it is binned: with the same one, cells mean the same."""
+    """Return a short digest of the sensors' inputs and bins: with equal digests, cells are comparable."""
     text = json.dumps([asdict(stored(sensor)) for sensor in sensors], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def declared(sensor: Sensor) -> Sensor:
-    """Return the sensor as the marker has it, before its bins were learned."""
+    """Return the sensor as in the marker, without learned bins."""
     plain = stored(sensor)
     return (
         replace(plain, edges=(), low=None, high=None, bins=plain.learned, learned=0)
@@ -300,7 +304,7 @@ def declared(sensor: Sensor) -> Sensor:
 
 
 def with_edges(sensors: Iterable[Sensor], learned: Mapping[str, tuple[float, ...]]) -> tuple[Sensor, ...]:
-    """Give the sensors that have something to learn what was learned, by name."""
+    """Set the learned edges, given by name, of the sensors that have bins to learn."""
     return tuple(
         replace(sensor, bins=None, edges=learned[sensor.name], learned=sensor.bins or 0)
         if sensor.to_learn and sensor.name in learned

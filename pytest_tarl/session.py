@@ -1,4 +1,4 @@
-"""A pytest run with TARL's flags: which tests take part, what each of them does, what is told in the end."""
+"""A pytest run with TARL's flags: select tests, run each in its mode, and report at the end."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from pytest_tarl.repairing.merge_patches import Joined
     from pytest_tarl.rollout import Rollout
 
-PLAIN_WIDTH = 80  # columns where there is no terminal to ask, as under `-p no:terminal`
+PLAIN_WIDTH = 80  # columns if there is no terminal, as under `-p no:terminal`
 
 UNMARKED = (
     "NOTHING WAS RUN: no collected test has the marker. With TARL's flags, pytest runs only tests with "
@@ -45,39 +45,39 @@ UNMARKED = (
 
 
 class TarlSession:
-    """The hooks of one run; registered only when a mode is asked for."""
+    """The hooks of one run; registered only if a mode is selected."""
 
     def __init__(self, config: pytest.Config, options: Options) -> None:
         if options.holm and (hasattr(config, "workerinput") or config.getoption("numprocesses", None)):
             raise pytest.UsageError(
-                "--tarl-holm corrects over all tests of a run, and with -n no process knows them all: leave -n out; "
-                "--tarl-workers runs the episodes of a test side by side."
+                "--tarl-holm corrects over all tests of a run, but with -n no process knows them all: remove -n, "
+                "and use --tarl-workers to run episodes in parallel."
             )
         self.config = config
         self.options = options
         self._summary = Summary()
-        self._ended: list[_Ended] = []  # tests that have run and are not told yet
+        self._ended: list[_Ended] = []  # tests that have run but are not reported yet
         self._designated: tuple[pytest.Item, ...] = ()
         self._unmarked = False  # whether tests were collected, but none with the marker
 
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
-        """Make an id of every drift scenario: `test_delivers[mud]`, `[online]` without one."""
+        """Parametrize by drift scenario: `test_delivers[mud]`; `[online]` without one."""
         marker = metafunc.definition.get_closest_marker("tarl")
         if marker is None or self.options.mode == "record":
             return
         drifts = marker.kwargs.get("drifts", {})
         names = (
             list(drifts) if isinstance(drifts, Mapping) else []
-        )  # what it is instead is told when the test runs
+        )  # an invalid marker is reported when the test runs
         if self.options.log is not None or self.options.bags:
-            names = []  # the world that missions come from has no name
+            names = []  # the world of recorded missions has no name
         if self.options.drift is not None:
             names = [name for name in names if name == self.options.drift]
         if "tarl_drift" in metafunc.fixturenames:
             metafunc.parametrize("tarl_drift", names or [None], ids=names or ["online"], indirect=True)
 
     def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Item]) -> None:
-        """Deselect what TARL has nothing to do with."""
+        """Deselect tests that do not take part in a TARL run."""
         marked = [item for item in items if item.get_closest_marker("tarl") is not None]
         self._unmarked = bool(items) and not marked
         self._designated = tuple(marked)
@@ -93,7 +93,7 @@ class TarlSession:
             items[:] = marked
 
     def _chosen(self, item: pytest.Item) -> bool:
-        """Tell whether an item is of the scenario asked for, or would be if it took the fixture."""
+        """Return whether an item has the selected scenario, or would have if it took the fixture."""
         declared = self.options.drift in _drift_names(item)
         if self.options.mode == "record":
             return declared or self.options.drift == AS_WRITTEN
@@ -105,13 +105,13 @@ class TarlSession:
         if marked and self.options.drift not in known and not backwards:
             names = ", ".join(known) or "none is declared"
             raise pytest.UsageError(
-                f"No test declares the drift {self.options.drift!r}; known are: {names}. Declare it "
+                f"No test declares the drift {self.options.drift!r} (declared: {names}). Declare it "
                 "in the marker: drifts={…}."
             )
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item, nextitem: pytest.Item | None) -> bool | None:
-        """Run a designated test in the mode asked for, as one test with one report a phase."""
+        """Run a designated test in the selected mode, as one test with one report per phase."""
         if not isinstance(item, pytest.Function) or item.get_closest_marker("tarl") is None:
             return None
         if not self.options.holm:
@@ -121,11 +121,11 @@ class TarlSession:
         if nextitem is None or not self.options.holm:
             self._tell()
         if call.excinfo is None and getattr(call.result, "interrupted", False):
-            raise KeyboardInterrupt  # what was found until then is told; no further test is begun
+            raise KeyboardInterrupt  # results so far are reported; no further test starts
         return True
 
     def _tell(self) -> None:
-        """Log the tests that have run, all of them together where their verdicts are to be corrected."""
+        """Log the tests that have run; with --tarl-holm, only once all of them have."""
         from pytest_tarl.missions import Compared, jointly
 
         ended, self._ended = self._ended, []
@@ -141,19 +141,19 @@ class TarlSession:
 
     @pytest.hookimpl(optionalhook=True, tryfirst=True)
     def pytest_timeout_set_timer(self, item: pytest.Item, settings: object) -> bool | None:
-        """Let a limit of pytest-timeout hold for each episode of a designated test, not for all of them."""
+        """Apply the limit of pytest-timeout to each episode of a designated test, not to the whole test."""
         return None if item.get_closest_marker("tarl") is None else defer_limit(item, settings)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Collect what the tests have to tell, also from xdist's workers."""
+        """Collect the reports of the tests, also from xdist's workers."""
         self._summary.collect(report)
 
     def pytest_terminal_summary(self, terminalreporter: TerminalReporter) -> None:
-        """Tell it in one section."""
+        """Write the reports in one section."""
         self._summary.write(terminalreporter, self._width(), self._joined().lines)
 
     def pytest_unconfigure(self) -> None:
-        """Let the last lines of the output be the commands that apply what was found, or that nothing was compared."""
+        """End the output with the commands that apply the patches, or with a warning that nothing was compared."""
         if not self._has_terminal():
             return
         terminal = self.config.get_terminal_writer()
@@ -166,7 +166,7 @@ class TarlSession:
         self._summary.patches.clear()
 
     def _joined(self) -> Joined:
-        """Return what the patches of the run make together."""
+        """Return the merge of the run's patches."""
         from pytest_tarl.repairing.merge_patches import joined
 
         patches = tuple(map(Path, self._summary.patches))
@@ -177,12 +177,12 @@ class TarlSession:
 
         marked = designated(item)
         if marked is None:
-            raise SettingsError(f"{item.nodeid} has no marker.")
+            raise SettingsError(f"{item.nodeid} has no tarl marker.")
         drifted = self.options.mode != "record" or self.options.drift is not None
         if marked.drifts and drifted and not _takes_drift(item):
             raise SettingsError(
-                "the marker declares drifts, but the test does not take the fixture `tarl_drift`, so they would change "
-                "nothing: take it as an argument and build the world with it."
+                "the marker declares drifts, but the test does not use the fixture `tarl_drift`, so they have no "
+                "effect: add the argument `tarl_drift` and build the world with it."
             )
         progress = self._progress(item)
         mission = Mission(
@@ -220,7 +220,7 @@ class TarlSession:
             raise
 
     def _others(self, item: pytest.Function) -> tuple[Other, ...]:
-        """Return the other designated tests of the run, each once, whatever drifts it has."""
+        """Return the other designated tests of the run, each once regardless of its drifts."""
         from pytest_tarl.missions import Other
 
         found: dict[str, Other] = {}
@@ -239,7 +239,7 @@ class TarlSession:
         return self.config.pluginmanager.has_plugin("terminalreporter")
 
     def _say(self, sentence: str) -> None:
-        """Say something before the episodes; in a worker of xdist there is no terminal, and it is told at the end."""
+        """Print a sentence before the episodes; a worker of xdist has no terminal and reports it at the end."""
         reporter = self.config.pluginmanager.get_plugin("terminalreporter")
         if reporter is not None:
             reporter.ensure_newline()
@@ -257,7 +257,7 @@ class TarlSession:
 
 @dataclass
 class _Ended:
-    """A test that has run: what came of it, and the reports of the phases around it."""
+    """A finished test: its result, and the reports of its setup and teardown."""
 
     item: pytest.Function
     call: pytest.CallInfo[Any]
@@ -266,11 +266,11 @@ class _Ended:
 
     @property
     def outcome(self) -> Any:
-        """Return what the test has to tell; None where it ended in an error."""
+        """Return the comparison of the test; None if it ended in an error."""
         return self.call.result if self.call.excinfo is None else None
 
     def conclude(self, told: Callable[[], Account]) -> None:
-        """Put what is told in the place of what was found."""
+        """Replace the comparison by its report."""
         call = pytest.CallInfo.from_call(told, when="call", reraise=INTERRUPTS)
         call.start, call.stop, call.duration = self.call.start, self.call.stop, self.call.duration
         self.call = call
@@ -298,7 +298,7 @@ class _Ended:
         elif error is not None and isinstance(error.__context__, FixtureError):
             attach(
                 report, Account((str(error),), unrecorded=True)
-            )  # skipped: pytest tells why only when asked
+            )  # skipped: pytest shows reasons only with -rs
         return report
 
 

@@ -1,4 +1,4 @@
-"""How many episodes a recording takes: as many as asked for, or until `min_success` is settled at a confidence."""
+"""Decide the number of recorded episodes: a fixed one, or until `min_success` is decided at a confidence."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from pytest_tarl.learning.guarantees import stated, varies
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Guarantee
 
-ENOUGH_FAILURES = 5  # that settle a recording whose min_success can no longer be reached
-MOST = 20_000  # episodes that a confidence may take
+ENOUGH_FAILURES = 5  # failures after which a recording stops if min_success can no longer be reached
+MOST = 20_000  # most episodes for reaching a confidence
 
 
 @dataclass
 class Settling:
-    """Asked after every off-line episode whether they are enough; `asked` are run at least, unless too many fail."""
+    """Stopping rule, called after every episode. At least `asked` episodes run unless too many fail."""
 
     designation: Designation
     asked: int
@@ -28,11 +28,11 @@ class Settling:
 
     @property
     def most(self) -> int:
-        """Return how many episodes to run at most."""
+        """Return the maximum number of episodes."""
         return self.asked if self.designation.confidence is None else max(MOST, self.asked)
 
     def __call__(self, samples: Sequence[Sample]) -> bool:
-        """Take the newest sample. Raises RecordingError where its total is not one of the declared range."""
+        """Add the newest sample; return whether to stop. Raise RecordingError if its total is out of range."""
         within(samples[-1], self.designation.total_range)
         self.episodes, self.passed = len(samples), self.passed + int(samples[-1].passed.all())
         if self.designation.confidence is None:
@@ -41,7 +41,7 @@ class Settling:
 
     @property
     def failing(self) -> str:
-        """Say that too many episodes failed, and at what; empty where they did not."""
+        """Return a sentence if too many episodes failed, with their number; else an empty string."""
         least, failed = self.designation.min_success, self.episodes - self.passed
         if self.designation.confidence is None:
             stopped = (
@@ -54,13 +54,13 @@ class Settling:
         sure = f"{self.designation.confidence:.5g}"
         if self._refuted:
             return (
-                f"{failed} of {self.episodes} episodes failed: at confidence={sure}, fewer than {least:.4g} of "
-                "all succeed"
+                f"{failed} of {self.episodes} episodes failed: at confidence={sure}, the success rate is below "
+                f"{least:.4g}"
             )
         if not self._shown:
             return (
-                f"{self.passed} of {self.episodes} episodes succeeded, which is too near to min_success="
-                f"{least:.4g} to be told from it at confidence={sure}"
+                f"{self.passed} of {self.episodes} episodes succeeded, which is too close to min_success={least:.4g} "
+                f"to decide at confidence={sure}"
             )
         return ""
 
@@ -83,20 +83,19 @@ class Settling:
 
 
 def within(sample: Sample, declared: tuple[float, float] | None) -> None:
-    """Raise RecordingError where a total lies outside of the range that the marker declares."""
+    """Raise RecordingError if a total lies outside the range that the marker declares."""
     if declared is None:
         return
     for seed, total in zip(sample.seeds, sample.total.tolist(), strict=True):
         if not declared[0] <= total <= declared[1]:
             raise RecordingError(
-                f"An episode (seed {seed}) earned {total:.6g}, outside of the marker's total_range={declared}: bounds "
-                "on the mean hold only if no total ever is. Widen it to what an episode can earn at worst and at best, "
-                "or leave it out."
+                f"An episode (seed {seed}) earned {total:.6g}, outside the marker's total_range={declared}: bounds "
+                "on the mean need every total inside. Widen it to the worst and best possible total, or remove it."
             )
 
 
 def guarantee(sample: Sample, designation: Designation) -> Guarantee:
-    """Return what is stated of the recorded world."""
+    """Return the bounds on future episodes of the recorded world."""
     return stated(
         sample.passed.tolist(),
         sample.total.tolist(),

@@ -1,4 +1,4 @@
-"""What an episode is told of the world: messages and observations, as bins of sensors and as values of signals."""
+"""Convert the messages and observations of an episode to sensor bins and signal values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Situation:
-    """The sensors' bins, each held until the next message; the recorder is told the cell that they make."""
+    """The current bins of the sensors, each held until its next message; passes each new cell to the recorder."""
 
     def __init__(
         self,
@@ -26,9 +26,9 @@ class Situation:
         formulas: EpisodeFormulas,
         recorder: Recorder,
     ) -> None:
-        self.topics: dict[str, str] = {}  # that were heard, with the type of their messages
-        self.values: dict[str, list[float]] = {}  # of sensors whose bins are yet to be learned
-        self.known = False  # whether there ever was a cell
+        self.topics: dict[str, str] = {}  # topic → message type, of received topics
+        self.values: dict[str, list[float]] = {}  # values of sensors with bins to learn
+        self.known = False  # whether all sensors ever had a value
         self._sensors = sensors
         self._requirements = requirements
         self._formulas = formulas
@@ -37,11 +37,11 @@ class Situation:
 
     @property
     def begun(self) -> bool:
-        """Tell whether any sensor was told anything."""
+        """Return whether any sensor has received a value."""
         return bool(self._bins)
 
     def hear(self, topic: str, message: Any) -> None:
-        """Take a message that is delivered."""
+        """Read sensors and signals from a delivered message."""
         changed = False
         for sensor in self._sensors:
             if sensor.topic is not None and _same(sensor.topic, topic):
@@ -56,7 +56,7 @@ class Situation:
             self._latch()
 
     def observe(self, values: Mapping[str, Any]) -> None:
-        """Take values of sensors and signals by name. Raises SettingsError for a name that is neither."""
+        """Set sensors and signals by name. Raise SettingsError for a name that is neither."""
         declared = {sensor.name: sensor for sensor in self._sensors}
         signals = {signal.name for signal in self._requirements.signals}
         for name, value in values.items():
@@ -70,22 +70,22 @@ class Situation:
             self._latch()
 
     def problem(self) -> RecordingError | None:
-        """Return why nothing can be learned from the situations of the episode; None where something can."""
+        """Return why the episode has no usable cell; None if it has one."""
         silent = [sensor for sensor in self._sensors if sensor.name not in self._bins]
         if silent:
             return RecordingError(_silence(silent[0]))
         if not self.known:
             return RecordingError(
                 f"Sensor {next(name for name, value in self._bins.items() if value is None)!r} was NaN whenever the "
-                "others were known, which tells nothing: look at what the world gives it."
+                "others had values: check the values that the world gives it."
             )
         return None
 
     def _check_unused(self, name: str, known: Sequence[str]) -> None:
-        """Raise SettingsError for a name that is a typing error, as far as can be told.
+        """Raise SettingsError for a name that seems to be misspelled.
 
-        Beside formulas a test may observe more than they name; what is close to a name that is never observed itself
-        is none of that.
+        A test with formulas may observe additional names. A name counts as misspelled if it is close to a declared name
+        that is never observed.
         """
         said = self._requirements.said
         close = difflib.get_close_matches(name, known, 1)
@@ -115,7 +115,7 @@ def _same(first: str, second: str) -> bool:
 
 
 def _type_name(message: Any) -> str:
-    """Name a message's type as ROS 2 does: `std_msgs/msg/Bool`. Empty for what is no ROS message."""
+    """Return the ROS 2 type name of a message, such as `std_msgs/msg/Bool`; empty for other objects."""
     kind = type(message)
     package = kind.__module__.split(".")[0]
     return f"{package}/msg/{kind.__name__}" if hasattr(kind, "__slots__") or hasattr(kind, "_type") else ""

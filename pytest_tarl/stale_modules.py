@@ -1,4 +1,4 @@
-"""Modules and functions that outlive what they were made from, so that an old text runs in place of a new one."""
+"""Find modules and functions that outlive an edit of their source, so that the old text would run."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _OURS = frozenset({"pytest_tarl", "tarl_lint", "_pytest", "pytest"})
 
 
 def holders(gone: Iterable[ModuleType], among: Iterable[str]) -> list[str]:
-    """Return which of the named modules hold one that is to go, or something of it, directly or through others.
+    """Return the named modules that reference a module to be dropped, or its contents, directly or through others.
 
-    They are run anew as well where that can be done: Python sources that are no tests.
+    They are reloaded as well where possible, which is for Python sources that are not tests.
     """
     going = {id(module): module for module in gone}
     left = [name for name in among if _renewable(sys.modules.get(name))]
@@ -35,7 +35,7 @@ def holders(gone: Iterable[ModuleType], among: Iterable[str]) -> list[str]:
 
 
 def outlived(files: Collection[Path]) -> list[Path]:
-    """Return the files of which functions exist that were made before: somebody keeps them."""
+    """Return the files with functions created before the edit that are still referenced."""
     wanted = {str(file): file for file in files}
     gc.collect()
     codes = (one.__code__.co_filename for one in gc.get_objects() if type(one) is FunctionType)
@@ -43,17 +43,17 @@ def outlived(files: Collection[Path]) -> list[Path]:
 
 
 def of_tests(file: Path) -> bool:
-    """Tell whether a file is one that pytest imports itself."""
+    """Return whether a file is one that pytest imports itself."""
     return file.name == "conftest.py" or file.name.startswith("test_") or file.name.endswith("_test.py")
 
 
 def _imported(module: ModuleType) -> Iterator[str]:
-    """Yield the dotted names that a module imports while it is loaded: a number taken from one says nothing of it."""
+    """Yield the dotted names imported at module level; a constant imported from a module keeps no reference to it."""
     spec = module.__dict__["__spec__"]
     code = spec.loader.get_code(spec.name)
     if code is None:
         return
-    before: deque[object] = deque((None, None), 2)  # of an import: how many levels up, and what is taken out
+    before: deque[object] = deque((None, None), 2)  # of an import: its level, and the imported names
     for one in dis.get_instructions(code):
         if one.opname == "IMPORT_NAME":
             level, taken = before

@@ -1,4 +1,4 @@
-"""What the tests of a run have to tell, from wherever they ran to the end of the terminal's output."""
+"""Carry the reports of tests, also from other processes, to the terminal summary."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ACCOUNT = "tarl_account"  # attribute of a report; plain values, so that xdist c
 
 
 def attach(report: pytest.TestReport, account: Account) -> None:
-    """Send an account along with a test's report."""
+    """Attach an account to a test's report."""
     told = {
         "lines": [printable(line) for line in account.lines],
         "patch": str(account.patch or ""),
@@ -31,21 +31,21 @@ def attach(report: pytest.TestReport, account: Account) -> None:
 
 
 class Summary:
-    """Collects accounts from reports and writes them in one section."""
+    """Collect accounts from reports and write them in one section."""
 
     def __init__(self) -> None:
         self._told: list[Mapping[str, Any]] = []
-        self.patches: list[str] = []  # that mend what was found
+        self.patches: list[str] = []  # paths of patches that repair the tests
 
     def collect(self, report: pytest.TestReport) -> None:
-        """Take what came along with a report, once."""
+        """Take the account from a report, once."""
         told = getattr(report, ACCOUNT, None)
         if told and told not in self._told:
             self._told.append(told)
             self.patches += [told["patch"]] if told["patch"] else []
 
     def warning(self) -> str:
-        """Say loudly that tests were not compared, since nothing is recorded of them; empty where all were."""
+        """Return a warning if tests without a recording were not compared; else empty."""
         missing = sum(bool(one["unrecorded"]) for one in self._told)
         if not missing:
             return ""
@@ -56,12 +56,12 @@ class Summary:
             else f"NOT COMPARED: {missing} of {len(self._told)}"
         )
         return (
-            f"{what} tests, since {them} no recorded utility. Run `pytest --tarl-record` once and commit .tarl/utility"
-            "; --tarl-strict lets such tests fail."
+            f"{what} tests, since {them} no recording. Run `pytest --tarl-record` once and commit .tarl/utility; "
+            "--tarl-strict makes such tests fail."
         )
 
     def write(self, terminal: TerminalReporter, width: int, closing: Sequence[str]) -> None:
-        """Write the section, which ends with `closing`; below it, on GitHub, the annotations."""
+        """Write the section, ending with `closing`; on GitHub, write the annotations below it."""
         if not self._told:
             return
         terminal.section("TARL", sep="=")

@@ -1,4 +1,4 @@
-"""Files that a marker names among its nodes and that nothing is recorded in."""
+"""Find files among a marker's nodes in which nothing is recorded."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 
 
 def silent_files(files: Sequence[Path], analysis: Analysis, root: Path) -> Iterator[str]:
-    """Yield a sentence for every named file without a site, and why that is where it can be told."""
+    """Yield a sentence for every named file without a site, with the reason if known."""
     passed = {(root / step.span.path).resolve() for step in analysis.sites}
     for file in files:
         if file.suffix == ".py" and file.resolve() not in passed:
             place = file.relative_to(root).as_posix() if file.is_relative_to(root) else str(file)
             yield (
-                f"{place} is named among the nodes and no flow from a subscription to a publish call passes it, so "
-                f"nothing is recorded or searched in it: {_why(file, files)}"
+                f"{place} is named in nodes, but no flow from a subscription to a publish call passes through it, so "
+                f"nothing in it is recorded or repaired: {_why(file, files)}"
             )
 
 
@@ -28,12 +28,12 @@ def _why(file: Path, files: Sequence[Path]) -> str:
     importing = [one.name for one in files if one != file and f"{folder.name}.{file.stem}" in _imports(one)]
     if importing and not (folder / "__init__.py").exists():
         missing = f"{importing[0]} imports it from {folder.name}, which has no __init__.py"
-        return f"{missing}; add one, empty, and record again"
-    return "leave it out of nodes, or look with `tarl-lint` where the flow goes"
+        return f"{missing}; add an empty one and record again"
+    return "remove it from nodes, or run `tarl-lint` to see the flows"
 
 
 def _imports(file: Path) -> set[str]:
-    """Return the dotted names that a file imports, those of names out of modules included."""
+    """Return the dotted names that a file imports, including names imported from modules."""
     found: set[str] = set()
     for node in ast.walk(ast.parse(file.read_bytes())):
         if isinstance(node, ast.ImportFrom) and node.module:

@@ -1,4 +1,4 @@
-"""Variables of a node as they are written: names, attributes, entries at a constant."""
+"""Expressions that read a node's variables: names, attributes, subscripts with a constant."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import ast
 
 
 def prefixes(code: str) -> tuple[str, ...]:
-    """Return the prefixes of `a.b.c` or `a.b[0].c`, shortest first; nothing for any other code."""
+    """Return the prefixes of `a.b.c` or `a.b[0].c`, shortest first; empty for any other expression."""
     try:
         node = ast.parse(f"({code}\n)", mode="eval").body
     except (SyntaxError, ValueError):

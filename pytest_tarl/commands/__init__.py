@@ -1,1 +1,1 @@
-"""The command `tarl`: look at what was recorded without running pytest."""
+"""The command `tarl`: inspect recordings, apply patches and watch robots without pytest."""

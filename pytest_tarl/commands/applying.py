@@ -1,4 +1,4 @@
-"""`tarl apply` and `tarl revert`: patches into the sources and out again, all files or none."""
+"""`tarl apply` and `tarl revert`: apply and undo patches, in all files or none."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from pytest_tarl.patching.reading import Patch, read
 
 
 def apply(paths: Sequence[Path], directory: Path | None, *, force: bool, partial: bool = False) -> list[str]:
-    """Apply patches and return what to tell. Raises RefusedError where one should not be, and changes nothing then."""
+    """Apply patches and return what to tell. Raise RefusedError and change nothing if a check fails."""
     patches = [read(path) for path in paths]
     if not partial:
         whole(patches)
@@ -30,17 +30,17 @@ def apply(paths: Sequence[Path], directory: Path | None, *, force: bool, partial
     for target in targets:
         compiles(target, contents[target.path])
     _write(targets, contents)
-    notes += [f"note:  {shown(path)} had been changed already, before applying was ended" for path in halfway]
+    notes += [f"note:  {shown(path)} was already changed by the interrupted run" for path in halfway]
     done = [f"applied to {target.shown}: {_titles(target)}" for target in targets]
     undo = f"undo:  {shlex.join(['tarl', 'revert', *map(shown, paths)])}"
     return [*done, *notes, *_recording(patches, targets), *_again(patches), undo]
 
 
 def revert(paths: Sequence[Path], directory: Path | None) -> list[str]:
-    """Undo patches and return what to tell. Raises RefusedError where one is not applied or its lines were edited."""
+    """Undo patches and return what to tell. Raise RefusedError if one is not applied or its lines were edited."""
     patches = [read(path) for path in paths]
     targets = found_targets(patches, directory)
-    if any(target.done for target in targets):  # what applying did not reach before it was ended
+    if any(target.done for target in targets):  # not reached by an interrupted `tarl apply`
         targets = [target for target in targets if not (len(target.parts) == 1 and target.as_searched)]
     contents: dict[Path, bytes] = {}
     told: list[str] = []
@@ -48,7 +48,7 @@ def revert(paths: Sequence[Path], directory: Path | None) -> list[str]:
         content = _as_before(target)
         contents[target.path] = content
         whole = any(identical(content, file.before) for _, file in target.parts)
-        rest = "it is what it was" if whole else "other lines have changed since and stay as they are"
+        rest = "the original text is restored" if whole else "later edits of other lines are kept"
         told.append(f"reverted in {target.shown}: {rest}")
     _write(targets, contents)
     return told
@@ -57,17 +57,17 @@ def revert(paths: Sequence[Path], directory: Path | None) -> list[str]:
 def _together(patches: Sequence[Patch]) -> None:
     found = [str(conflict) for conflict in conflicts(patches)]
     if found:
-        raise RefusedError(f"{'; '.join(found)}: apply one of them, then search the other repair again.")
+        raise RefusedError(f"{'; '.join(found)}: apply one of them, then search for the other repair again.")
 
 
 def _halfway(targets: Sequence[Target]) -> set[Path]:
-    """Return the files that were done when the same command was ended between two files."""
+    """Return the files that an interrupted run of the same command has already changed."""
     done = {target.path for target in targets if target.done}
     return done if len(done) < len(targets) else set()
 
 
 def _changed(target: Target, force: bool) -> bytes:
-    """Return a file's content with all patches in it. Raises RefusedError where that is not what was tested."""
+    """Return a file's content with all patches applied. Raise RefusedError unless this is the tested text."""
     if target.as_searched:
         for patch, file in target.parts:
             tested(target, patch, file, target.content)
@@ -80,16 +80,16 @@ def _changed(target: Target, force: bool) -> bytes:
             changed = file.applied(content)
         except MisfitError as misfit:
             raise RefusedError(
-                f"{target.shown} is not the text that {patch.name} was made for, and its change at line {misfit} fits "
-                "nowhere: restore that text, or search the repair again."
+                f"{target.shown} differs from the text that {patch.name} was made for, and its change at line "
+                f"{misfit} does not apply: restore that text, or search for the repair again."
             ) from misfit
         original = _before_others(content, patch, file)
         if original is not None:
             tested(target, patch, file, original)
         elif not force:
             raise RefusedError(
-                f"{target.shown} has changed since {patch.name} was tested. The patch still fits, but nobody has run "
-                "what it would make: search the repair again, or apply it all the same with --force."
+                f"{target.shown} has changed since {patch.name} was tested. The patch still applies, but its result "
+                "is untested: search for the repair again, or apply it with --force."
             )
         else:
             sealed(patch)
@@ -98,7 +98,7 @@ def _changed(target: Target, force: bool) -> bytes:
 
 
 def _before_others(content: bytes, patch: Patch, file: FilePatch) -> bytes | None:
-    """Return the text that a patch was tested on where the content is what another patch made of it."""
+    """Return the text that a patch was tested on if the content is that text with other patches applied."""
     others = sorted(path for path in patch.path.parent.glob("*.patch") if path.name != patch.name)
     for path in others:
         try:
@@ -120,7 +120,7 @@ def _fits(file: FilePatch, content: bytes) -> bool:
 
 
 def _as_before(target: Target) -> bytes:
-    """Return a file's content without the patches."""
+    """Return a file's content with the patches undone."""
     content = separated(target.content, [one for _, file in target.parts for one in file.replacements])
     if content is not None and all(identical(content, file.before) for _, file in target.parts):
         return content
@@ -143,8 +143,8 @@ def _undone(target: Target, content: bytes, patch: Patch, file: FilePatch) -> by
                 f"{patch.name} is not applied to {target.shown}: nothing was changed."
             ) from misfit
         raise RefusedError(
-            f"{target.shown} was edited where {patch.name} had changed it (line {misfit} of the patched file), so it "
-            "cannot be undone line by line: restore it from version control."
+            f"{target.shown} was edited in the lines of {patch.name} (line {misfit} of the patched file), so the "
+            "patch cannot be undone: restore the file from version control."
         ) from misfit
 
 
@@ -154,37 +154,37 @@ def _write(targets: Sequence[Target], contents: Mapping[Path, bytes]) -> None:
         replace_all(changes)
     except MovedError as moved:
         raise RefusedError(
-            f"{moved.path} is not what it was a moment ago: another program changed it, or put a link in its place. "
-            "All files are as they were; try again when it is done."
+            f"{moved.path} changed during the command: another program edited or replaced it. No file was changed; "
+            "try again."
         ) from moved
     except OSError as problem:
         where = problem.filename or ", ".join(one.shown for one in targets)
         raise RepairError(
-            f"{where} cannot be written ({problem.strerror}); all files are as they were."
+            f"{where} cannot be written ({problem.strerror}); no file was changed."
         ) from problem
 
 
 def _again(patches: Sequence[Patch]) -> list[str]:
-    """Return the commands that run the tests against their drifts again."""
+    """Return the commands that compare the tests again."""
     commands = dict.fromkeys(command for patch in patches for command in patch.told("again"))
     return [f"again: {_move(patches)}{command}" for command in commands]
 
 
 def _move(patches: Sequence[Patch]) -> str:
-    """Return how to get to the folder that commands are run in."""
+    """Return the shell prefix that changes to the folder in which to run commands."""
     root = patches[0].root
     return f"cd {shlex.quote(shown(root))} && " if root is not None and root != Path.cwd() else ""
 
 
 def _recording(patches: Sequence[Patch], targets: Sequence[Target]) -> list[str]:
-    """Return what makes a drift for good the design: the recording, and what belongs in one commit with the patch."""
+    """Return the lines on making a permanent drift the design: record again, and commit it with the patch."""
     commands = dict.fromkeys(command for patch in patches for command in patch.told("record"))
     if not commands:
         return []
     files = " and ".join([*(target.shown for target in targets), ".tarl/utility"])
     return [
         *(f"then:  {_move(patches)}{command}" for command in commands),
-        f"then:  commit {files} together: the drift is the design from now on",
+        f"then:  commit {files} together: the drift is now part of the design",
     ]
 
 

@@ -1,4 +1,4 @@
-"""What is looked at before a patch is applied: is it what was tested, does it lose anything, does it compile?"""
+"""Checks before a patch is applied: it is the tested one, loses no uncommitted change, and compiles."""
 
 from __future__ import annotations
 
@@ -16,60 +16,60 @@ from pytest_tarl.patching.reading import Patch
 
 
 def tested(target: Target, patch: Patch, file: FilePatch, content: bytes) -> None:
-    """Raise RefusedError unless a patch makes the very text of its tests, which it names as git does."""
+    """Raise RefusedError unless a patch produces the tested text, which its header identifies by git blob id."""
     if file.exact(content) is None:
         raise RefusedError(
-            f"{patch.name} would make another text of {target.shown} than the one that was tested: it was edited or "
-            "damaged. Nothing was changed; make the patch again."
+            f"{patch.name} does not produce the tested text of {target.shown}: the patch was edited or damaged. "
+            "Nothing was changed; make the patch again."
         )
 
 
 def sealed(patch: Patch) -> None:
-    """Raise RefusedError where nothing tells whether a patch is what was written."""
+    """Raise RefusedError if nothing shows that a patch is as written."""
     if not patch.sealed:
         raise RefusedError(
-            f"{patch.name} carries no digest, so on a text that has changed nothing tells whether it was edited: "
-            "restore the text that it was made for, or make the patch again."
+            f"{patch.name} has no digest, so it cannot be verified on a changed file: restore the text that it was "
+            "made for, or make the patch again."
         )
 
 
 def clean(targets: Sequence[Target]) -> Iterator[str]:
-    """Yield what could not be checked. Raises RefusedError where a file has changes that are not committed."""
+    """Yield notes on what could not be checked. Raise RefusedError if a file has uncommitted changes."""
     for target in targets:
         if not any((folder / ".git").exists() for folder in target.path.parents):
-            yield f"note:  {target.shown} is in no git repository, so nobody can tell whether it has changes to lose"
+            yield f"note:  {target.shown} is not in a git repository, so uncommitted changes cannot be detected"
         elif shutil.which("git") is None:
-            yield f"note:  git is not installed: whether {target.shown} has changes was not checked"
+            yield f"note:  git is not installed, so {target.shown} was not checked for uncommitted changes"
         elif (state := _status(target.path))[:2] == "??":
-            yield f"note:  {target.shown} is not under version control; tarl revert brings its text back"
+            yield f"note:  {target.shown} is not under version control; tarl revert restores its text"
         elif state and target.as_searched:
             raise RefusedError(
-                f"{target.shown} has changes that are not committed: commit or stash them first, so that the repair "
-                "can be told from them; or apply it all the same with --force."
+                f"{target.shown} has uncommitted changes: commit or stash them first, to keep them apart from the "
+                "repair, or use --force."
             )
 
 
 def fixtures(patches: Sequence[Patch]) -> Iterator[str]:
-    """Yield a note where a fixture is not there. Raises RefusedError where it is not the one of the acceptance."""
+    """Yield a note on each recording that is missing. Raise RefusedError if one was recorded again."""
     for patch in patches:
         for told in patch.told("fixture"):
             digest, _, name = told.partition(" ")
             root = (patch.root or Path.cwd()).resolve()
             path = root / name
             if not _there(path, root):
-                yield f"note:  {name} is not here, so it was not checked whether it was recorded again"
+                yield f"note:  {name} is missing, so TARL could not check whether it was recorded again"
             elif hashlib.sha256(path.read_bytes()).hexdigest() != digest:
                 raise RefusedError(
-                    f"{name} was recorded again since {patch.name} was accepted against it: search the repair again, "
-                    "or apply it all the same with --force."
+                    f"{name} was recorded again since {patch.name} was accepted: search for the repair again, or "
+                    "apply it with --force."
                 )
 
 
 def _there(path: Path, root: Path) -> bool:
-    """Tell whether a path that a header names is a file below a folder."""
+    """Return whether a path in a header is a file below a folder."""
     try:
         return path.is_file() and path.resolve().is_relative_to(root)
-    except (OSError, ValueError):  # a name that no file can have
+    except (OSError, ValueError):  # an invalid file name
         return False
 
 
@@ -78,13 +78,12 @@ def whole(patches: Sequence[Patch]) -> None:
     for patch in patches:
         for told in patch.told("partial"):
             raise RefusedError(
-                f"{patch.name} is a partial repair, which was not accepted: {told}. If that is what you want, apply it "
-                "with --partial."
+                f"{patch.name} is a partial repair, which was not accepted: {told}. To apply it anyway, use --partial."
             )
 
 
 def compiles(target: Target, content: bytes) -> None:
-    """Raise RefusedError where what a patch makes of a Python file is no program."""
+    """Raise RefusedError if a patched Python file does not compile."""
     if target.path.suffix in (".yaml", ".yml", ".xml", ".launch"):
         return
     try:
@@ -92,7 +91,9 @@ def compiles(target: Target, content: bytes) -> None:
             warnings.simplefilter("ignore")
             compile(content, target.shown, "exec", dont_inherit=True)
     except (SyntaxError, ValueError) as problem:
-        raise RefusedError(f"{target.shown} would not compile with the patch in it ({problem}).") from problem
+        raise RefusedError(
+            f"{target.shown} does not compile with the patch applied ({problem})."
+        ) from problem
 
 
 def _status(path: Path) -> str:

@@ -17,7 +17,7 @@ from pytest_tarl.printable import printable, printable_line
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run a command. Return 0; 1 if it refuses or finds what it should fail on; 2 if it cannot be done."""
+    """Run a command. Return 0; 1 if it refuses or a check fails; 2 for a user error."""
     arguments = parser().parse_args(argv)
     sentence = arguments.needs(f"tarl {arguments.command}")
     if sentence is not None:
@@ -162,7 +162,8 @@ def _add_patches(commands: argparse._SubParsersAction[Parser]) -> None:
             "--directory",
             type=Path,
             metavar="DIR",
-            help="folder that the paths of a patch are relative to; known if the patch is in .tarl",
+            help="folder that the paths of a patch are relative to (default: derived from the .tarl that holds the "
+            "patch)",
         )
     suggest.add_argument("patch", type=Path, help="a file in .tarl/patches")
     apply.set_defaults(run=_apply)

@@ -1,4 +1,4 @@
-"""`tarl diff A B`: what changed between two recordings of a test."""
+"""`tarl diff A B`: compare two recordings of a test."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pytest_tarl.seeds import generator
 
 @dataclass(frozen=True)
 class Moved:
-    """A site that stands on another line."""
+    """A site that moved to another line."""
 
     before: SitePlace
     after: SitePlace
@@ -21,7 +21,7 @@ class Moved:
 
 @dataclass(frozen=True)
 class FixtureDiff:
-    """What changed. `loss` is the reward per episode that B earns less than A, `p_loss` its permutation p-value."""
+    """The changes. `loss` is the mean reward per episode of A minus that of B, `p_loss` its permutation p-value."""
 
     loss: float
     p_loss: float
@@ -33,21 +33,21 @@ class FixtureDiff:
     same_sensors: bool
 
     def worse(self, alpha: float, most: float = 0.0) -> bool:
-        """Tell whether B earns significantly less, and less by more than `most` per episode."""
+        """Return whether B earns significantly less, and less by more than `most` per episode."""
         return self.loss > most and self.p_loss < alpha
 
     @property
     def changed(self) -> bool:
-        """Tell whether a site was edited, added or taken away, or the sensors are others."""
+        """Return whether a site was edited, added or removed, or the sensors differ."""
         return bool(self.gone or self.new) or not self.same_sensors
 
 
 SIGNIFICANT = 0.05
-MOST = 12  # statements of a kind that are listed
+MOST = 12  # most statements listed of a kind
 
 
 def compared(first: Fixture, second: Fixture) -> FixtureDiff:
-    """Compare two fixtures; their tests may have different names."""
+    """Compare two recordings; their tests may have different names."""
     before, after = _sites(first), _sites(second)
     mine, theirs = set(first.sample.cells), set(second.sample.cells)
     a, b = first.sample, second.sample
@@ -68,7 +68,7 @@ def compared(first: Fixture, second: Fixture) -> FixtureDiff:
 
 
 def lines(first: Fixture, second: Fixture, found: FixtureDiff) -> Iterator[str]:
-    """Yield the account of a difference."""
+    """Yield the printed lines of a difference."""
     a, b = first.sample, second.sample
     yield f"{first.test} → {second.test}" if first.test != second.test else first.test
     yield f"  episodes   {a.episodes} → {b.episodes}"
@@ -80,26 +80,27 @@ def lines(first: Fixture, second: Fixture, found: FixtureDiff) -> Iterator[str]:
         yield "  cells      not comparable: the sensors differ"
     yield from _first(
         [
-            f"  gone       `{_code(place)}` of {place.path}:{place.line}: its slice is lost, verdict and region stay"
+            f"  gone       `{_code(place)}` of {place.path}:{place.line}: its slice is lost; verdict and region "
+            "remain valid"
             for place in found.gone
         ]
     )
     yield from _first(
         [
-            f"  new        `{_code(place)}` at {place.path}:{place.line}: it has no slice in the first"
+            f"  new        `{_code(place)}` at {place.path}:{place.line}: it has no slice in the first recording"
             for place in found.new
         ]
     )
     yield from _first(
         [
-            f"  moved      `{_code(moved.before)}` from {_before(moved)} to {_place(moved)}: its slice stays"
+            f"  moved      `{_code(moved.before)}` from {_before(moved)} to {_place(moved)}: its slice is kept"
             for moved in found.moved
         ]
     )
 
 
 def _first(rows: list[str]) -> Iterator[str]:
-    """Yield as many rows as fit a screen beside the others, and how many more there are."""
+    """Yield the first MOST rows, and the number of the others."""
     yield from rows[:MOST]
     if len(rows) > MOST:
         yield f"             … and {len(rows) - MOST} more"

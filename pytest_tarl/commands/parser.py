@@ -13,7 +13,7 @@ NO_COMMAND = "the following arguments are required: COMMAND"
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser of a command, or of the words before it."""
+    """The parser of `tarl` or of one of its commands."""
 
     def error(self, message: str) -> NoReturn:
         """Print the usage (of `tarl` alone: the list of commands) and a sentence, and exit with 2."""
@@ -44,5 +44,5 @@ def sentence(message: str) -> str:
         *before, last = missing[1].split(", ")
         return f"{', '.join(before)} and {last} are missing." if before else f"{last} is missing."
     if extra := re.match(r"unrecognized arguments: (.*)$", message):
-        return f"It does not know {extra[1]!r}."
+        return f"Unknown argument {extra[1]!r}."
     return f"{message[:1].upper()}{message[1:]}."

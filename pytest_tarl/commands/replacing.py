@@ -1,4 +1,4 @@
-"""Give files new contents, all of them or none: no link is followed on the way, and no other's change is lost."""
+"""Replace the contents of several files, all or none, without following links or losing concurrent changes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-RELATIVE = {os.open, os.rename, os.unlink, os.link} <= os.supports_dir_fd  # to an open folder; not on Windows
+RELATIVE = {os.open, os.rename, os.unlink, os.link} <= os.supports_dir_fd  # not on Windows
 _NOFOLLOW: int = getattr(os, "O_NOFOLLOW", 0)
 _READ: int = os.O_RDONLY | _NOFOLLOW | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 _FOLDER: int = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | _NOFOLLOW
@@ -19,7 +19,7 @@ _CREATE: int = os.O_WRONLY | os.O_CREAT | os.O_EXCL | _NOFOLLOW | getattr(os, "O
 
 
 class MovedError(Exception):
-    """A file is not what it was when it was checked: another content, or something else in its place."""
+    """A file changed after it was checked: it has other content, or another file is in its place."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(str(path))
@@ -28,7 +28,7 @@ class MovedError(Exception):
 
 @dataclass(frozen=True)
 class Change:
-    """A file inside `project`, both without links, that holds `before` and is to hold `after`."""
+    """A file inside `project`, both resolved, to change from `before` to `after`."""
 
     path: Path
     project: Path
@@ -38,19 +38,19 @@ class Change:
 
 @dataclass(frozen=True)
 class _Opened:
-    """A change with its folder held open, so that nothing can be put in the folder's place."""
+    """A change whose folder is held open, so that the folder cannot be replaced."""
 
     change: Change
     folder: int | None
 
     def name(self, suffix: str = "") -> str:
-        """Return the file's name, or that of a temporary file beside it, as system calls take it."""
+        """Return the file's name, or that of a temporary file beside it, relative to the open folder."""
         name = f".{self.change.path.name}.{suffix}" if suffix else self.change.path.name
         return name if self.folder is not None else str(self.change.path.with_name(name))
 
 
 def replace_all(changes: Sequence[Change]) -> None:
-    """Make all changes or none; modes and owners stay. Raises MovedError, and OSError where one cannot be written."""
+    """Make all changes or none; keep modes and owners. Raise MovedError, or OSError if one cannot be written."""
     with ExitStack() as stack:
         opened = [stack.enter_context(_held(change)) for change in changes]
         suffix = secrets.token_hex(4)
@@ -74,7 +74,7 @@ def replace_all(changes: Sequence[Change]) -> None:
 
 @contextmanager
 def _held(change: Change) -> Iterator[_Opened]:
-    """Open the folder of a file step by step from the project on; a link on the way is an OSError."""
+    """Open the folder of a file component by component from the project; a link raises OSError."""
     if not RELATIVE:
         if change.path.resolve() != change.path:
             raise MovedError(change.path)
@@ -97,7 +97,7 @@ def _held(change: Change) -> Iterator[_Opened]:
 
 
 def _stage(one: _Opened, new: str, old: str) -> None:
-    """Write the new content beside the file, and keep the old one under a second name, which takes no space."""
+    """Write the new content beside the file, and hard-link the old one as a backup."""
     try:
         with os.fdopen(os.open(one.name(), _READ, dir_fd=one.folder), "rb") as file:
             status = os.fstat(file.fileno())

@@ -1,4 +1,4 @@
-"""`tarl show FIXTURE`: what was recorded, in a screenful."""
+"""`tarl show FIXTURE`: summarize a recording on one screen."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from pytest_tarl.model import TaintList
 from pytest_tarl.report.guarantees import sentences
 from pytest_tarl.sensors import Sensor
 
-CODE = 60  # characters of a line of code
-FEW = 24  # statements that are listed without being asked for
+CODE = 60  # most characters of a line of code
+FEW = 24  # most statements listed without --sites
 
 
 def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = False) -> Iterator[str]:
-    """Yield the account of a fixture of `size` bytes; `sizes` are those of its taint lists.
+    """Yield the summary of a recording of `size` bytes; `sizes` are the bytes of its taint lists.
 
-    Statements are listed where they are few, or `every` one is asked for.
+    List the statements if there are few, or if `every` is true.
     """
     sample = fixture.sample
     yield f"{fixture.test}, seed {fixture.seed}"
     if fixture.design:
-        yield f"  design     with the drift {' and '.join(fixture.design)}, for good"
+        yield f"  design     with the drift {' and '.join(fixture.design)}, permanent"
     yield f"  episodes   {sample.episodes}, {int(sample.steps.sum())} steps, success {sample.passed.mean():.1%}"
     lists = "list" if len(sizes) == 1 else "lists"
     yield f"  size       {_kilobytes(size)}, of which {_kilobytes(sum(sizes))} for {len(sizes)} taint {lists}"
@@ -49,9 +49,9 @@ def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = Fa
 
 
 def described(sensor: Sensor, bins: Sequence[int]) -> str:
-    """Describe a sensor and which of its bins were seen."""
+    """Describe a sensor and the number of visited bins."""
     origin = f"{sensor.topic} {sensor.field}" if sensor.topic else "observed"
-    origin += f", in the node {sensor.expr}" if sensor.expr else ""
+    origin += f", node variable {sensor.expr}" if sensor.expr else ""
     if len(sensor.edges) == 1:
         kind = (
             f"below and above {sensor.edges[0]:g}{sensor.unit and ' ' + sensor.unit}, {len(set(bins))} seen"
@@ -65,7 +65,7 @@ def described(sensor: Sensor, bins: Sequence[int]) -> str:
 
 
 def _counts(recorded: ListSample) -> Floats:
-    """Return how often each site was passed, shape (sites,)."""
+    """Return the number of executions of each site, shape (sites,)."""
     visits = recorded.visits
     events = visits.state != START
     site = (visits.state[events] - 1) % max(recorded.width, 1)

@@ -10,17 +10,17 @@ from typing import Any
 from pytest_tarl.errors import FixtureError
 
 MARKS = {"degraded": "❌", "drifted": "⚠️"}
-BARS = 8  # statements in a picture
+BARS = 8  # most statements in a chart
 
 
 def markdown(folder: Path) -> str:
-    """Return the account of the results in a folder, `.tarl/results`.
+    """Return the results in a folder, `.tarl/results`, as Markdown.
 
-    Raises FixtureError with a sentence where there are none, or one of them cannot be read.
+    Raise FixtureError if there are none, or one of them cannot be read.
     """
     paths = sorted(folder.glob("*.json"))
     if not paths:
-        raise FixtureError(f"{folder}: there is no result. Run pytest --tarl-online first.")
+        raise FixtureError(f"{folder}: no result found. Run pytest --tarl-online first.")
     documents = [_read(path) for path in paths]
     lines = [
         "| test | drift | verdict | loss per episode | where | first statement | repair |",
@@ -39,7 +39,7 @@ def _read(path: Path) -> Mapping[str, Any]:
         _row(document)
         tuple(_picture(document))
     except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
-        raise FixtureError(f"{path}: this is no result of TARL ({error}). Compare again.") from None
+        raise FixtureError(f"{path}: not a result of TARL ({error}). Compare again.") from None
     found: Mapping[str, Any] = document
     return found
 
@@ -76,7 +76,7 @@ def _repair(repair: Mapping[str, Any] | None) -> str:
 
 
 def _picture(document: Mapping[str, Any]) -> Iterator[str]:
-    """Yield a Mermaid chart of the utility of the statements that lost most, as designed (bars) and now (line)."""
+    """Yield a Mermaid chart of the statements with the largest losses: designed (bars) and deployed utility (line)."""
     worst = sorted(document["sites"], key=lambda site: float(site["difference"]))[:BARS]
     shown = sorted(worst, key=lambda site: (str(site["path"]), int(site["line"])))
     names = ", ".join(f'"{Path(str(site["path"])).name}:{site["line"]}"' for site in shown)
@@ -90,7 +90,7 @@ def _picture(document: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _plain(text: object) -> str:
-    """Return a text that ends no cell, no code and no title."""
+    """Return a text without characters that end a table cell, a code span or a title."""
     return str(text).translate(_HARMLESS)
 
 

@@ -1,4 +1,4 @@
-"""The files that patches change: where they are, what is in them, which patch does what to each."""
+"""The files that patches change: their paths, their contents, and the changes of each patch."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pytest_tarl.patching.reading import Patch
 
 @dataclass(frozen=True)
 class Target:
-    """A file to be changed: where it is, what is in it, and what each patch does to it."""
+    """A file to be changed: its path, its content, and the changes of each patch."""
 
     path: Path
     project: Path
@@ -25,17 +25,17 @@ class Target:
 
     @property
     def as_searched(self) -> bool:
-        """Tell whether the file is the text that every patch was searched and accepted on."""
+        """Return whether the file has the text that every patch was accepted on."""
         return all(identical(self.content, file.before) for _, file in self.parts)
 
     @property
     def done(self) -> bool:
-        """Tell whether the file is what its one patch makes of it."""
+        """Return whether the file has the result of its only patch."""
         return len(self.parts) == 1 and identical(self.content, self.parts[0][1].after)
 
 
 def targets(patches: Sequence[Patch], directory: Path | None) -> list[Target]:
-    """Find the files of all patches. Raises RepairError where one is not there, RefusedError where it is outside."""
+    """Find the files of all patches. Raise RepairError if one is missing, RefusedError if it is outside the project."""
     parts: dict[Path, list[tuple[Patch, FilePatch]]] = {}
     projects: dict[Path, Path] = {}
     for patch in patches:
@@ -50,7 +50,7 @@ def targets(patches: Sequence[Patch], directory: Path | None) -> list[Target]:
 
 
 def shown(path: Path) -> str:
-    """Return a path as one types it here."""
+    """Return a path relative to the working directory."""
     return Path(os.path.relpath(path.resolve(), Path.cwd())).as_posix()
 
 

@@ -1,4 +1,4 @@
-"""`tarl watch LOG… --fixture F`: missions judged as they come, an account of them, an exit code."""
+"""`tarl watch LOG… --fixture F`: judge missions as they arrive, report, and set the exit code."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from pytest_tarl.monitoring.watch import Watch
 
 STANDARD_OUTPUT = Path("-")
 INTERRUPTED = 130
-TOLD = 1.0  # seconds between two accounts at most, while there is more to read
+TOLD = 1.0  # most seconds between two reports while there is more to read
 
 
 @dataclass(frozen=True)
 class Order:
-    """What is asked for on the command line."""
+    """The arguments of the command line."""
 
     logs: tuple[Path, ...]
     fixture: Path
@@ -31,17 +31,17 @@ class Order:
     json: Path | None = None
     alpha: float = 0.05
     seed: int = 0
-    interval: float = 1.0  # seconds between two looks at the logs
-    every: float = 60.0  # seconds between two lines while missions come
+    interval: float = 1.0  # seconds between two reads of the logs
+    every: float = 60.0  # seconds between two lines of output
     once: bool = False
     until_alarm: bool = False
-    ros: str = ""  # the library that publishes diagnostics, "rospy" or "rclpy"
+    ros: str = ""  # library that publishes diagnostics: "rospy" or "rclpy"
 
 
 def run(order: Order) -> int:
-    """Watch until it is over; return 1 where there ever was an alarm, else 0, and 130 for `once` cut short by Ctrl-C.
+    """Watch until an end condition; return 1 after any alarm, else 0, and 130 if Ctrl-C interrupts `once`.
 
-    Raises LogError where `once` is asked for and a log could not be read, FixtureError, MonitorError, SettingsError.
+    Raise LogError if a log cannot be read under `once`; FixtureError, MonitorError or SettingsError for invalid input.
     """
     _check(order)
     with state.locked(order.state), _stopped() as stopped:
@@ -58,12 +58,12 @@ def run(order: Order) -> int:
 
 
 def default_state(fixture: Path) -> Path:
-    """Return where the state of a watch is kept unless another place is named."""
+    """Return the default path of a watch's state."""
     return Path(".tarl/watch") / f"{fixture.stem}.npz"
 
 
 class Teller:
-    """Looks at the logs and tells what is new: alarms and problems at once, all else now and then."""
+    """Read the logs and print news: alarms and problems at once, other results at intervals."""
 
     def __init__(self, order: Order, watched: Watch, stopped: Event) -> None:
         self.order = order
@@ -74,7 +74,7 @@ class Teller:
         self._problems: tuple[str, ...] = ()
 
     def look(self) -> Status:
-        """Count what is new in the logs, until that is all, or a reason to end; return the account after it."""
+        """Read new missions until there are no more or an end condition holds; return the status."""
         for _ in self.watch.poll():
             if monotonic() - self._looked > TOLD:
                 self._tell(self.watch.status())
@@ -86,7 +86,7 @@ class Teller:
         return status
 
     def ending(self, status: Status) -> bool:
-        """Tell whether it is time to end."""
+        """Return whether an end condition holds."""
         return self.stopped.is_set() or (self.order.until_alarm and status.alarm)
 
     def _tell(self, status: Status) -> None:
@@ -110,7 +110,7 @@ class Teller:
                 print(words.headline(self.watch, status), flush=True)
 
     def document(self, status: Status) -> None:
-        """Write the account for other programs where that was asked for."""
+        """Write the JSON result if --json is given."""
         found = dashboard.document(self.watch, status)
         if self.order.json == STANDARD_OUTPUT:
             print(dashboard.text(found), flush=True)
@@ -118,7 +118,7 @@ class Teller:
             dashboard.write(found, self.order.json)
 
     def close(self, status: Status) -> int:
-        """Tell the whole account; return the exit code."""
+        """Print the full report; return the exit code."""
         if self.order.json is not None:
             self.document(status)
         if self.order.json != STANDARD_OUTPUT:
@@ -127,7 +127,7 @@ class Teller:
 
 
 def _follow(teller: Teller) -> int:
-    """Look again and again, until an alarm where that ends it, Ctrl-C or SIGTERM."""
+    """Read the logs repeatedly until an alarm (with --until-alarm), Ctrl-C or SIGTERM."""
     order = teller.order
     if not order.ros:
         status = teller.look()
@@ -147,7 +147,7 @@ def _follow(teller: Teller) -> int:
 
 @contextmanager
 def _stopped() -> Iterator[Event]:
-    """Have Ctrl-C and SIGTERM end a watch between two portions, never within one."""
+    """Make Ctrl-C and SIGTERM end a watch between two portions of a log, never within one."""
     stopped = Event()
 
     def stop(_number: int, _frame: object) -> None:
@@ -169,17 +169,19 @@ def _stopped() -> Iterator[Event]:
 
 def _check(order: Order) -> None:
     if not 0.0 < order.alpha < 1.0:
-        raise SettingsError(f"--alpha is a probability between 0 and 1, such as 0.05, got {order.alpha:g}.")
+        raise SettingsError(
+            f"--alpha must be a probability between 0 and 1, such as 0.05, got {order.alpha:g}."
+        )
     for name, value in (("interval", order.interval), ("every", order.every)):
         if not 0.0 < value < float("inf"):
-            raise SettingsError(f"--{name} is a number of seconds above 0, got {value:g}.")
+            raise SettingsError(f"--{name} must be a number of seconds above 0, got {value:g}.")
     if order.once and (order.until_alarm or order.ros):
         raise SettingsError(
-            "--once reads what is there and ends: it goes with neither --until-alarm nor --diagnostics."
+            "--once reads the logs once and ends, so it excludes --until-alarm and --diagnostics."
         )
     taken = {path.resolve() for path in (*order.logs, order.fixture, order.state)}
     if order.json is not None and order.json != STANDARD_OUTPUT and order.json.resolve() in taken:
-        raise SettingsError(f"--json {order.json} would write over what is read: name another file.")
+        raise SettingsError(f"--json {order.json} would overwrite an input file: name another file.")
     twice = _twice(order.logs)
     if twice is not None:
         raise SettingsError(f"{twice} is named twice: name each log once.")

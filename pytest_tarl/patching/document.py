@@ -177,7 +177,7 @@ def document(path: str, text: str) -> Document:
     try:
         return Document(path, text, parse(text))
     except SyntaxError as error:
-        raise RepairError(f"{path}:{error.lineno} is not Python that can be edited: {error.msg}.") from error
+        raise RepairError(f"{path}:{error.lineno} cannot be parsed as Python: {error.msg}.") from error
 
 
 def parse(text: str) -> ast.Module:
@@ -223,7 +223,7 @@ def _check(path: str, text: str) -> None:
             warnings.simplefilter("ignore")
             compile(text, path, "exec", dont_inherit=True)
     except SyntaxError as error:
-        reason = f"{path}:{error.lineno} cannot be changed so that it stays Python: {error.msg}."
+        reason = f"{path}:{error.lineno} would no longer parse as Python: {error.msg}."
         raise RepairError(reason) from error
 
 

@@ -59,7 +59,7 @@ def combined(content: bytes, wanted: Sequence[Replacement]) -> bytes:
     lines, result, at = split_lines(content), list[bytes](), 0
     for one in _in_order(wanted):
         if tuple(lines[one.start : one.end]) != one.old or one.start < at:
-            raise RepairError(f"Line {one.start + 1} is not what it was, so the patches cannot be combined.")
+            raise RepairError(f"Line {one.start + 1} has changed, so the patches cannot be combined.")
         result += [*lines[at : one.start], *one.new]
         at = one.end
     return b"".join((*result, *lines[at:]))

@@ -17,7 +17,9 @@ def located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
     try:
         return _located(patch, directory)
     except (OSError, ValueError) as problem:
-        raise RepairError(f"{patch.name} names files that cannot be ({problem}): make it again.") from problem
+        raise RepairError(
+            f"{patch.name} contains invalid file names ({problem}): make it again."
+        ) from problem
 
 
 def _located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:

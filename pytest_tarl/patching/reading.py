@@ -72,7 +72,7 @@ def read(path: Path) -> Patch:
     facts = tuple((found[1], found[2]) for line in header if (found := _FACT.fullmatch(line)))
     if not bodies or not header[0].startswith(f"# {TITLE}") or BASE not in dict(facts):
         raise RepairError(
-            f"{path} is not a patch of TARL, so there is nothing to check it by: apply it with `git apply`."
+            f"{path} is not a patch of TARL, so TARL cannot check it: apply it with `git apply`."
         )
     damaged = RepairError(f"{path} is damaged: it was cut or edited. Make it again.")
     told = all(line.startswith("#") for line in header[:-1]) and dict(facts)[BASE].isprintable()

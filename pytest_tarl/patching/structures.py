@@ -113,7 +113,7 @@ def _behind(
     """Change a value behind its assignment, where it has a name."""
     target = _target(statement)
     if target is None or statement.value is not node or not source.alone(statement):  # type: ignore[attr-defined]
-        raise RepairError(f"{source.path}:{node.lineno}: the value has no name that it can be asked for by.")
+        raise RepairError(f"{source.path}:{node.lineno}: the value has no name by which to read it.")
     name = source.source(target)
     fill = {**fill, "x": name}
     new = filled(form.template.expression, fill)

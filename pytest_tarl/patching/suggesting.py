@@ -27,10 +27,9 @@ def sarif(patch: Patch) -> str:
     rule = {
         "id": RULE,
         "name": "RepairFound",
-        "shortDescription": {"text": "A change that restores what the software earns in a drifted world"},
+        "shortDescription": {"text": "A change that restores the reward of the software in a drifted world"},
         "fullDescription": {
-            "text": "Found by simulation and accepted on seeds that nothing was chosen by, in the drifted world and in "
-            "the designed one."
+            "text": "Found by simulation and validated on held-out seeds, in the drifted and in the designed world."
         },
         "defaultConfiguration": {"level": "warning"},
     }
@@ -45,7 +44,7 @@ def sarif(patch: Patch) -> str:
         "partialFingerprints": {"tarlRepair/v1": " ".join(file.after for file in patch.files)},
         "fixes": [{"description": {"text": patch.title.partition(": ")[2]}, "artifactChanges": changes}],
     }
-    base = {ROOT: {"description": {"text": "The folder that the paths of the patch are relative to."}}}
+    base = {ROOT: {"description": {"text": "The base folder of the paths in the patch."}}}
     run = {
         "tool": {"driver": driver},
         "columnKind": "unicodeCodePoints",

@@ -87,11 +87,11 @@ def template(path: Path) -> Template:
         )
     except (KeyError, TypeError, ValueError, AttributeError) as problem:
         raise SettingsError(
-            f"{path}: this is no template ({type(problem).__name__}: {problem}); it needs summary, on, cost and "
+            f"{path}: not a template ({type(problem).__name__}: {problem}); it needs summary, on, cost and "
             "expression."
         ) from problem
     if made.on not in KINDS:
-        raise SettingsError(f"{path}: on = {made.on!r} is not known; it is one of {', '.join(KINDS)}.")
+        raise SettingsError(f"{path}: on = {made.on!r} is unknown; use one of {', '.join(KINDS)}.")
     _check_placeholders(path, made)
     return made
 
@@ -131,7 +131,7 @@ def _check_placeholders(path: Path, made: Template) -> None:
             raise SettingsError(f"{path}: nothing fills {{{name}}}; known are {', '.join(sorted(known))}.")
     for one in made.parameters:
         if one.of not in SCALES:
-            raise SettingsError(f"{path}: of = {one.of!r} is not known; it is typical, sensor, or left out.")
+            raise SettingsError(f"{path}: of = {one.of!r} is unknown; use typical or sensor, or omit it.")
 
 
 def _placeholders(made: Template) -> Iterator[str]:

@@ -197,7 +197,7 @@ def _evidence(
         f"seed: {order.options.seed}",
         f"designed: {words.average(totals['offline'])}",
         f"drifted: {words.average(totals['online'])}",
-        f"drifted and repaired: {words.average(repaired)}, of seeds that nothing was chosen by",
+        f"drifted and repaired: {words.average(repaired)}, on held-out seeds",
         _designed_and_repaired(order, nominal),
         *dict.fromkeys(f"{CONSTANT}: {told}" for told in _constants(accepted.candidate)),
         *remarks(mutants, accepted.candidate),
@@ -249,9 +249,11 @@ def _jumps(candidate: Candidate) -> list[str]:
 def _designed_and_repaired(order: Order, nominal: Sequence[float]) -> str:
     """Tell what the repair earns in the designed world."""
     if order.permanent:
-        return f"old world and repaired: {words.average(nominal)}; not asked, since the drift is for good"
+        return (
+            f"old world and repaired: {words.average(nominal)}; not required, because the drift is permanent"
+        )
     if nominal:
-        return f"designed and repaired: {words.average(nominal)}, of seeds that nothing was chosen by"
+        return f"designed and repaired: {words.average(nominal)}, on held-out seeds"
     return "designed and repaired: as designed, since the condition never holds there"
 
 

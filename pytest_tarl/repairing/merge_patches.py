@@ -33,7 +33,7 @@ def joined(paths: Sequence[Path], cwd: Path) -> Joined:
         for one in group:
             if one not in different:
                 twin = next(each for each in different if each.files == one.files)
-                lines.append(f"{one.name} makes the same change as {twin.name}: one of them is enough")
+                lines.append(f"{one.name} makes the same change as {twin.name}: apply only one of them")
         told, kept = _as_one(different)
         lines += told
         commands += [apply_command(path, cwd) for path in kept]
@@ -48,7 +48,7 @@ def _as_one(patches: Sequence[Patch]) -> tuple[list[str], list[Path]]:
     clashes = conflicts(patches)
     if clashes:
         what = "; ".join(dict.fromkeys(map(str, clashes)))
-        return [f"{what}: apply one of them, then record and search the other repair again"], paths
+        return [f"{what}: apply one of them, then record and search for the other repair again"], paths
     try:
         combined = _combined(patches)
     except RepairError as problem:
@@ -76,7 +76,7 @@ def _combined(patches: Sequence[Patch]) -> Path:
                 compile(file.applied(originals[file.name]), file.name, "exec", dont_inherit=True)
     except (SyntaxError, ValueError) as problem:
         path.unlink()
-        raise RepairError(f"what they make together would not compile ({problem}).") from problem
+        raise RepairError(f"the merged file does not compile ({problem}).") from problem
     return path
 
 

@@ -54,5 +54,5 @@ def _raced(ranking: Ranking, places: Sequence[str], effects: Mapping[str, Sequen
         return f"{told}; {more} more than it in the drifted world ({span})"
     if found.level:
         others = "one other" if found.level == 1 else f"{found.level} others"
-        return f"{told}; {others} cannot be told from it (the next: {span})"
+        return f"{told}; {others} cannot be distinguished from it (the next: {span})"
     return f"{told}; it is ahead of the next ({span})"

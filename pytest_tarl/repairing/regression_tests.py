@@ -92,7 +92,7 @@ def _compared(
     if failed:
         told += f", {failed} of them fail now"
     if mutants.order.permanent and neighbour.drift is None:
-        return False, f"{told}; it does not declare the drift, so this is its old world, which is not asked"
+        return False, f"{told}; it does not declare the drift, so this is its old world, which may change"
     return failed > 0 or now < usually - neighbour.margin, told
 
 

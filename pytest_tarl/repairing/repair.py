@@ -246,7 +246,8 @@ def _notes(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Watch)
         yield from remarks(mutants, found.accepted.candidate)
     yield from _of_the_range(order, examiner, watch)
     yield from (
-        f"a candidate was dropped since another test loses: {told}" for told in dict.fromkeys(examiner.lost)
+        f"a candidate was dropped because another test earns less: {told}"
+        for told in dict.fromkeys(examiner.lost)
     )
     if found.structure:
         yield (

@@ -1,1 +1,1 @@
-"""What an on-line run found, told to people (terminal, page) and to other tools (JSON)."""
+"""Report the result of a comparison to people (terminal, page) and to other tools (JSON)."""

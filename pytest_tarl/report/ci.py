@@ -1,4 +1,4 @@
-"""What a build server shows of a comparison: properties of a JUnit test case, a GitHub annotation."""
+"""Report a comparison to build servers: properties of a JUnit test case, a GitHub annotation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _IN_PROPERTY = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A", ":": "%3A", 
 
 
 def properties(comparison: Comparison) -> tuple[tuple[str, str], ...]:
-    """Return name and value of what is known, in a fixed order; what is not known is left out."""
+    """Return the known properties as names and values, in a fixed order."""
     verdict, repair = comparison.verdict, comparison.repair
     found = {
         "tarl_verdict": verdict.result,
@@ -30,9 +30,9 @@ def properties(comparison: Comparison) -> tuple[tuple[str, str], ...]:
 
 
 def annotation(comparison: Comparison, root: Path) -> str:
-    """Return the workflow command that marks the culprit's line on GitHub; empty where no line is to blame.
+    """Return the workflow command that marks the culprit's line on GitHub; empty without a culprit.
 
-    Its path is relative to the checkout, wherever in it `root` is.
+    Its path is relative to the checkout, of which `root` may be a subfolder.
     """
     if not _guilty(comparison):
         return ""

@@ -1,4 +1,4 @@
-"""The page's figures as plain data: what is drawn, in sensor units and rewards; how it looks is the page's business."""
+"""The page's figures as plain data, in sensor units and rewards; the page's script draws them."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from pytest_tarl.sensors import Cell, Sensor
 if TYPE_CHECKING:
     from pytest_tarl.model import Matrix
 
-MOST_ROWS = 6  # values of the splitting sensor that get a row of their own
-QUIET = 0.25  # of the range of utilities: smaller differences never get the strongest colours
-DIGITS = 5  # significant digits of a number on the page
+MOST_ROWS = 6  # most values of the splitting sensor with their own row
+QUIET = 0.25  # share of the utility range: least end of the difference scale
+DIGITS = 5  # significant digits of numbers on the page
 
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """The sensors that a figure shows: one along the axis, one whose values are rows; all others are averaged."""
+    """The sensors that a figure shows: one along the axis and one as rows; all others are averaged."""
 
     position: int
     split: int | None
 
     def others(self, sensors: Sequence[Sensor]) -> tuple[str, ...]:
-        """Name the sensors that are averaged over."""
+        """Return the names of the averaged sensors."""
         return tuple(s.name for d, s in enumerate(sensors) if d not in (self.position, self.split))
 
 
 def plane(comparison: Comparison) -> Plane:
-    """Choose the first numeric sensor as position, and the category that tells most about the region as split."""
+    """Choose the first numeric sensor as axis, and the category that best separates the region as rows."""
     sensors = comparison.sensors
     position = next((d for d, sensor in enumerate(sensors) if sensor.numeric), 0)
     categories = [d for d, sensor in enumerate(sensors) if d != position and not sensor.numeric]
@@ -44,14 +44,14 @@ def plane(comparison: Comparison) -> Plane:
 
 
 def _covered(comparison: Comparison, dimension: int) -> float:
-    """Return the share of a sensor's values that the region takes in: 1 where the sensor tells nothing about it."""
+    """Return the share of a sensor's values that occur in the region; 1 means that it does not separate the region."""
     seen = {cell[dimension] for cell in comparison.cells}
     region = (*comparison.region.cells, *comparison.region.novel)
     return len({cell[dimension] for cell in region} & seen) / len(seen) if region and seen else 1.0
 
 
 def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str, Any] | None:
-    """Return Figures 2 and 3 and their difference: utility over position and site; None without a visited cell."""
+    """Return the utility of both worlds and its difference over position and site; None without a visited cell."""
     if not comparison.sensors or not comparison.cells:
         return None
     shown = plane(comparison)
@@ -72,7 +72,7 @@ def utility_figure(comparison: Comparison, compared: ListComparison) -> dict[str
 
 
 def split_values(comparison: Comparison, shown: Plane) -> Sequence[int | None]:
-    """Return the values that get rows, those of the most cells if there are too many; [None] for a single row."""
+    """Return the values shown as rows, those with the most cells if there are too many; [None] for a single row."""
     if shown.split is None:
         return [None]
     counted: dict[int, int] = {}
@@ -109,7 +109,7 @@ def _row(
 
 
 def _grid(values: Matrix, places: Sequence[int], bins: Sequence[int]) -> list[list[float | None]]:
-    """Average cells over each position; shape (sites, positions), null where never visited."""
+    """Average the cells of each position; shape (sites, positions), null if never visited."""
     column = np.asarray(places, dtype=np.intp) - bins[0]
     known = ~np.isnan(values)
     total = np.zeros((len(bins), values.shape[1]))
@@ -133,7 +133,7 @@ def _axis(sensor: Sensor, dimension: int, bins: Sequence[int], vocabulary: Vocab
 
 
 def _edges(sensor: Sensor, first: int, last: int) -> tuple[float, float]:
-    """Return where bins begin and end on the axis; the open ones at either end are drawn one bin wide."""
+    """Return the bin edges on the axis; the open bins at either end are drawn one bin wide."""
     if not sensor.bins or sensor.low is None or sensor.high is None:
         return first - 0.5, last + 0.5
     width = (sensor.high - sensor.low) / sensor.bins
@@ -146,7 +146,7 @@ def _span(indices: Iterable[int]) -> list[int]:
 
 
 def _extremes(rows: Iterable[Mapping[str, Any]]) -> tuple[float, float, float]:
-    """Return the least and the largest value that is shown, and the largest difference in size."""
+    """Return the least and the largest shown value, and the largest difference in magnitude."""
     values, changes = [], [0.0]
     for row in rows:
         for before, after in zip(chain(*row["offline"]), chain(*row["online"]), strict=True):
@@ -157,12 +157,14 @@ def _extremes(rows: Iterable[Mapping[str, Any]]) -> tuple[float, float, float]:
 
 
 def reward_curves(comparison: Comparison) -> list[dict[str, Any]]:
-    """Return Figure 5: the average total reward after each episode of both worlds, every search and the repair."""
-    drift = comparison.drift or "on-line"
+    """Return the average total reward after each episode of both worlds, every search and the repair."""
+    drift = comparison.drift or "deployed"
     curves = [
-        _curve("off-line", "offline", comparison.totals.get("offline", ())),
+        _curve("designed", "offline", comparison.totals.get("offline", ())),
         _curve(
-            f"on-line ({drift})" if comparison.drift else drift, "online", comparison.totals.get("online", ())
+            f"deployed ({drift})" if comparison.drift else drift,
+            "online",
+            comparison.totals.get("online", ()),
         ),
     ]
     curves += [_curve(f"search: {s.method}", "search", s.totals, s.labels) for s in comparison.searches]
@@ -188,5 +190,5 @@ def _curve(name: str, kind: str, totals: Sequence[float], labels: Sequence[str] 
 
 
 def number(value: float) -> float | None:
-    """Return a number as the page carries it: a few digits, null where it is not finite."""
+    """Return a number rounded to DIGITS significant digits; null if it is not finite."""
     return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None

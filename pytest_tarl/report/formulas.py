@@ -1,4 +1,4 @@
-"""Formulas in a report: a row each, with robustness by world and the first violation."""
+"""Formulas in a report: one row each, with robustness by world and the first violation."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ from pytest_tarl.model import Comparison, FormulaRow, FormulaWorld
 from pytest_tarl.report import words
 
 WORLDS = {
-    "offline": "off-line",
-    "online": "on-line",
+    "offline": "designed",
+    "online": "deployed",
     "repaired": "repaired",
     "nominal_repaired": "designed world repaired",
 }
 
 
 def lines(comparison: Comparison) -> Iterator[str]:
-    """Yield a line a formula for the terminal; those that are violated on-line come first."""
+    """Yield one line per formula for the terminal, violated ones first."""
     for row in sorted(comparison.formulas, key=lambda one: not violated(one)):
         yield f"{row.formula}: {', '.join(_worlds(row)) or 'never judged'}"
 
 
 def violated(row: FormulaRow) -> bool:
-    """Tell whether any on-line episode violates the formula."""
+    """Return whether any deployed episode violates the formula."""
     world = row.worlds.get("online")
     return world is not None and world.violated > 0
 
 
 def page_rows(comparison: Comparison) -> list[dict[str, Any]]:
-    """Return what the page's table shows."""
+    """Return the rows of the page's table."""
     return [
         {
             "formula": row.formula,
@@ -42,7 +42,7 @@ def page_rows(comparison: Comparison) -> list[dict[str, Any]]:
 
 
 def margin(value: float) -> str:
-    """Write a robustness; one that is 0 but for the truth of a comparison is 0."""
+    """Format a robustness; infinitesimal values from strict comparisons are shown as 0."""
     return words.amount(0.0 if abs(value) < NEGLIGIBLE else value)
 
 

@@ -1,4 +1,4 @@
-"""What is stated of the next episodes, in sentences."""
+"""Bounds on future episodes, in sentences."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from collections.abc import Iterator
 
 from pytest_tarl.model import Comparison, Guarantee
 
-SCOPE = "over the worlds that this test draws"
+SCOPE = "over the worlds that this test samples"
 WORLDS = {"offline": "designed", "repaired": "repaired", "nominal_repaired": "designed, repaired"}
 
 
 def sentences(stated: Guarantee) -> Iterator[str]:
-    """Yield a sentence a bound; one alone where episodes do not vary, since they tell of no other world."""
+    """Yield one sentence per bound; a single one if the episodes do not vary, since they sample only one world."""
     sure = f"with {100 * stated.success.confidence:.5g} % confidence"
     every = "every one" if stated.passed == stated.episodes else f"{stated.passed}"
     if not stated.varied:
         yield (
-            f"one world was tested: all {stated.episodes} episodes are the same ({every} succeeded), so nothing is "
-            "stated of others. Draw what may vary from tarl.rng."
+            f"only one world was tested: all {stated.episodes} episodes are equal ({every} succeeded), so there are "
+            "no bounds for other worlds. Draw variable quantities from tarl.rng."
         )
         return
     yield (
-        f"{stated.passed} of {stated.episodes} missions succeed: {sure} at least {percent(stated.success.low)} do, "
-        f"{SCOPE}"
+        f"{stated.passed} of {stated.episodes} missions succeeded: success rate at least "
+        f"{percent(stated.success.low)} {sure}, {SCOPE}"
     )
     how = (
         "totals within the declared range" if stated.mean.exact else "approximate: no total_range is declared"
@@ -34,16 +34,16 @@ def sentences(stated: Guarantee) -> Iterator[str]:
         yield f"{most} of the missions earn at least {figure(stated.quantile)}, {sure}"
     elif stated.needed:
         yield (
-            f"what {most} of the missions earn at least takes {stated.needed} episodes, "
+            f"a bound that {most} of the missions reach needs {stated.needed} episodes, "
             f"{stated.needed - stated.episodes} more than were run"
         )
-    yield "each of these holds by itself"
+    yield "each bound holds separately"
 
 
 def brief(stated: Guarantee) -> Iterator[str]:
-    """Yield the bounds in one line."""
+    """Return the bounds in one line."""
     if not stated.varied:
-        yield f"one world was tested, {stated.episodes} times"
+        yield f"only one world was tested, {stated.episodes} times"
         return
     sure = f"{100 * stated.success.confidence:.5g} % confidence"
     mean = "at least" if stated.mean.exact else "approximately at least"
@@ -54,17 +54,17 @@ def brief(stated: Guarantee) -> Iterator[str]:
 
 
 def worlds(comparison: Comparison) -> Iterator[tuple[str, Guarantee]]:
-    """Yield the worlds of which something is stated, by the names that a report has for them."""
+    """Yield the worlds with bounds, by their names in reports."""
     for world, name in WORLDS.items():
         if world in comparison.stated:
             yield name, comparison.stated[world]
 
 
 def percent(share: float) -> str:
-    """Write a share rounded down to a tenth of a per cent, so that a bound stays one."""
+    """Format a share, rounded down to 0.1 % so that a lower bound remains valid."""
     return f"{math.floor(1000 * share + 1e-9) / 10:.1f} %".replace(".0 %", " %")
 
 
 def figure(value: float) -> str:
-    """Write a reward."""
+    """Format a reward."""
     return f"{value:.4g}" if math.isfinite(value) else "nothing"

@@ -1,4 +1,4 @@
-"""Python lines and patches as highlighted HTML. Everything that comes from outside is escaped by pygments."""
+"""Python lines and patches as highlighted HTML. pygments escapes all untrusted text."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _HUNK = re.compile(r"@@ -(\d+)(?:,(\d+))? \+(\d+)(?:,(\d+))? @@")
 
 @dataclass(frozen=True, slots=True)
 class PatchLine:
-    """One line of a unified diff: its numbers before and after, where it has them, and its text as HTML."""
+    """One line of a unified diff: its line numbers before and after, if any, and its text as HTML."""
 
     kind: Kind
     old: int | None

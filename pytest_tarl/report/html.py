@@ -1,4 +1,4 @@
-"""The report page: one HTML file with everything in it, for people who were not there when the test ran."""
+"""The report page: one self-contained HTML file."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _IN_SCRIPT = {ord(character): f"\\u{ord(character):04x}" for character in "<>&\u
 
 
 def write(comparison: Comparison, path: Path, *, title: str | None = None) -> None:
-    """Write the page; `title` stands in for the test's name.
+    """Write the page; `title` replaces the test's name.
 
     Raises:
         TarlError: a package of the extra `report` is missing, or the file cannot be written.
@@ -43,7 +43,7 @@ def write(comparison: Comparison, path: Path, *, title: str | None = None) -> No
 
 
 def render(comparison: Comparison, *, title: str | None = None) -> str:
-    """Return the page's text. Raises TarlError where a package of the extra `report` is missing."""
+    """Return the page's text. Raise TarlError if a package of the extra `report` is missing."""
     _require()
     import jinja2
 
@@ -90,30 +90,30 @@ def _asset(name: str) -> str:
 
 @lru_cache(maxsize=1)
 def _library() -> str:
-    """Return plotly.js as the page carries it: compressed to two fifths, in base64; browsers inflate it."""
+    """Return plotly.js compressed (to two fifths) and base64-encoded; the browser inflates it."""
     script = resources.files("plotly").joinpath("package_data").joinpath("plotly.min.js").read_bytes()
     return base64.b64encode(zlib.compress(script, 9)).decode("ascii")
 
 
 def in_script(data: Any) -> str:
-    """Return data as JSON that cannot end the script element it stands in."""
+    """Return data as JSON that cannot close the surrounding script element."""
     return json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":")).translate(_IN_SCRIPT)
 
 
 def parts(text: str) -> list[str]:
-    """Split a path or test id where a line may be broken."""
+    """Split a path or test id at allowed line breaks."""
     return re.findall(r".+?(?:::|[/_.]|$)", text)
 
 
 def typeset(text: str) -> str:
-    """Write ranges with a dash and negative numbers with a minus sign."""
+    """Typeset ranges with a dash and negative numbers with a minus sign."""
     return _MINUS.sub("−", _RANGE.sub("–", text))
 
 
 def _data(comparison: Comparison) -> dict[str, Any]:
-    """Return what the script draws."""
+    """Return the data for the page's script."""
     return {
-        "world": comparison.drift or "on-line",
+        "world": comparison.drift or "deployed",
         "utility": [utility_figure(comparison, compared) for compared in comparison.lists],
         "curves": reward_curves(comparison),
         "offline": words.atr(comparison, "offline"),
@@ -122,12 +122,12 @@ def _data(comparison: Comparison) -> dict[str, Any]:
 
 
 def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return what the template writes."""
+    """Return the variables of the template."""
     name = title or comparison.test
     return {
         "c": comparison,
         "title": name,
-        "world": comparison.drift or "on-line",
+        "world": comparison.drift or "deployed",
         "headline": words.verdict_sentence(comparison),
         "loss": words.loss_words(comparison),
         "stated": [(name, list(guarantees.sentences(one))) for name, one in guarantees.worlds(comparison)],
@@ -162,14 +162,14 @@ def _context(comparison: Comparison, title: str | None, drawn: Mapping[str, Any]
 
 
 def _clipped(curves: Sequence[Mapping[str, Any]]) -> bool:
-    """Tell whether the off-line curve is longer than all others, and so not drawn in full."""
+    """Return whether the designed curve is longer than all others and therefore clipped."""
     offline = [len(curve["mean"]) for curve in curves if curve["kind"] == "offline"]
     others = [len(curve["mean"]) for curve in curves if curve["kind"] != "offline"]
     return bool(offline and others) and max(offline) > max(others)
 
 
 def _share(comparison: Comparison) -> float | None:
-    """Return the share of the lost reward that the repair brought back, in per cent."""
+    """Return the share of the lost reward that the repair restored, in per cent."""
     worlds = [words.atr(comparison, world) for world in ("offline", "online", "repaired")]
     offline, online, repaired = worlds
     if offline is None or online is None or repaired is None or offline <= online:
@@ -191,18 +191,18 @@ def _list(
 
 
 def _captions(comparison: Comparison, figure: Mapping[str, Any]) -> Iterator[str]:
-    """Yield what a reader of the figure must know about how it was made."""
+    """Yield notes on how the figure was made."""
     shown = plane(comparison)
     if others := shown.others(comparison.sensors):
         yield f"Each value is the mean over {' and '.join(others)}."
     if shown.split is not None and len({cell[shown.split] for cell in comparison.cells}) > MOST_ROWS:
-        yield f"Only the {MOST_ROWS} commonest values of {comparison.sensors[shown.split].name} are shown."
+        yield f"Only the {MOST_ROWS} most frequent values of {comparison.sensors[shown.split].name} are shown."
     if figure["axis"]["outside"]:
-        yield "The outermost columns hold all that lies beyond."
+        yield "The outermost columns hold all values beyond the range."
 
 
 def _largest_change(figure: Mapping[str, Any]) -> str:
-    """Say where the on-line utility differs most."""
+    """Describe the largest difference of utility."""
     found = [
         (on - off, row["title"], site, figure["axis"]["names"][column])
         for row in figure["rows"]
@@ -219,7 +219,7 @@ def _largest_change(figure: Mapping[str, Any]) -> str:
 
 
 def _curves_in_words(curves: Iterable[Mapping[str, Any]]) -> str:
-    """Say where each curve of the reward figure ends."""
+    """Describe the end of each curve in the reward figure."""
     ends = []
     for curve in curves:
         end = typeset(words.amount(curve["mean"][-1]))

@@ -1,4 +1,4 @@
-"""The result for other tools: one versioned JSON document per on-line run, see `result.schema.json`."""
+"""The result for other tools: one versioned JSON document per comparison, see `result.schema.json`."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ WORLDS = ("offline", "online", "repaired", "nominal_repaired")
 
 
 def write(comparison: Comparison, path: Path, episodes: Mapping[str, int]) -> None:
-    """Write the result of a run; `episodes` counts those of `offline`, `online`, `search` and `acceptance`.
+    """Write the result of a run; `episodes` has the counts of `offline`, `online`, `search` and `acceptance`.
 
     Raises:
         TarlError: the file cannot be written.
@@ -56,7 +56,7 @@ def schema() -> dict[str, Any]:
 
 
 def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, Any]:
-    """Return the result as plain values; what is not a finite number is null."""
+    """Return the result as plain values; numbers that are not finite become null."""
     verdict, repair = comparison.verdict, comparison.repair
     return {
         "format": FORMAT_VERSION,
@@ -90,7 +90,7 @@ def document(comparison: Comparison, episodes: Mapping[str, int]) -> dict[str, A
 
 
 def _sizes(comparison: Comparison) -> list[dict[str, Any]]:
-    """Return what episodes earn in each part of a drift's range."""
+    """Return the mean rewards in each interval of a drift's range."""
     return [
         {
             "part": row.band.part,
@@ -104,9 +104,9 @@ def _sizes(comparison: Comparison) -> list[dict[str, Any]]:
 
 
 def rectangles(cells: Iterable[Cell], sensors: Sequence[Sensor]) -> list[dict[str, list[Any]]]:
-    """Cover cells with rectangles: per sensor name a closed interval in its units, null at an open end.
+    """Cover cells with rectangles: per sensor name, a closed interval in its units, null at an open end.
 
-    Both ends of a text sensor are one and the same category.
+    For a text sensor, both ends are the same category.
     """
     texts = [d for d, sensor in enumerate(sensors) if sensor.categories]
     return [
@@ -124,7 +124,7 @@ def _interval(sensor: Sensor, first: int, last: int) -> list[Any]:
 
 
 def _widest(slices: Iterable[Slice]) -> list[Slice]:
-    """Keep each site once, with the list in which it changes most, in order of first appearance."""
+    """Return each site once, from the list in which it changes most, in order of first appearance."""
     kept: dict[str, Slice] = {}
     for one in slices:
         held = kept.get(one.site.id)
@@ -206,7 +206,7 @@ def _partial(partial: Partial) -> dict[str, Any]:
 
 
 def _tried(attempt: Attempt) -> dict[str, Any]:
-    """Return a candidate that came near, and what became of it."""
+    """Return a promising candidate and its outcome."""
     return {
         "what": attempt.what,
         "reason": attempt.reason or None,
@@ -240,7 +240,7 @@ def _bound(bound: Bound) -> dict[str, Any]:
 
 
 def _finite(value: float | None) -> float | None:
-    """Return a number as JSON can hold it: numpy scalars as Python's, NaN and infinities as null."""
+    """Return a number as valid JSON: numpy scalars as Python's, NaN and infinities as null."""
     if value is None or not math.isfinite(value):
         return None
     return value if isinstance(value, int) else float(value)

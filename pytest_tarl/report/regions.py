@@ -1,4 +1,4 @@
-"""Sets of cells as rectangles of neighbouring bins, and as words: `x 4.0-7.0 m, terrain true`."""
+"""Describe sets of cells as rectangles of neighbouring bins, and in words: `x 4.0-7.0 m, terrain true`."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pytest_tarl.sensors import Cell, Sensor
 
 Box = tuple[tuple[int, int], ...]  # first and last bin per sensor
 
-ORDERS = 24  # orders of sensors that are tried for the fewest boxes: all of up to four
-NAMED = 3  # places that words name before they say "and 2 more"
+ORDERS = 24  # orders of sensors tried to minimise the boxes: all orders of up to four sensors
+NAMED = 3  # places named before "and 2 more"
 
 
 def boxes(cells: Iterable[Cell], apart: Collection[int] = ()) -> tuple[Box, ...]:
@@ -53,7 +53,7 @@ def runs(ranges: Iterable[tuple[int, int]]) -> list[tuple[int, int]]:
 
 
 def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
-    """Join boxes across cells that nobody visited: wherever their hull holds none of `others`."""
+    """Join boxes across unvisited cells, if their hull contains none of `others`."""
     kept, pending, barred = [], list(cover), list(others)
     while pending:
         box = pending.pop(0)
@@ -69,7 +69,7 @@ def bridged(cover: Iterable[Box], others: Iterable[Cell]) -> tuple[Box, ...]:
 
 
 def closed(cover: Iterable[Box], dimension: int, bins: int) -> tuple[Box, ...]:
-    """Join boxes of an angle that meet at the ends of its range: the joined one runs past the last bin."""
+    """Join boxes of an angle that meet at the ends of its range; the last bin of a joined one exceeds the range."""
     kept = list(cover)
     for ending in [box for box in kept if box[dimension][1] == bins - 1 and box[dimension][0] > 0]:
         first = ending[dimension][0]
@@ -88,7 +88,7 @@ def _holds(box: Box, cell: Cell) -> bool:
 
 
 class Vocabulary:
-    """How bins are called, given the sensors and the cells that were seen in either world."""
+    """Names of bins, given the sensors and the cells visited in either world."""
 
     def __init__(self, sensors: Sequence[Sensor], seen: Iterable[Cell]) -> None:
         self.sensors = tuple(sensors)
@@ -97,7 +97,7 @@ class Vocabulary:
         self.seen = tuple(sorted(set(bins)) for bins in by_sensor)
 
     def words(self, cells: Iterable[Cell], most: int = NAMED) -> str:
-        """Name a set of cells, at most `most` places of it; cells that nobody visited may lie in between."""
+        """Describe a set of cells by at most `most` places, which may include unvisited cells."""
         chosen = frozenset(cells)
         cover = bridged(boxes(chosen), self.cells - chosen)
         for dimension, sensor in enumerate(self.sensors):
@@ -126,7 +126,7 @@ class Vocabulary:
         return ", ".join(phrase for phrase in phrases if phrase) or "everywhere"
 
     def _several(self, ranges: Sequence[tuple[int, int]]) -> str:
-        """Name ranges of the first sensor, the unit once: `x 1.0-2.0 or 4.0-7.0 m`."""
+        """Describe ranges of the first sensor, with one unit: `x 1.0-2.0 or 4.0-7.0 m`."""
         if len(ranges) == 1:
             return self._phrase(0, *ranges[0])
         joined = runs(ranges)
@@ -138,7 +138,7 @@ class Vocabulary:
         return f"{self.sensors[0].name} {' or '.join(named[:NAMED])}{unit and ' ' + unit}{more}"
 
     def _phrase(self, dimension: int, first: int, last: int) -> str:
-        """Name a range of bins of one sensor; nothing where it covers all values that a category ever had."""
+        """Describe a range of bins of one sensor; empty if it covers all visited values of a category."""
         sensor, seen = self.sensors[dimension], self.seen[dimension]
         if not sensor.numeric and len(seen) > 1 and first <= seen[0] and last >= seen[-1]:
             return ""
@@ -158,7 +158,7 @@ class Vocabulary:
 
 
 def _interval(sensor: Sensor, first: int, last: int) -> str:
-    """Write what bins cover, as precise as a tenth of a bin or so is worth."""
+    """Format the interval of bins, to about a tenth of a bin."""
     low, high = sensor.interval(first, last)
     digits = max(0, -math.floor(math.log10(sensor.resolution)))
     unit = sensor.unit and " " + sensor.unit

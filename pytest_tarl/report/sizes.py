@@ -1,4 +1,4 @@
-"""Reward against the size of a drift that has a range: in words, and as points for the page."""
+"""Reward against the size of a drift with a range: in words, and as points for the page."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from statistics import fmean
 from pytest_tarl.model import Band, Comparison, Sizes
 from pytest_tarl.report import words
 
-WORLDS = ("online", "repaired")  # before and after
-WIDTH, HEIGHT = 640, 240  # of the drawing, without its margins
+WORLDS = ("online", "repaired")  # before and after the repair
+WIDTH, HEIGHT = 640, 240  # pixels of the drawing, without its margins
 
 
 @dataclass(frozen=True)
 class Row:
-    """The mean reward in a part of a range, before and after the repair; None where there is no episode."""
+    """The mean reward in an interval of a range, before and after the repair; None without an episode."""
 
     band: Band
     before: float | None
@@ -25,18 +25,18 @@ class Row:
 
 @dataclass(frozen=True)
 class Plot:
-    """One range as a drawing: points in pixels by world, ticks with their texts."""
+    """One range as a drawing: points in pixels by world, ticks with labels."""
 
     part: str
     points: Mapping[str, tuple[tuple[float, float], ...]]
     across: tuple[tuple[float, str], ...]
     up: tuple[tuple[float, str], ...]
-    offline: float  # height of the off-line average
+    offline: float  # y of the designed average
     rows: tuple[Row, ...]
 
 
 def rows(comparison: Comparison) -> Iterator[Row]:
-    """Yield every part of every range with its rewards."""
+    """Yield every interval of every range with its rewards."""
     for one in comparison.sizes.values():
         for band in one.bands:
             earned = [_within(comparison, one, band, world) for world in WORLDS]
@@ -45,7 +45,7 @@ def rows(comparison: Comparison) -> Iterator[Row]:
 
 
 def lines(comparison: Comparison) -> Iterator[str]:
-    """Say what an episode earns in each part of the range, `before → after`."""
+    """Yield the mean reward in each interval of the range, `before → after`."""
     repaired = bool(comparison.totals.get("repaired"))
     for row in rows(comparison):
         after = f" → {words.amount(row.after)} repaired" if repaired else ""

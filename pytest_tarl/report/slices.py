@@ -1,4 +1,4 @@
-"""Figure 4: slices beside their code lines, laid out in per cent of the width so that they need no script."""
+"""Lay out slices beside their code lines, in per cent of the width, so that the page needs no script for them."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from dataclasses import dataclass
 from pytest_tarl.model import SitePlace, Slice
 from pytest_tarl.report.words import peak
 
-MARGIN = 0.05  # of the width, free on either side of the outermost value
-TICKS = 4  # about so many per scale
+MARGIN = 0.05  # share of the width left free on either side
+TICKS = 4  # approximate number per scale
 
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """A linear scale from values to per cent of the width; it always shows zero."""
+    """A linear scale from values to per cent of the width, which always includes zero."""
 
     low: float
     high: float
 
     def at(self, value: float) -> float:
-        """Return where a value stands, 0 to 100."""
+        """Return the position of a value, 0 to 100."""
         return round(100 * (value - self.low) / (self.high - self.low), 3)
 
     @property
     def ticks(self) -> tuple[float, ...]:
-        """Return round values to label, zero among them."""
+        """Return round values to label, including zero."""
         step = _round_step((self.high - self.low) / TICKS)
         first, last = math.ceil(self.low / step), math.floor(self.high / step)
         return tuple(step * i for i in range(first, last + 1))
@@ -44,7 +44,7 @@ class Row:
 
     @property
     def known(self) -> bool:
-        """Tell whether there is anything to draw."""
+        """Return whether there is anything to draw."""
         return math.isfinite(self.difference)
 
 
@@ -58,7 +58,7 @@ class Chart:
 
     @property
     def known(self) -> bool:
-        """Tell whether any slice exists."""
+        """Return whether any slice exists."""
         return any(row.known for row in self.rows)
 
 

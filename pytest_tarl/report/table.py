@@ -1,4 +1,4 @@
-"""Several drifts of one test side by side, for the terminal."""
+"""A table of several drifts of one test, for the terminal."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from pytest_tarl.model import Comparison
 from pytest_tarl.report import words
 
-Row = tuple[str, ...]  # test, drift, reward off-line and on-line, loss, verdict, where
-HEAD = ("", "off-line", "on-line", "loss", "verdict", "where")
-NUMBERS = (1, 2, 3)  # columns that are set to the right
+Row = tuple[str, ...]  # test, drift, designed reward, deployed reward, loss, verdict, where
+HEAD = ("", "designed", "deployed", "loss", "verdict", "where")
+NUMBERS = (1, 2, 3)  # right-aligned columns
 
 
 def row(comparison: Comparison) -> Row:
-    """Return what a table says of one comparison."""
+    """Return the table row of one comparison."""
     verdict = comparison.verdict
     return (
         comparison.test,

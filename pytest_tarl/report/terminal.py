@@ -1,4 +1,4 @@
-"""The terminal's account of one comparison: a few labelled lines, nothing that the page says better."""
+"""Report a comparison on the terminal in a few labelled lines."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from textwrap import wrap
 from pytest_tarl.model import Comparison, Culprit, ListComparison, Slice
 from pytest_tarl.report import formulas, guarantees, sizes, words
 
-SHOWN = 3  # culprits, lists and notes before "(and 3 more)"
+SHOWN = 3  # culprits, lists and notes shown before "(and 3 more)"
 LABEL = 9  # width of the column of labels
-LEGIBLE = 24  # characters of code beside its place; where fewer would fit, code gets a line of its own
-NARROWEST = 40  # below this, lines are left to the terminal to break
+LEGIBLE = 24  # least characters of code beside its place; with less room, code gets its own line
+NARROWEST = 40  # columns below which the terminal breaks lines
 
 
 def lines(comparison: Comparison, *, width: int, root: Path, page: Path | None = None) -> list[str]:
-    """Return the account of one comparison, `width` columns wide; `page` is the report's path, if written.
+    """Return the report of one comparison, `width` columns wide; `page` is the report page's path, if written.
 
-    Paths and commands that must be copied whole may be wider.
+    Paths and commands may be wider, so that they can be copied.
     """
     width = max(width, NARROWEST)
     name = f"{comparison.test}[{comparison.drift or 'online'}]"
@@ -60,7 +60,7 @@ def _entries(
 
 
 def _labelled(label: str, text: str, width: int, *, whole: bool) -> list[str]:
-    """Hang `text` beside its label; paths and commands stay `whole`, to be copied."""
+    """Wrap `text` beside its label; `whole` keeps paths and commands in one line for copying."""
     body = [text] if whole else [line for part in text.split("\n") for line in _wrapped(part, width)]
     return [f"  {label if i == 0 else '':<{LABEL}}{line}".rstrip() for i, line in enumerate(body)]
 
@@ -71,8 +71,8 @@ def _wrapped(text: str, width: int) -> list[str]:
 
 def _rewards(comparison: Comparison) -> str:
     named = {
-        "offline": "off-line",
-        "online": "on-line",
+        "offline": "designed",
+        "online": "deployed",
         "repaired": "repaired",
         "nominal_repaired": f"{words.designed_world(comparison)} repaired",
     }
@@ -144,7 +144,7 @@ def _repair(comparison: Comparison) -> Iterator[str]:
         yield ways_out
     dropped = [one for one in repair.history if one.reason]
     if dropped and repair.accepted:
-        yield f"{len(dropped)} tried before, the last: {words.attempt_words(dropped[-1])}"
+        yield f"{len(dropped)} tried before; the last: {words.attempt_words(dropped[-1])}"
     elif dropped:
         yield from _some([f"tried {words.attempt_words(one)}" for one in dropped[::-1]])
 

@@ -1,4 +1,4 @@
-"""The sentences that terminal and page share: verdict, numbers, repair, commands."""
+"""Sentences shared by terminal and page: verdict, numbers, repair, commands."""
 
 from __future__ import annotations
 
@@ -24,28 +24,28 @@ from pytest_tarl.model import (
 )
 from pytest_tarl.report.regions import Vocabulary
 
-SIGNIFICANT = 0.05  # p from which a loss is not spoken of
-CONFIDENCE = 0.95  # of the interval around an average
-NEGLIGIBLE = 0.01  # of what all parts lose: a part that loses less is not spoken of
-SHORTEST = 16  # characters of a code line that are shown however narrow the place is
+SIGNIFICANT = 0.05  # p-value above which a loss is not reported
+CONFIDENCE = 0.95  # confidence of the interval around an average
+NEGLIGIBLE = 0.01  # share of the total loss below which a part's loss is not reported
+SHORTEST = 16  # least characters shown of a code line
 REASONS: dict[Reason, str] = {
     "": "no reason was recorded",
-    "no operand helps": "no change of a single constant brings the reward back",
+    "no operand helps": "no change of a single constant restores the reward",
     "gain too small": "the best change found gains too little",
     "nominal gets worse": "the best change found makes the designed world worse",
-    "budget": "the search used up its episodes",
-    "time": "the search used up its time",
+    "budget": "the search reached its limit of episodes",
+    "time": "the search reached its time limit",
     "interrupted": "the search was interrupted",
-    "not confirmed": "it came near once, and not on further seeds",
+    "not confirmed": "its gain was not confirmed on further seeds",
     "worse than unrepaired": "on fresh seeds the best change found earns less than no repair",
     "another test gets worse": "the best change found makes another recorded test of the node worse",
-    "not over the whole range": "the best change found holds for a part of the range only",
-    "not at its definition": "the best change found helps at its use only, and --tarl-edit=definition was asked for",
+    "not over the whole range": "the best change found works only in a part of the drift's range",
+    "not at its definition": "the best change found works only at a use, but --tarl-edit=definition was given",
     "fails too often": "with the best change found, missions still fail too often",
-    "not shown": "the best change found may hold, but 200 episodes do not suffice to show it",
-    "cannot be written": "the best change found cannot be written into the source",
-    "never tested": "the best change found was not tested, since others took all the tests",
-    "a smaller step breaks it": "a smaller step of the best change found makes the designed world worse already",
+    "not shown": "the best change found may be sufficient, but 200 episodes are too few to show it",
+    "cannot be written": "the best change found cannot be written to the source",
+    "never tested": "the best change found was not tested, because other candidates used all acceptance tests",
+    "a smaller step breaks it": "even a smaller step of the best change found makes the designed world worse",
 }
 
 
@@ -54,20 +54,20 @@ ENDS: dict[Reason, str] = {
     "gain too small": "dropped, it gains too little",
     "nominal gets worse": "dropped, the designed world gets worse",
     "not confirmed": "dropped, not confirmed on further seeds",
-    "worse than unrepaired": "dropped, worse than no repair",
+    "worse than unrepaired": "dropped, earns less than no repair",
     "another test gets worse": "dropped, another test of the node gets worse",
-    "not over the whole range": "dropped, it holds for a part of the range only",
-    "not at its definition": "dropped, it helps at its use and not at the definition",
+    "not over the whole range": "dropped, it works only in a part of the drift's range",
+    "not at its definition": "dropped, it works only at a use of the constant",
     "fails too often": "dropped, missions fail too often",
-    "not shown": "dropped, 200 episodes would not suffice to show that it holds",
-    "cannot be written": "dropped, it cannot be written into the source",
-    "never tested": "never tested, since others took the tests",
-    "a smaller step breaks it": "not run, a smaller step makes the designed world worse already",
+    "not shown": "dropped, 200 episodes are too few to show that it is sufficient",
+    "cannot be written": "dropped, it cannot be written to the source",
+    "never tested": "not tested, because other candidates used all acceptance tests",
+    "a smaller step breaks it": "not run, a smaller step already makes the designed world worse",
 }
 
 
 def amount(value: float | None) -> str:
-    """Write a reward or utility with three digits or so; `n/a` where there is none."""
+    """Format a reward or utility with about three digits; `n/a` for none."""
     if value is None or not math.isfinite(value):
         return "n/a"
     if value == 0 or 0.1 <= abs(value) < 1000:
@@ -76,27 +76,27 @@ def amount(value: float | None) -> str:
 
 
 def expected(value: float) -> float:
-    """Return a number without the noise of its last binary digits: 12.0 for 11.999999999999998."""
+    """Round off floating-point noise: 12.0 for 11.999999999999998."""
     return float(f"{value:.10g}")
 
 
 def average(totals: Sequence[float]) -> str:
-    """Tell an average total reward, how surely it is known, and of how many episodes."""
+    """Format an average total reward with its confidence interval and number of episodes."""
     if len(totals) < 2:
-        return f"{amount(fmean(totals)) if totals else 'n/a'} an episode, of {len(totals)}"
+        return f"{amount(fmean(totals)) if totals else 'n/a'} per episode, {len(totals)} episodes"
     found = mean_of(totals, (1.0 + CONFIDENCE) / 2)
     interval = f"about {CONFIDENCE:.0%} confidence {amount(found.low)} to {amount(found.high)}"
     return f"{amount(fmean(totals))} an episode, {interval}, {len(totals)} episodes"
 
 
 def signed(value: float | None) -> str:
-    """Write a difference, its sign always shown."""
+    """Format a difference with its sign."""
     text = amount(value)
     return text if text.startswith(("-", "n")) else f"+{text}"
 
 
 def p_value(value: float) -> str:
-    """Write a p value as an equation or inequality: `p = 0.021`, `p < 0.001`."""
+    """Format a p-value as an equation or inequality: `p = 0.021`, `p < 0.001`."""
     if math.isnan(value):
         return "p unknown"
     return "p < 0.001" if value < 0.001 else f"p = {value:.2g}"
@@ -114,17 +114,17 @@ def running_mean(totals: Sequence[float]) -> list[float]:
 
 
 def world_name(comparison: Comparison) -> str:
-    """Name the world that was compared with the designed one."""
-    return f"the drift scenario {comparison.drift!r}" if comparison.drift else "the on-line world"
+    """Return the name of the deployed world."""
+    return f"the drift scenario {comparison.drift!r}" if comparison.drift else "the deployed world"
 
 
 def designed_world(comparison: Comparison) -> str:
-    """Name the world that the recording was made in."""
+    """Return the name of the recorded world."""
     return "old world" if comparison.permanent else "designed world"
 
 
 def verdict_sentence(comparison: Comparison) -> str:
-    """Say in one sentence what the comparison concludes."""
+    """Return the conclusion of the comparison in one sentence."""
     verdict, world = comparison.verdict, world_name(comparison)
     if verdict.result == "degraded":
         loss = amount(verdict.loss)
@@ -132,17 +132,17 @@ def verdict_sentence(comparison: Comparison) -> str:
     if verdict.result == "drifted":
         differs = f"{_capital(world)} differs from the designed one ({p_value(verdict.p_drift)})"
         if verdict.loss > 0 and verdict.p_loss < SIGNIFICANT:
-            tolerated = f"within the {amount(verdict.tolerance)} that is tolerated"
+            tolerated = f"within the tolerance of {amount(verdict.tolerance)}"
             return f"{differs}; an episode earns {amount(verdict.loss)} less, {tolerated}."
         return f"{differs}, but no loss of reward was found ({p_value(verdict.p_loss)})."
-    seen = f"a loss of {amount(verdict.detectable_loss)} per episode would have been"
+    seen = f"a loss of {amount(verdict.detectable_loss)} per episode would have been detected"
     if not math.isfinite(verdict.detectable_loss):
-        seen = "too few episodes were run to see any loss"
+        seen = "too few episodes were run to detect any loss"
     return f"No difference was found between {world} and the designed one; {seen}."
 
 
 def loss_words(comparison: Comparison) -> str:
-    """Say how large the loss is and how surely it is known; empty where too few episodes tell nothing."""
+    """Format the loss with its interval and effect size; empty if there are too few episodes."""
     offline, online = (comparison.totals.get(world, ()) for world in ("offline", "online"))
     if min(len(offline), len(online)) < 2:
         return ""
@@ -155,18 +155,18 @@ def loss_words(comparison: Comparison) -> str:
 
 
 def _sure(interval: LossInterval) -> str:
-    """Tell the confidence of an interval; without a declared range of totals it is approximate."""
+    """Format the confidence of an interval; it is approximate without a declared range of totals."""
     return f"{'' if interval.exact else 'about '}{100 * interval.confidence:.3g}% confidence"
 
 
 def deviations(effect: float) -> str:
-    """Write an effect size; beyond a hundred standard deviations its digits mean nothing."""
+    """Format an effect size; beyond 100 standard deviations its digits are meaningless."""
     size = abs(effect)
     return "over 100" if size > 100 else f"{size:.0f}" if size >= 10 else f"{size:.2g}"
 
 
 def loss_interval(comparison: Comparison) -> str:
-    """Write the losses that the verdict leaves possible, `15.1 to 18.3`; empty where nothing is ruled out."""
+    """Format the confidence interval of the loss, `15.1 to 18.3`; empty if it is unbounded."""
     interval = comparison.verdict.interval
     low, high = (interval.low, interval.high) if interval else (-math.inf, math.inf)
     if math.isinf(low) or math.isinf(high):
@@ -185,7 +185,7 @@ def _capital(text: str) -> str:
 
 
 def region_words(comparison: Comparison) -> str:
-    """Say where the on-line world differs, never-seen situations apart; empty when nowhere."""
+    """Describe the region where the deployed world differs, with new situations listed separately; empty if none."""
     vocabulary, region = Vocabulary(comparison.sensors, comparison.cells), comparison.region
     novel = set(region.novel)
     known = [cell for cell in region.cells if cell not in novel]
@@ -193,14 +193,14 @@ def region_words(comparison: Comparison) -> str:
     if region.cells and region.without:
         parts.append(_words_without(comparison))
     if novel:
-        parts.append(f"never seen off-line: {vocabulary.words(novel)}")
+        parts.append(f"not in the recording: {vocabulary.words(novel)}")
     if region.left:
         parts.append(f"no longer visited: {vocabulary.words(region.left)}")
     return "; ".join(parts)
 
 
 def _words_without(comparison: Comparison) -> str:
-    """Name the region by those sensors that tell something of both worlds."""
+    """Describe the region without the sensors whose values are all new."""
     without = comparison.region.without
     kept = [d for d in range(len(comparison.sensors)) if d not in without]
     short, chosen = (
@@ -208,70 +208,70 @@ def _words_without(comparison: Comparison) -> str:
         for cells in (comparison.cells, comparison.region.cells)
     )
     named = Vocabulary([comparison.sensors[d] for d in kept], short).words(chosen)
-    return f"{named}, told without {' and '.join(comparison.sensors[d].name for d in without)}"
+    return f"{named}, regardless of {' and '.join(comparison.sensors[d].name for d in without)}"
 
 
 def lost_words(comparison: Comparison, part: str) -> str:
-    """Say where a part of the reward is lost; empty where it is not, or no situation stands out."""
+    """Describe where a part of the reward is lost; empty if it is not, or if no situation stands out."""
     cells = comparison.lost.get(part, ()) if part in dict(lost_parts(comparison)) else ()
     return Vocabulary(comparison.sensors, comparison.cells).words(cells) if cells else ""
 
 
 def lost_parts(comparison: Comparison) -> list[tuple[str, float]]:
-    """Return the parts that earn less on-line, with the difference per episode, the largest loss first."""
+    """Return the parts of the reward that decreased, with the difference per episode, the largest loss first."""
     changed = [(name, after - before) for name, (before, after) in comparison.parts.items()]
     least = NEGLIGIBLE * sum(by for _, by in changed if by < 0)
     return sorted(((name, by) for name, by in changed if by < least), key=lambda one: one[1])
 
 
 def paper_region_words(comparison: Comparison) -> str:
-    """Name the paper's own region; empty when there is none."""
+    """Describe the paper's region; empty if there is none."""
     if not comparison.paper_region:
         return ""
     return Vocabulary(comparison.sensors, comparison.cells).words(comparison.paper_region)
 
 
 def edit_words(edit: Edit) -> str:
-    """Say what an edit does: a number is replaced, a named constant multiplied."""
+    """Describe an edit: `→` replaces a number, `×` multiplies a named constant."""
     return edit.what or f"{edit.code} {'×' if edit.factor else '→'} {edit.value:g}"
 
 
 def operand_words(operand: OperandEffect) -> str:
-    """Say what did best for an operand: its new value, or a factor where its own is not known."""
+    """Describe the best change of an operand: a new value, or a factor if its own value is unknown."""
     return f"{operand.code} {'×' if operand.value is None else '→'} {operand.best:g}"
 
 
 def repair_words(repair: Repair) -> str:
-    """Say what the repair changes and when: `5 → 12 at traveller.py:30 where terrain`."""
+    """Describe the repair and its condition: `5 → 12 at traveller.py:30 where terrain`."""
     edits = ", ".join(f"{edit_words(edit)} at {edit.path}:{edit.line}" for edit in repair.edits)
     return f"{edits} {f'where {repair.guard}' if repair.guard else 'everywhere'}"
 
 
 def partial_words(partial: Partial, comparison: Comparison) -> str:
-    """Say what a partial repair gains, and what it does to the designed world."""
+    """Describe the gain of a partial repair and its effect on the designed world."""
     sure = f"about {100 * partial.confidence:.3g}% confidence"
-    gained = f"{signed(partial.gain)} an episode, at least {signed(partial.low)} ({sure})"
+    gained = f"{signed(partial.gain)} per episode, at least {signed(partial.low)} ({sure})"
     return (
-        f"{gained}, of the {amount(partial.lost)} that are lost; {designed_world(comparison)} "
+        f"{gained}, of {amount(partial.lost)} lost; {designed_world(comparison)} "
         f"{signed(partial.designed)}, at least {signed(partial.designed_low)}"
     )
 
 
 def refusal(repair: Repair) -> str:
-    """Say why no repair was accepted."""
+    """Return why no repair was accepted."""
     return REASONS.get(repair.reason, repair.reason)
 
 
 def best_words(repair: Repair) -> str:
-    """Tell the best that was refused, and what it earned."""
+    """Describe the best rejected candidate and its reward."""
     if repair.mean is None:
         return repair_words(repair)
-    earned = f"{amount(repair.mean)} an episode, mean of {repair.episodes}"
+    earned = f"{amount(repair.mean)} per episode, mean of {repair.episodes}"
     return f"{repair_words(repair)} ({earned})"
 
 
 def attempt_words(attempt: Attempt) -> str:
-    """Tell what was tried, what it earned, and what became of it."""
+    """Describe an attempt, its reward and its outcome."""
     outcome = ENDS.get(attempt.reason, attempt.reason)
     if not attempt.episodes:
         return f"{attempt.what}: {outcome}"
@@ -288,13 +288,13 @@ def command(comparison: Comparison, *flags: str) -> str:
 
 
 def recording(comparison: Comparison) -> str:
-    """Return the command that makes a drift for good the design, once its repair is applied."""
+    """Return the command that makes a permanent drift part of the design after its repair is applied."""
     drift = ["--tarl-drift", comparison.drift] if comparison.drift else []
     return shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record", *drift])
 
 
 def ways_out(comparison: Comparison) -> str:
-    """Say what to do about a repair that only the designed world was against; empty where there is none."""
+    """Return advice for a repair that fails only in the designed world; empty without one."""
     repair = comparison.repair
     if repair is None or repair.accepted or comparison.permanent:
         return ""
@@ -304,14 +304,15 @@ def ways_out(comparison: Comparison) -> str:
     what = against[-1] if against else repair_words(repair)
     name = comparison.drift or "worn"
     return (
-        f"{what} brings the reward back in {world_name(comparison)} and is too much for the designed one only. Declare "
-        "a sensor that tells the two worlds apart, so that a condition can; or, if the change is for good, say so: "
+        f"{what} restores the reward in {world_name(comparison)} but makes the designed world worse. Declare a "
+        "sensor that distinguishes the two worlds, so that the repair can be conditional; or, if the drift is "
+        "permanent, declare it so: "
         f'drifts={{"{name}": Drift(…, permanent=True)}}'
     )
 
 
 def repeat(comparison: Comparison) -> str:
-    """Return the command that repeats all that was done, searches included."""
+    """Return the command that repeats the run, including searches."""
     searches = [search.method for search in comparison.searches if search.method != "structure"]
     methods = [method for method in searches if method != "ranking"]
     full = ["--tarl-localize", "full"] if len(methods) < len(searches) else []
@@ -322,7 +323,7 @@ def repeat(comparison: Comparison) -> str:
 
 
 def next_steps(comparison: Comparison) -> Iterator[str]:
-    """Yield the command that a developer would run now, if there is one."""
+    """Yield the next command for the developer, if there is one."""
     if not comparison.lists:
         yield shlex.join(["pytest", comparison.target or comparison.test, "--tarl-record"])
     elif comparison.repair and comparison.repair.accepted and comparison.repair.patch:
@@ -334,18 +335,18 @@ def next_steps(comparison: Comparison) -> Iterator[str]:
 
 
 def _happened(comparison: Comparison) -> bool:
-    """Tell whether the on-line side is missions that cannot be run again."""
+    """Return whether the compared missions were recorded and cannot be run again."""
     return bool({"--tarl-log", "--tarl-bag"} & {*comparison.flags})
 
 
 def peak(slices: Iterable[Slice]) -> Slice | None:
-    """Return the slice that differs most between the worlds; None where none is known to differ."""
+    """Return the slice that differs most between the worlds; None if none differs."""
     known = [one for one in slices if one.difference and not math.isnan(one.difference)]
     return max(known, key=lambda one: abs(one.difference), default=None)
 
 
 def place(path: str, line: int, root: Path) -> str:
-    """Return `path:line`, the path relative to `root` where it lies below it."""
+    """Return `path:line`, with the path relative to `root` if it is below."""
     inside = Path(path)
     if inside.is_absolute() and inside.is_relative_to(root):
         inside = inside.relative_to(root)
@@ -353,7 +354,7 @@ def place(path: str, line: int, root: Path) -> str:
 
 
 def one_line(code: str, width: int | None = None) -> str:
-    """Fold a statement that spans lines into one, of at most `width` characters."""
+    """Fold a multi-line statement into one line of at most `width` characters."""
     folded = " ".join(code.split())
     if width is None or len(folded) <= max(width, SHORTEST):
         return folded

@@ -69,7 +69,7 @@ def factory(name: str, folders: Sequence[Path]) -> Factory:
             found = getattr(importlib.import_module(module), attribute, None)
     except ModuleNotFoundError as missing:
         raise SettingsError(
-            f"{where}: {missing}; the module is looked for in {folders[0]} and where Python looks for modules."
+            f"{where}: {missing}; TARL searches for modules in {folders[0]} and on Python's path."
         ) from None
     except Exception as problem:
         raise SettingsError(f"{where}: {module} cannot be imported: {_told(problem)}.") from problem
@@ -148,7 +148,7 @@ class Asking:
         for point in asked:
             if len(point) != len(self.operands) or not all(isfinite(factor) for factor in point):
                 raise SearchError(
-                    f"--tarl-search={self.name}: ask() returned {point!r}, and it must return a finite factor for each "
+                    f"--tarl-search={self.name}: ask() returned {point!r}, but must return a finite factor for each "
                     f"of the {len(self.operands)} constants, in their order."
                 )
         return asked

@@ -17,9 +17,9 @@ def test_cells_and_lines_are_compared_without_the_sensor_that_makes_them_new(tan
     )
     tank.runpytest(*RECORD)
     told = tank.runpytest(*ONLINE)
-    told.stdout.fnmatch_lines(["*where*level *told without tank; never seen off-line: *"])
+    told.stdout.fnmatch_lines(["*where*level *regardless of tank; not in the recording: *"])
     told.stdout.no_fnmatch_line("*no longer visited*")
-    told.stdout.fnmatch_lines(["*no on-line situation was seen off-line, because of tank*"])
+    told.stdout.fnmatch_lines(["*no deployed situation occurs in the recording, because of tank*"])
     found = result(tank)
     scores = [one["score"] for one in found["culprits"]]
     assert scores

@@ -94,9 +94,9 @@ def test_a_bag_of_which_nothing_can_be_read_takes_no_part(deployed: pytest.Pytes
     torn = deployed.path / "torn.bag"
     torn.write_bytes(bag.read_bytes()[:40])
     told = online(deployed, bag, torn)
-    assert re.search(r"torn.bag cannot be read .*: it took no part\.", said(told))
+    assert re.search(r"torn.bag cannot be read .*: bag skipped\.", said(told))
     assert result(deployed)["episodes"]["online"] == 1
-    online(deployed, torn).stdout.fnmatch_lines(["*No bag can be compared.*torn.bag*"])
+    online(deployed, torn).stdout.fnmatch_lines(["*No bag can be compared with the recording. *torn.bag*"])
 
 
 def test_a_sensor_topic_that_is_missing_or_of_another_type_is_named(deployed: pytest.Pytester) -> None:
@@ -108,7 +108,7 @@ def test_a_sensor_topic_that_is_missing_or_of_another_type_is_named(deployed: py
     told.assert_outcomes(passed=1, deselected=1)
     text = said(told)
     assert (
-        "other.mcap lacks /level, which the sensor 'level' is read from (it holds /depth): it took no part."
+        "other.mcap has no messages on /level, the topic of sensor 'level' (it holds /depth): bag skipped."
         in text
     )
     assert "single.mcap has std_msgs/msg/Float32 on /level" in text
@@ -161,7 +161,7 @@ def test_without_a_monitor_the_judge_is_asked_and_without_both_it_is_said(deploy
 def test_a_test_that_never_steps_cannot_be_given_a_bag(deployed: pytest.Pytester) -> None:
     changed(deployed, "test_tank", "range(25)", "range(0)")
     told = online(deployed, *some(deployed, ".bag", 1.0, 1))
-    told.stdout.fnmatch_lines(["*mission0.bag was not replayed: the test ended before it called tarl.step*"])
+    told.stdout.fnmatch_lines(["*mission0.bag was not replayed: the test ended before its first tarl.step*"])
 
 
 def test_bags_give_the_same_result_in_workers(deployed: pytest.Pytester) -> None:
@@ -181,8 +181,8 @@ def test_what_needs_a_world_to_run_again_excludes_bags(deployed: pytest.Pytester
 
 
 def test_a_bag_that_is_not_there_or_is_none_is_said(deployed: pytest.Pytester) -> None:
-    online(deployed, deployed.path / "m.bag").stdout.fnmatch_lines(["*There is no bag *m.bag*"])
+    online(deployed, deployed.path / "m.bag").stdout.fnmatch_lines(["*m.bag: no such bag*"])
     online(deployed, deployed.path / "keeper.py").stdout.fnmatch_lines(
-        ["*keeper.py is no bag: --tarl-bag takes*"]
+        ["*keeper.py is not a bag: --tarl-bag takes*"]
     )
-    deployed.runpytest("--tarl-bag=m.bag").stderr.fnmatch_lines(["*--tarl-bag goes with --tarl-online*"])
+    deployed.runpytest("--tarl-bag=m.bag").stderr.fnmatch_lines(["*--tarl-bag needs --tarl-online*"])

@@ -45,4 +45,4 @@ def test_the_command_for_a_missing_fixture_can_be_pasted(nested: pytest.Pytester
 def test_a_flag_without_a_mode_is_refused(nested: pytest.Pytester, flag: str) -> None:
     result = nested.runpytest("tank", flag)
     assert result.ret == pytest.ExitCode.USAGE_ERROR
-    result.stderr.fnmatch_lines(["*goes with --tarl-online*"])
+    result.stderr.fnmatch_lines(["*needs --tarl-online*"])

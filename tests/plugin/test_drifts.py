@@ -71,7 +71,7 @@ def test_parts_change_for_good_together() -> None:
     assert not drift("t", "worn", {"left": Drift(0.8), "right": 0.7}).permanent
     with pytest.raises(SettingsError, match="'left' is permanent and 'right' is not"):
         drift("t", "worn", {"left": lasting, "right": 0.7})
-    with pytest.raises(SettingsError, match="a Drift in a Drift"):
+    with pytest.raises(SettingsError, match="a Drift inside a Drift"):
         drift("t", "worn", Drift(lasting))
 
 
@@ -106,7 +106,9 @@ def test_a_recording_adds_to_the_design_or_goes_back() -> None:
 
 
 def test_a_design_that_the_marker_no_longer_declares_is_told() -> None:
-    with pytest.raises(SettingsError, match="'worn' as the design, and the marker does not declare it"):
+    with pytest.raises(
+        SettingsError, match="'worn' as part of the design, but the marker no longer declares it"
+    ):
         value(_drifts(mud=0.1), ("worn",), "mud", 1)
 
 

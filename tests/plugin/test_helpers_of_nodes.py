@@ -97,14 +97,14 @@ def test_a_named_helper_in_a_folder_without_init_is_told(tank: pytest.Pytester) 
     (tank.path / "helpers").mkdir()
     (tank.path / "helpers" / "gains.py").write_text(GAINS)
     changed(tank, "test_tank", 'nodes=["keeper.py"]', 'nodes=["keeper.py", "helpers/gains.py"]')
-    told = "helpers/gains.py is named among the nodes and no flow"
+    told = "helpers/gains.py is named in nodes, but no flow"
     done = tank.runpytest(*RECORD)
     assert told in " ".join(done.stdout.str().split())
     assert "helpers, which has no __init__.py" in " ".join(done.stdout.str().split())
     done = tank.runpytest(*ONLINE)
     assert told in " ".join(done.stdout.str().split())
     (tank.path / "helpers" / "__init__.py").touch()
-    assert "is named among the nodes" not in tank.runpytest(*RECORD).stdout.str()
+    assert "is named in nodes" not in tank.runpytest(*RECORD).stdout.str()
 
 
 def test_an_older_text_that_ran_is_an_error_and_no_outcome() -> None:

@@ -93,5 +93,5 @@ def test_an_edited_reward_is_told_with_the_verdict(tank: pytest.Pytester) -> Non
     tank.runpytest(*ONLINE).stdout.no_fnmatch_line("*was edited since the recording*")
     changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", "tarl.reward(-2 * abs(1.0 - level))")
     tank.runpytest(*ONLINE).stdout.fnmatch_lines(
-        ["*note*the test itself was edited since the recording*", "*test_fills*What differs*"]
+        ["*note*the test itself was edited since the recording*", "*test_fills*Differences*"]
     )

@@ -114,7 +114,7 @@ def test_a_fixture_of_another_kind_is_named_without_advice_to_trust_it(tank: pyt
     tank.runpytest(*RECORD)
     fixture_file(tank).write_text("x")
     told = tank.runpytest(*ONLINE)
-    told.stdout.fnmatch_lines(["*is damaged or is not one*--tarl-record*"])
+    told.stdout.fnmatch_lines(["*is damaged or is not a recording*--tarl-record*"])
     told.stdout.no_fnmatch_line("*pickle*")
 
 

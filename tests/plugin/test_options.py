@@ -48,8 +48,8 @@ def test_a_good_marker_has_its_defaults() -> None:
     [
         ({"nodes": "a.py"}, r"nodes=\["),
         ({"nodes": []}, r"nodes=\["),
-        ({"sensors": []}, "declare what the node is told"),
-        ({"sensors": ["x"]}, "declare what the node is told"),
+        ({"sensors": []}, "declare the inputs of the node"),
+        ({"sensors": ["x"]}, "declare the inputs of the node"),
         ({"sensors": [Sensor("x"), Sensor("x")]}, "'x' is used twice"),
         ({"drifts": ["mud"]}, "drifts maps names"),
         ({"episodes": 0}, "episodes must be a whole number"),
@@ -83,8 +83,8 @@ def test_flags_choose_the_mode(change: dict[str, Any], mode: str) -> None:
     ("change", "words"),
     [
         ({"record": True}, "two runs"),
-        ({"online": False, "repair": True}, "goes with --tarl-online"),
-        ({"online": False, "drift": "mud"}, "goes with --tarl-online"),
+        ({"online": False, "repair": True}, "needs --tarl-online"),
+        ({"online": False, "drift": "mud"}, "needs --tarl-online"),
         ({"search": ["sweeep"]}, "did you mean 'sweep'"),
         ({"utility": "q"}, "batch or sarsa"),
         ({"alpha": 0.0}, "--tarl-alpha"),

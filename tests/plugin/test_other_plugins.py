@@ -159,7 +159,7 @@ def test_an_episode_that_hangs_ends_the_recording_and_is_named(tank: pytest.Pyte
     )
     told = tank.runpytest(*FEW, "--timeout=1")
     told.assert_outcomes(failed=1, deselected=1)
-    told.stdout.fnmatch_lines(["*Stopped at an episode (seed *) that came to no end: Timeout (>1.0s)*"])
+    told.stdout.fnmatch_lines(["*Stopped at an episode (seed *) that did not end: Timeout (>1.0s)*"])
 
 
 def covered(tank: pytest.Pytester, *flags: str) -> object:

@@ -41,7 +41,7 @@ def test_recording_writes_a_fixture_and_deselects_the_others(tank: pytest.Pytest
     result = tank.runpytest(*RECORD)
     result.assert_outcomes(passed=1, deselected=1)
     result.stdout.fnmatch_lines(
-        ["*TARL*", "*test_fills: off-line ATR*16 episodes*", "*wrote .tarl/utility/*"]
+        ["*TARL*", "*test_fills: recorded ATR*16 episodes*", "*wrote .tarl/utility/*"]
     )
     assert fixture_file(tank).stat().st_size < 100_000
     assert (tank.path / ".tarl" / ".gitignore").read_text().count("!utility/") == 2
@@ -121,7 +121,7 @@ def test_without_fixture_the_test_is_skipped_with_the_command_or_fails_when_stri
 
 def test_an_unknown_drift_is_named_with_the_known_ones(tank: pytest.Pytester) -> None:
     result = tank.runpytest(*ONLINE, "--tarl-drift=mud")
-    result.stderr.fnmatch_lines(["*No test declares the drift 'mud'; known are: clogged.*"])
+    result.stderr.fnmatch_lines(["*No test declares the drift 'mud' (declared: clogged).*"])
     assert result.ret == pytest.ExitCode.USAGE_ERROR
 
 
@@ -160,7 +160,7 @@ def test_moved_lines_lose_nothing(recorded: pytest.Pytester) -> None:
         ),
         ("test_tank", 'field="data"', 'field="date"', "*no field 'date'*"),
         ("test_tank", 'nodes=["keeper.py"]', 'nodes=["keepr.py"]', "*no such file*"),
-        ("test_tank", 'tarl.start("keeper.py")', 'tarl.start("keepr.py")', "*there is no file 'keepr.py'*"),
+        ("test_tank", 'tarl.start("keeper.py")', 'tarl.start("keepr.py")', "*'keepr.py': no such file*"),
         ("test_tank", "sensors=[Sen", "sensor=[Sen", "*did you mean 'sensors'*"),
         (
             "keeper",
@@ -271,7 +271,7 @@ def test_bins_that_are_learned_are_kept_in_the_fixture_and_used_on_line(tank: py
     found.stdout.fnmatch_lines(["*degraded*"])
     tank.runpytest().assert_outcomes(passed=2)
     changed(tank, "test_tank", "bins=6", "bins=7")
-    tank.runpytest(*ONLINE).stdout.fnmatch_lines(["*sensors of * are not those of its utility fixture*"])
+    tank.runpytest(*ONLINE).stdout.fnmatch_lines(["*sensors of * differ from those of its recording*"])
 
 
 def test_a_sensor_may_be_a_function_of_the_message(tank: pytest.Pytester) -> None:

@@ -60,20 +60,23 @@ def test_a_variable_that_holds_a_sensor_lets_guards_ask_for_it(expr: str) -> Non
         ({"name": "x", "topic": "/odom"}, "topic or a field but not both"),
         ({"name": "x", "low": 0.0, "bins": 3}, "low, high and bins together"),
         ({"name": "x", "low": 2.0, "high": 1.0, "bins": 3}, "low must be below high"),
-        ({"name": "x", "low": 0.0, "high": 1.0, "bins": 0}, "bins at least 1"),
-        ({"name": "x", "low": 0.0, "high": 1.0, "bins": 2, "categories": ("a",)}, "either numeric"),
+        ({"name": "x", "low": 0.0, "high": 1.0, "bins": 0}, "bins a whole number of at least 1"),
+        (
+            {"name": "x", "low": 0.0, "high": 1.0, "bins": 2, "categories": ("a",)},
+            "both a numeric range and categories",
+        ),
         ({"name": 5}, "not a Python identifier"),
         ({"name": "x", "low": "a", "high": 1.0, "bins": 2}, "both finite"),
         ({"name": "x", "low": 0.0, "high": float("nan"), "bins": 2}, "both finite"),
-        ({"name": "x", "low": 0.0, "high": 1.0, "bins": 2.0}, "bins at least 1 and whole"),
-        ({"name": "x", "low": 0.0, "high": 1.0, "bins": True}, "bins at least 1 and whole"),
-        ({"name": "x", "topic": 5, "field": "data"}, "topic must be a text"),
-        ({"name": "x", "topic": "/odom", "field": ""}, "field must be a text"),
+        ({"name": "x", "low": 0.0, "high": 1.0, "bins": 2.0}, "bins a whole number of at least 1"),
+        ({"name": "x", "low": 0.0, "high": 1.0, "bins": True}, "bins a whole number of at least 1"),
+        ({"name": "x", "topic": 5, "field": "data"}, "topic must be a string"),
+        ({"name": "x", "topic": "/odom", "field": ""}, "field must be a string"),
         ({"name": "x", "expr": "min(ranges)"}, "expr must name a variable of the node"),
         ({"name": "x", "expr": "ranges[i]"}, "expr must name a variable of the node"),
         ({"name": "x", "expr": "a b"}, "expr must name a variable of the node"),
         ({"name": "x", "expr": 5}, "expr must name a variable of the node"),
-        ({"name": "x", "categories": "auto"}, "categories lists the texts"),
+        ({"name": "x", "categories": "auto"}, "categories lists the strings"),
         ({"name": "x", "categories": ["auto", "auto"]}, "'auto' twice"),
     ],
 )
@@ -90,7 +93,7 @@ def test_a_measurement_needs_bins_and_a_text_categories(value: object) -> None:
 
 @pytest.mark.parametrize("value", ["wet", None, [1.0], np.array([1.0, 2.0])])
 def test_what_is_no_number_is_told_and_not_binned(value: object) -> None:
-    with pytest.raises(SettingsError, match=r"'x' got .* is no number"):
+    with pytest.raises(SettingsError, match=r"'x' got .* is not a number"):
         Sensor("x", low=0, high=1, bins=2).bin(value)
 
 
@@ -207,5 +210,5 @@ def test_a_single_edge_is_a_threshold() -> None:
     "wrong", [{"edges": (0.5,), "angle": True}, {"edges": (0.5,), "tilings": 2}, {"edges": ("x",)}]
 )
 def test_what_a_single_edge_cannot_be_is_said(wrong: dict[str, Any]) -> None:
-    with pytest.raises(SettingsError, match=r"edges must be|tilings are for"):
+    with pytest.raises(SettingsError, match=r"edges must be|tilings must be"):
         Sensor("x", **wrong)

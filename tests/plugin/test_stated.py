@@ -15,9 +15,10 @@ def said(tank: pytest.Pytester, *lines: str) -> None:
 def test_a_recording_states_bounds_and_the_fixture_keeps_them(tank: pytest.Pytester) -> None:
     said(
         tank,
-        "  16 of 16 missions succeed: with 95 % confidence at least 82.9 % do, over the worlds that this test draws",
+        "  16 of 16 missions succeeded: success rate at least 82.9 % with 95 % confidence, over the "
+        "worlds that this test samples",
         "  -* reward a mission: with 95 % confidence at least -* (approximate: no total_range is declared)",
-        "  what 95 % of the missions earn at least takes 59 episodes, 43 more than were run",
+        "  a bound that 95 % of the missions reach needs 59 episodes, 43 more than were run",
     )
     stated = load(fixture_file(tank)).stated
     assert stated is not None
@@ -38,13 +39,13 @@ def test_a_total_outside_of_the_range_is_an_error_that_names_both(tank: pytest.P
     changed(tank, "test_tank", "min_success=0.9,", "min_success=0.9,\n    total_range=(-2, 0),")
     told = tank.runpytest(*RECORD)
     told.assert_outcomes(failed=1, deselected=1)
-    told.stdout.fnmatch_lines(["*earned -*, outside of the marker's total_range=(-2.0, 0.0)*"])
+    told.stdout.fnmatch_lines(["*earned -*, outside the marker's total_range=(-2.0, 0.0)*"])
 
 
 def test_where_episodes_do_not_vary_one_world_was_tested(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "draws.uniform(0.0, 0.2)", "0.1")
     changed(tank, "test_tank", " + float(draws.normal(0, 0.005))", "")
-    said(tank, "  one world was tested: all 16 episodes are the same*")
+    said(tank, "  only one world was tested: all 16 episodes are equal*")
 
 
 def test_with_a_confidence_recording_goes_on_until_it_is_settled(tank: pytest.Pytester) -> None:
@@ -62,16 +63,16 @@ def test_with_a_confidence_too_many_failures_settle_it_too(tank: pytest.Pytester
     changed(tank, "test_tank", "< 0.1, ", "< 0.1 and draws.random() < 0.5, ")
     told = tank.runpytest(*RECORD)
     told.assert_outcomes(failed=1, deselected=1)
-    told.stdout.fnmatch_lines(["*of * episodes failed: at confidence=0.9, fewer than 0.9 of all succeed*"])
+    told.stdout.fnmatch_lines(["*of * episodes failed: at confidence=0.9, the success rate is below 0.9*"])
 
 
 @pytest.mark.parametrize(
     ("marked", "sentence"),
     [
-        ("confidence=0.95, min_success=1.0,", "*confidence=0.95 is for a min_success below 1*"),
+        ("confidence=0.95, min_success=1.0,", "*confidence=0.95 needs a min_success below 1*"),
         ("confidence=1.0, min_success=0.9,", "*confidence must be a number from 0.5 to 1*"),
-        ("total_range=(1, 0), min_success=0.9,", "*total_range must be two finite numbers*"),
-        ("total_range=3, min_success=0.9,", "*total_range must be two finite numbers*"),
+        ("total_range=(1, 0), min_success=0.9,", "*total_range must be two finite bounds*"),
+        ("total_range=3, min_success=0.9,", "*total_range must be two finite bounds*"),
     ],
 )
 def test_what_can_never_be_shown_is_a_usage_error(tank: pytest.Pytester, marked: str, sentence: str) -> None:

@@ -18,9 +18,9 @@ from pytest_tarl import files
 from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
 
 ADVICE = {
-    errno.ENOSPC: "the disk is full, or your quota of it: free some space and run it again.",
-    errno.EROFS: "give yourself the right to write there, or run in a copy.",
-    errno.EIO: "something else is in its place, or the disk fails: look there and run it again.",
+    errno.ENOSPC: "the disk or your quota is full: free some space and run the command again.",
+    errno.EROFS: "make the folder writable, or work in a copy.",
+    errno.EIO: "another kind of file is in its place, or the disk fails: check the path and run the command again.",
 }
 
 

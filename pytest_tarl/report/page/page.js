@@ -98,10 +98,10 @@
   }
 
   const titles = () => ({
-    plain: { offline: "off-line", online: "on-line", difference: "difference" },
-    long: { offline: "Off-line, as designed",
-            online: page.world === "on-line" ? "On-line" : `On-line, ${page.world}`,
-            difference: "Difference, on-line − off-line" },
+    plain: { offline: "designed", online: "deployed", difference: "difference" },
+    long: { offline: "Designed",
+            online: page.world === "deployed" ? "Deployed" : `Deployed, ${page.world}`,
+            difference: "Difference, deployed − designed" },
   });
 
   function heat(figure, panel, k) {

@@ -67,9 +67,10 @@ def test_moved_gone_and_new_lines_are_told(tmp_path: Path, capsys: pytest.Captur
     after = replace(before, lists=(replace(before.lists[0], sites=sites), *before.lists[1:]))
     main(["diff", saved(before, tmp_path / "a.npz"), saved(after, tmp_path / "b.npz")])
     told = capsys.readouterr().out
-    assert f"`{moved.code}` from line {moved.line} to {moved.line + 40}: its slice stays" in told
+    assert f"`{moved.code}` from line {moved.line} to {moved.line + 40}: its slice is kept" in told
     assert (
-        f"gone       `{gone.code}` of node.py:{gone.line}: its slice is lost, verdict and region stay" in told
+        f"gone       `{gone.code}` of node.py:{gone.line}: its slice is lost; verdict and region remain valid"
+        in told
     )
     assert "new        `y = 1` at node.py:77" in told
     paths = [str(tmp_path / "a.npz"), str(tmp_path / "b.npz")]
@@ -84,7 +85,7 @@ def test_what_cannot_be_read_is_a_sentence(tmp_path: Path, capsys: pytest.Captur
     assert main(["show", str(tmp_path / "b.npz")]) == 2
     told = capsys.readouterr().err
     assert "a.npz is damaged" in told
-    assert "no utility fixture" in told
+    assert "no such recording" in told
 
 
 def test_many_statements_are_listed_only_when_asked_for(

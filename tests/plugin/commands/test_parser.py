@@ -24,7 +24,7 @@ from pytest_tarl.commands.cli import main
         ),
         (["diff", "a"], "usage: tarl diff", "tarl diff: second is missing."),
         (["watch"], "usage: tarl watch", "tarl watch: LOG and --fixture are missing."),
-        (["diff", "a", "b", "c"], "usage: tarl diff", "tarl diff: It does not know 'c'."),
+        (["diff", "a", "b", "c"], "usage: tarl diff", "tarl diff: Unknown argument 'c'."),
         (["show", "--site", "--x"], "usage: tarl show", "tarl show: fixture is missing."),
         (
             ["diff", "a", "b", "--alpha", "x"],

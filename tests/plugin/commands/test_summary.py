@@ -68,9 +68,9 @@ def test_what_is_no_result_is_a_sentence(
     tmp_path: Path, damaged: object, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["summary", str(written(tmp_path, damaged))]) == 2
-    assert "this is no result of TARL" in capsys.readouterr().err
+    assert "not a result of TARL" in capsys.readouterr().err
 
 
 def test_no_results_are_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["summary", str(tmp_path)]) == 2
-    assert "there is no result. Run pytest --tarl-online first." in capsys.readouterr().err
+    assert "no result found. Run pytest --tarl-online first." in capsys.readouterr().err

@@ -328,8 +328,8 @@ def test_places_where_only_integers_make_sense_are_known(code: str, integral: bo
         ),
         ("y = 6\n", [("6", 5, 5)], Guard(), "analyse the file again"),
         ("y = 5\n", [("5", 5, 7), ("5", 5, 8)], Guard(), "exclude each other"),
-        ("match y:\n    case 5:\n        pass\n", [("5", 5, 7)], MUD, "stays Python"),
-        ("y = = 5\n", [("5", 5, 7)], Guard(), "not Python"),
+        ("match y:\n    case 5:\n        pass\n", [("5", 5, 7)], MUD, "no longer parse as Python"),
+        ("y = = 5\n", [("5", 5, 7)], Guard(), "cannot be parsed as Python"),
     ],
 )
 def test_what_cannot_be_written_is_said(text: str, changes: list[Any], guard: Guard, words: str) -> None:

@@ -21,4 +21,4 @@ def test_patch_page_and_result_state_bounds_of_the_repaired_program(tank: pytest
     assert found["repaired"]["success"]["low"] == pytest.approx(0.05 ** (1 / 12))
     assert found["nominal_repaired"]["success"]["exact"]
     (page,) = (tank.path / ".tarl" / "report").glob("*.html")
-    assert "What is stated of the next missions" in page.read_text("utf-8")
+    assert "Bounds on future missions" in page.read_text("utf-8")

@@ -130,7 +130,7 @@ def test_the_same_change_is_applied_once(robot: Path) -> None:
     first = repair(robot, {"node.py": guarded(NODE)})
     second = repair(robot, {"node.py": guarded(NODE)}, "wind")
     found = joined([first, second], robot)
-    assert found.lines == (f"{second.name} makes the same change as {first.name}: one of them is enough",)
+    assert found.lines == (f"{second.name} makes the same change as {first.name}: apply only one of them",)
     assert found.commands == (f"git apply .tarl/patches/{first.name}",)
 
 
@@ -138,7 +138,7 @@ def test_what_would_not_compile_together_is_not_combined(robot: Path) -> None:
     first = repair(robot, {"node.py": NODE.replace("high = 2\n", "high = (2\n")})
     second = repair(robot, {"node.py": NODE.replace("GAIN = 5", "GAIN = 6")}, "wind")
     found = joined([first, second], robot)
-    assert "are not combined: what they make together would not compile" in found.lines[0]
+    assert "are not combined: the merged file does not compile" in found.lines[0]
     assert sorted(path.name for path in robot.glob(".tarl/patches/*")) == sorted([first.name, second.name])
 
 
@@ -152,5 +152,5 @@ def test_a_run_ends_with_one_command_for_one_change(tank: pytest.Pytester) -> No
     done.assert_outcomes(failed=2, deselected=1)
     assert len(list(tank.path.glob(".tarl/patches/*.patch"))) == 2
     commands = [line for line in done.outlines if line.startswith(("git apply", "patch -p1"))]
-    told = [line for line in done.outlines if "one of them is enough" in line]
+    told = [line for line in done.outlines if "only one of them" in line]
     assert len(commands) == len(told) == 1

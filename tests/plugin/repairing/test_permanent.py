@@ -48,7 +48,7 @@ def test_a_change_for_good_is_repaired_everywhere_and_the_old_world_is_shown(wor
     assert "pytest test_tank.py::test_fills --tarl-record --tarl-drift worn" in told
     (patch,) = worn.path.glob(".tarl/patches/*.patch")
     header = patch.read_text()
-    assert re.search(r"# old world and repaired: -\d.*not asked, since the drift is for good", header)
+    assert re.search(r"# old world and repaired: -\d.*not required, because the drift is permanent", header)
     assert "# record: pytest test_tank.py::test_fills --tarl-record --tarl-drift worn\n" in header
 
 
@@ -57,10 +57,10 @@ def test_the_same_change_not_for_good_is_refused_with_both_ways_out(worn: pytest
     done = worn.runpytest(*REPAIR, *WORN, "--tarl-budget=60")
     assert not result(worn)["repair"]["accepted"]
     told = " ".join(done.stdout.str().split())
-    assert "is too much for the designed one only. Declare a sensor that tells the two worlds apart" in told
+    assert "but makes the designed world worse. Declare a sensor that distinguishes the two worlds" in told
     assert 'drifts={"worn": Drift(…, permanent=True)}' in told
     (page,) = worn.path.glob(".tarl/report/*.html")
-    assert "Declare a sensor that tells the two worlds apart" in page.read_text()
+    assert "Declare a sensor that distinguishes the two worlds" in page.read_text()
 
 
 def test_an_applied_repair_and_a_new_recording_make_the_drift_the_design(worn: pytest.Pytester) -> None:
@@ -70,7 +70,7 @@ def test_an_applied_repair_and_a_new_recording_make_the_drift_the_design(worn: p
     applied.stdout.fnmatch_lines(
         [
             "then:  pytest test_tank.py::test_fills --tarl-record --tarl-drift worn",
-            "then:  commit keeper.py and .tarl/utility together: the drift is the design from now on",
+            "then:  commit keeper.py and .tarl/utility together: the drift is now part of the design",
         ]
     )
     worn.runpytest().assert_outcomes(passed=1, failed=1)  # repaired for another world than this test has yet
@@ -81,12 +81,12 @@ def test_an_applied_repair_and_a_new_recording_make_the_drift_the_design(worn: p
     worn.runpytest().assert_outcomes(passed=2)
     worn.runpytest(*ONLINE, *WORN).assert_outcomes(passed=1, deselected=1)
     shown = worn.run(*TARL, "show", str(fixture_file(worn)))
-    shown.stdout.fnmatch_lines(["*design*with the drift worn, for good"])
+    shown.stdout.fnmatch_lines(["*design*with the drift worn, permanent"])
     worn.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)  # stays the design
     assert adopted(fixture_file(worn)) == ("worn",)
     other = worn.runpytest(*ONLINE, "--tarl-drift=clogged")
     told = " ".join(other.stdout.str().split())
-    assert "the design has the drift 'worn', and tarl_drift was that of 'clogged' alone" in told
+    assert "the design has the drift 'worn', but tarl_drift held only 'clogged'" in told
 
 
 def test_workers_have_the_same_design(worn: pytest.Pytester) -> None:
@@ -111,12 +111,12 @@ def test_one_can_go_back_to_the_world_as_written(worn: pytest.Pytester) -> None:
 def test_only_what_is_for_good_can_be_recorded(worn: pytest.Pytester) -> None:
     done = worn.runpytest(*RECORD, "--tarl-drift=clogged")
     told = " ".join(done.stdout.str().split())
-    assert "the drift 'clogged' is not for good" in told
+    assert "but 'clogged' is not permanent" in told
     assert 'drifts={"clogged": Drift(0.25, permanent=True)}' in told
     assert adopted(fixture_file(worn)) == ()
     done = worn.runpytest(*RECORD, "--tarl-drift=wrn")
     assert done.ret == pytest.ExitCode.USAGE_ERROR
-    done.stderr.fnmatch_lines(["*No test declares the drift 'wrn'; known are: clogged, worn.*"])
+    done.stderr.fnmatch_lines(["*No test declares the drift 'wrn' (declared: clogged, worn).*"])
 
 
 OTHER = """
@@ -144,7 +144,7 @@ def test_keeps_full(tarl, tarl_drift):
     ("declared", "words"),
     [
         ('{"worn": Drift(0.1, permanent=True)}', "it earns without the repair under the same drift"),
-        ("{}", "so this is its old world, which is not asked"),
+        ("{}", "so this is its old world, which may change"),
     ],
 )
 def test_other_tests_of_the_node_run_in_the_new_world_where_they_declare_it(
@@ -160,5 +160,5 @@ def test_other_tests_of_the_node_run_in_the_new_world_where_they_declare_it(
     worn.run(*TARL, "apply", str(patch))
     done = worn.runpytest(*RECORD, *WORN)
     told = " ".join(done.stdout.str().split())
-    lagging = "test_keeps_full is recorded on the same node in the world as it was" in told
+    lagging = "test_keeps_full has a recording of the same node in the old world" in told
     assert lagging == (declared == "{}")

@@ -282,7 +282,7 @@ def test_a_repair_that_has_no_definition_is_refused_where_one_is_wanted(worn: py
     changed(worn, "test_tank", 'tarl.start("keeper.py")', 'tarl.start("keeper.py", parameters={"gain": 2.0})')
     where, told, _ = repaired(worn, "--tarl-edit=definition", "--tarl-budget=60")
     assert not where or "missing" in told
-    assert "it helps at its use and not at the definition" in told
+    assert "it works only at a use of the constant" in told
 
 
 def test_an_unknown_place_is_explained(worn: pytest.Pytester) -> None:

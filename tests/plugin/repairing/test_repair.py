@@ -74,13 +74,13 @@ def test_a_search_that_is_out_of_time_says_that_the_clock_is_not_in_the_seed(
     done = tank.runpytest(*REPAIR, "--tarl-budget=5s")
     done.assert_outcomes(failed=1, deselected=1)
     told = " ".join(done.stdout.str().split())
-    assert "none accepted: the search used up its time" in told
+    assert "none accepted: the search reached its time limit" in told
     ran = re.search(
         r"the search was cut after 5 s, in which it ran (\d) episodes; the clock is not in the", told
     )
     assert ran is not None
     assert 1 <= int(ran[1]) <= 5  # of a clock that moves on by a second whenever it is read
-    assert re.search(r"best so far: .+ an episode, mean of \d", told)
+    assert re.search(r"best so far: .+ per episode, mean of \d", told)
     assert "--tarl-budget 5s" in told
     assert not list(tank.path.glob(".tarl/patches/*.patch"))
 
@@ -99,7 +99,7 @@ def test_an_interrupted_search_tells_its_best_and_ends_the_run(tank: pytest.Pyte
     assert done.ret == pytest.ExitCode.INTERRUPTED
     told = " ".join(done.stdout.str().split())
     assert "none accepted: the search was interrupted" in told
-    assert re.search(r"best so far: .+ an episode, mean of \d", told)
+    assert re.search(r"best so far: .+ per episode, mean of \d", told)
     assert result(tank)["episodes"]["search"] == 4
     assert not list(tank.path.glob(".tarl/patches/*.patch"))
 
@@ -122,14 +122,14 @@ def test_what_was_dropped_and_what_came_next_is_told(
     assert result(tank)["repair"]["accepted"]
     told = " ".join(done.stdout.str().split())
     assert re.search(
-        r"\d tried before, the last: .+: (dropped|not run), (it gains|the designed|a smaller)", told
+        r"\d tried before; the last: .+: (dropped|not run), (it gains|the designed|a smaller)", told
     )
     tried = result(tank)["repair"]["tried"]
     assert "nominal gets worse" in [one["reason"] for one in tried if one["fresh"]]
     assert tried[-1]["reason"] is None
     (page,) = tank.path.glob(".tarl/report/*.html")
     text = page.read_text()
-    history = text[text.index("What was tried, in order") :]
+    history = text[text.index("Attempts, in order") :]
     assert history.index("the designed world gets worse") < history.index("accepted,")
 
 
@@ -171,7 +171,7 @@ def test_another_recorded_test_of_the_node_must_not_lose(tank: pytest.Pytester) 
     told = " ".join(done.stdout.str().split())
     assert not result(tank)["repair"]["accepted"]
     assert "none accepted: the best change found makes another recorded test of the node worse" in told
-    assert "another test loses: test_pipe.py::test_pipe: " in told
+    assert "another test earns less: test_pipe.py::test_pipe: " in told
     assert not list(tank.path.glob(".tarl/patches/*.patch"))
 
 
@@ -263,7 +263,7 @@ def test_a_full_ranking_goes_on_after_the_repair_and_says_how_certain_it_is(tank
 
 def test_localize_takes_its_kinds_and_goes_with_a_repair(tank: pytest.Pytester) -> None:
     done = tank.runpytest(*ONLINE, "--tarl-localize=full")
-    done.stderr.fnmatch_lines(["*--tarl-localize goes with --tarl-repair*"])
+    done.stderr.fnmatch_lines(["*--tarl-localize needs --tarl-repair*"])
     done = tank.runpytest(*REPAIR, "--tarl-localize=ful")
     done.stderr.fnmatch_lines(["*did you mean 'full'?*"])
 

@@ -169,7 +169,7 @@ def test_a_template_of_the_project_is_tried(pytester: pytest.Pytester) -> None:
     assert "mirror msg.data" in " ".join(done.stdout.str().split())
     (folder / "mirrored.toml").write_text("summary = 3")
     done = pytester.runpytest(*REPAIR)
-    assert "mirrored.toml: this is no template" in " ".join(done.stdout.str().split())
+    assert "mirrored.toml: not a template" in " ".join(done.stdout.str().split())
 
 
 def test_axes_that_were_turned_are_swapped(pytester: pytest.Pytester) -> None:

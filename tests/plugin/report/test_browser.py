@@ -165,8 +165,8 @@ def test_both_regions_are_outlined_and_the_tolerance_is_a_band(shuttle_seen):
 
 def test_all_reward_curves_are_drawn_and_named(shuttle_seen):
     names = [
-        "off-line",
-        "on-line (mud)",
+        "designed",
+        "deployed (mud)",
         "search: epsilon-greedy",
         "search: sweep",
         "repaired",
@@ -179,8 +179,8 @@ def test_all_reward_curves_are_drawn_and_named(shuttle_seen):
 
 def test_hovering_tells_value_line_and_cell(shuttle_seen):
     utility, reward = shuttle_seen.found["hover"]
-    assert re.fullmatch(r"off-line \d\.\d\d29  err = abs\(delta\)x 5\.4-5\.8 m, terrain false", utility)
-    assert re.match(r"off-line \d+\.\d\depisode 5: ", reward)
+    assert re.fullmatch(r"designed \d\.\d\d29  err = abs\(delta\)x 5\.4-5\.8 m, terrain false", utility)
+    assert re.match(r"designed \d+\.\d\depisode 5: ", reward)
 
 
 def test_every_list_has_a_tab_that_shows_its_figures(follower_seen):

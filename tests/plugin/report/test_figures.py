@@ -104,7 +104,7 @@ def test_curves_are_running_means_with_the_episodes_behind_them(varied):
     )
     assert offline["mean"] == [1.0, 2.0, 3.0]
     assert offline["totals"] == [1.0, 3.0, 5.0]
-    assert online["name"] == "on-line (mud)"
+    assert online["name"] == "deployed (mud)"
 
 
 def test_every_search_is_a_curve_with_what_it_ran(shuttle):

@@ -24,7 +24,7 @@ def test_the_shuttle_reads_as_one_short_section(shuttle):
     assert told(shuttle, page=ROOT / ".tarl/report/delivers.html").splitlines() == [
         "tests/test_traveller.py::test_delivers[mud]: degraded",
         "  verdict  In the drift scenario 'mud' an episode earns 16.90 less than designed (p < 0.001).",
-        "  reward   off-line 9.78, on-line -6.83, repaired 9.42, designed world repaired 10.09",
+        "  reward   designed 9.78, deployed -6.83, repaired 9.42, designed world repaired 10.09",
         "  loss     16.90 an episode, about 90% confidence 15.40 to 18.10; 6.2 standard deviations",
         "  parts    progress -9.30",
         "           clearance -7.60",
@@ -56,7 +56,7 @@ def test_a_refused_repair_says_why_and_shows_the_best_so_far(two_lists):
 
 
 def test_situations_never_seen_off_line_are_told_apart(two_lists):
-    assert "x 1.2-8.8 m, light dusk <&>; never seen off-line: x above 7.9 m, light night" in told(
+    assert "x 1.2-8.8 m, light dusk <&>; not in the recording: x above 7.9 m, light night" in told(
         two_lists, 200
     )
 

@@ -44,11 +44,11 @@ SENTENCES = {
     ),
     Verdict("drifted", 0.002, 0.01, 0.2, 0.4, 0.5): (
         "The drift scenario 'mud' differs from the designed one (p = 0.002); "
-        "an episode earns 0.20 less, within the 0.50 that is tolerated."
+        "an episode earns 0.20 less, within the tolerance of 0.50."
     ),
     Verdict("no difference", 0.6, 0.4, 0.1, 0.4, 0.5): (
         "No difference was found between the drift scenario 'mud' and the designed one; "
-        "a loss of 0.40 per episode would have been."
+        "a loss of 0.40 per episode would have been detected."
     ),
 }
 
@@ -60,7 +60,7 @@ def test_every_verdict_has_its_sentence(varied, verdict, said):
 
 def test_a_loss_that_could_not_have_been_seen_at_all_is_said(varied):
     unseen = varied(verdict=Verdict("no difference", 0.5, 0.5, 0.0, math.inf, 0.5))
-    assert words.verdict_sentence(unseen).endswith("; too few episodes were run to see any loss.")
+    assert words.verdict_sentence(unseen).endswith("; too few episodes were run to detect any loss.")
 
 
 def test_literals_are_replaced_and_named_constants_multiplied():

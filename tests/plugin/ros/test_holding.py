@@ -52,9 +52,7 @@ def test_with_workers_it_is_a_sentence_with_the_line(tank: pytest.Pytester, code
     changed(tank, "keeper", "            flow = GAIN * missing", code)
     told = tank.runpytest_subprocess(*RECORD, "--tarl-workers=2")
     told.assert_outcomes(failed=1, deselected=1)
-    told.stdout.fnmatch_lines(
-        ["*came to no end: a node held the interpreter, at keeper.py, line 2?, in main*"]
-    )
+    told.stdout.fnmatch_lines(["*did not end: a node held the interpreter at keeper.py, line 2?, in main*"])
 
 
 def test_a_worker_without_a_sign_of_life_is_ended_by_its_parent(
@@ -64,7 +62,7 @@ def test_a_worker_without_a_sign_of_life_is_ended_by_its_parent(
     changed(tank, "keeper", "            flow = GAIN * missing", HOLDS)
     before = time.monotonic()
     told = tank.runpytest(*RECORD, "--tarl-workers=2")
-    told.stdout.fnmatch_lines(["*came to no end: a node held the interpreter, at *keeper.py, line 2*"])
+    told.stdout.fnmatch_lines(["*did not end: a node held the interpreter at *keeper.py, line 2*"])
     assert time.monotonic() - before < 100  # ten seconds of CPU time would be forty with the system's timer
 
 
