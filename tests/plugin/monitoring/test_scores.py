@@ -103,5 +103,5 @@ def test_a_mission_without_steps_has_only_its_success_and_one_without_rewards_al
 
 
 def test_a_fixture_of_few_episodes_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(FixtureError, match="holds 2 episodes: too few"):
+    with pytest.raises(FixtureError, match="has 2 episodes: too few"):
         scale(fixture(tmp_path / "f.npz", walks(2, 1)))
