@@ -10,7 +10,7 @@ from pytest_tarl.ros.cv_bridge import CvBridge
 from pytest_tarl.ros.messages.snapshot import type_name
 from pytest_tarl.ros.missing import refuse
 from pytest_tarl.ros.point_cloud2 import TYPES, dtype_from_fields
-from pytest_tarl.ros.transformations import quaternion_from_matrix, quaternion_matrix
+from pytest_tarl.ros.transformations_rigid import quaternion_from_matrix, quaternion_matrix
 
 __all__ = [
     "array_to_pointcloud2", "get_xyz_points", "image_to_numpy", "msgify", "numpify", "numpy_to_image",

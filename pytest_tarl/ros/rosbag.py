@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from pytest_tarl.ros.genpy_dynamic import generate_dynamic
 from pytest_tarl.ros.messages import find_class
+from pytest_tarl.ros.messages.ros1 import field_class
 from pytest_tarl.ros.messages.ros1_wire import WireError, deserialize, full_text, serialize
 from pytest_tarl.ros.messages.times import Time
 from pytest_tarl.ros.missing import refuse, unsupported
@@ -183,7 +184,7 @@ class Bag:
 
 def _decoded(kind: Any, data: bytes) -> Any:
     try:
-        return deserialize(kind, data)
+        return deserialize(kind, data, field_class)
     except WireError as problem:
         raise ROSBagException(str(problem)) from problem
 

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from pytest_tarl.ros import transformations as plain
+from pytest_tarl.ros import transformations_rigid as plain
 
 __all__ = [
     "clip_matrix", "compose_matrix", "decompose_matrix", "is_same_transform", "orthogonalization_matrix",

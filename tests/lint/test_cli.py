@@ -54,7 +54,7 @@ def test_options_decide_when_to_fail(node, capsys, arguments, code):
 
 def test_json_is_the_document_of_the_schema(node, capsys):
     code, out, _ = lint(capsys, "--format", "json", "--exit-zero")
-    schema = json.loads((Path(runner.__file__).parent / "report/findings.schema.json").read_text())
+    schema = json.loads((Path(runner.__file__).parent.parent / "report/findings.schema.json").read_text())
     jsonschema.validate(json.loads(out), schema)
     assert code == 0
     assert json.loads(out)["diagnostics"][0]["path"] == "node.py"

@@ -29,7 +29,7 @@ def test_what_was_not_recorded_yet_is_told_without_asking(tank: pytest.Pytester)
         [
             "*run `pytest test_tank.py::test_fills --tarl-record` first*",
             "*1 skipped*",
-            "NOTHING WAS COMPARED: 1 of 1 tests, since it has no recorded utility.*",
+            "NOTHING WAS COMPARED: 1 of 1 tests, since it has no recording.*",
         ]
     )
 
@@ -40,7 +40,7 @@ def test_tests_that_were_compared_are_told_from_those_that_were_not(tank: pytest
     source = (tank.path / "test_tank.py").read_text()
     (tank.path / "test_other.py").write_text(source)
     told = tank.runpytest(*ONLINE)
-    told.stdout.fnmatch_lines(["NOT COMPARED: 1 of 2 tests, since it has no recorded utility.*"])
+    told.stdout.fnmatch_lines(["NOT COMPARED: 1 of 2 tests, since it has no recording.*"])
 
 
 def test_a_folder_that_cannot_be_written_to_is_named_before_any_episode(tank: pytest.Pytester) -> None:

@@ -28,5 +28,5 @@ def test_lines_appear_in_order_and_the_last_ones_stay_in_sight() -> None:
     assert seconds == sorted(seconds)
     last = max(float(y) for y in re.findall(r'<text x="\d+" y="([\d.]+)"', picture))
     height = float(re.findall(r'viewBox="0 0 \d+ (\d+)"', picture)[0])
-    scrolled = float(re.findall(r"100%\{transform:translateY\((-?\d+)px\)", picture)[0])
+    scrolled = float(re.findall(r"(?<![\d.])100%\{transform:translateY\((-?\d+)px\)", picture)[0])
     assert 0 < last + scrolled < height

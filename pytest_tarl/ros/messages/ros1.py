@@ -13,7 +13,7 @@ from struct import Struct
 from struct import error as StructError  # noqa: N812 (a class)
 from typing import Any, ClassVar
 
-from pytest_tarl.ros.messages import values
+from pytest_tarl.ros.messages import ros1_wire, values
 from pytest_tarl.ros.messages.definitions import Definition, Field, find_message, find_service
 from pytest_tarl.ros.messages.times import Duration, Time, TVal
 from pytest_tarl.ros.messages.values import INTEGERS, FieldError
@@ -51,15 +51,11 @@ class Message:
 
     def serialize(self, buff: Any) -> None:
         """Write the message as bytes into a file."""
-        from pytest_tarl.ros.messages.ros1_wire import serialize
-
-        buff.write(serialize(self))
+        buff.write(ros1_wire.serialize(self))
 
     def deserialize(self, data: bytes) -> Message:
         """Take the values of all fields from bytes; return the message."""
-        from pytest_tarl.ros.messages.ros1_wire import deserialize
-
-        self.__setstate__(deserialize(type(self), data).__getstate__())
+        self.__setstate__(ros1_wire.deserialize(type(self), data, field_class).__getstate__())
         return self
 
     def __getstate__(self) -> list[Any]:
@@ -125,6 +121,11 @@ def message_class(package: str, name: str) -> type[Message] | None:
     """Return the class of a message type, built at first use; None if nobody knows the type."""
     definition = find_message("ros1", package, name)
     return build(definition, f"{package}.msg") if definition is not None else None
+
+
+def field_class(base: str) -> type[Message] | None:
+    """Return the class of a message type by its full name, also of parts of services and actions."""
+    return message_class(*base.split("/", 1)) or CARRIED.get(base)
 
 
 @cache

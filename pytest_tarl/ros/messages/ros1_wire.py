@@ -6,9 +6,9 @@ Format: https://wiki.ros.org/msg, "Array handling" and "Primitive types".
 from __future__ import annotations
 
 import struct
+from collections.abc import Callable
 from typing import Any
 
-from pytest_tarl.ros.messages import ros1
 from pytest_tarl.ros.messages.definitions import Definition, find_message
 from pytest_tarl.ros.messages.times import Duration, Time
 
@@ -18,6 +18,7 @@ _CODES = {
 }  # fmt: skip
 _TIMES = {"time": (Time, "<II"), "duration": (Duration, "<ii")}
 _LENGTH = struct.Struct("<I")
+Find = Callable[[str], Any]
 
 
 class WireError(ValueError):
@@ -34,10 +35,13 @@ def serialize(message: Any) -> bytes:
     return b"".join(parts)
 
 
-def deserialize(kind: Any, data: bytes) -> Any:
-    """Return the message of a class that bytes hold. Raises WireError where they are too few, or too many."""
+def deserialize(kind: Any, data: bytes, find: Find) -> Any:
+    """Return the message of a class that bytes hold; `find` returns the class of a field by its type.
+
+    Raises WireError where they are too few, or too many.
+    """
     try:
-        message, end = _read_message(kind, data, 0)
+        message, end = _read_message(kind, data, 0, find)
     except (struct.error, UnicodeDecodeError) as problem:
         raise WireError(f"the bytes are no {kind._type}: {problem}") from problem
     if end != len(data):
@@ -98,18 +102,18 @@ def _write_one(value: Any, base: str, parts: list[bytes]) -> None:
         _write_message(value, parts)
 
 
-def _read_message(kind: Any, data: bytes, at: int) -> tuple[Any, int]:
+def _read_message(kind: Any, data: bytes, at: int, find: Find) -> tuple[Any, int]:
     message = kind()
     for name, slot in zip(kind.__slots__, kind._slot_types, strict=True):
-        value, at = _read(slot, data, at)
+        value, at = _read(slot, data, at, find)
         setattr(message, name, value)
     return message, at
 
 
-def _read(kind: str, data: bytes, at: int) -> tuple[Any, int]:
+def _read(kind: str, data: bytes, at: int, find: Find) -> tuple[Any, int]:
     base, bracket, size = kind.partition("[")
     if not bracket:
-        return _read_one(base, data, at)
+        return _read_one(base, data, at, find)
     count = int(size.rstrip("]") or 0)
     if size == "]":
         (count,), at = _LENGTH.unpack_from(data, at), at + _LENGTH.size
@@ -124,12 +128,12 @@ def _read(kind: str, data: bytes, at: int) -> tuple[Any, int]:
         return numbers.unpack_from(data, at), at + numbers.size
     found = []
     for _ in range(count):
-        one, at = _read_one(base, data, at)
+        one, at = _read_one(base, data, at, find)
         found.append(one)
     return found, at
 
 
-def _read_one(base: str, data: bytes, at: int) -> tuple[Any, int]:
+def _read_one(base: str, data: bytes, at: int, find: Find) -> tuple[Any, int]:
     if base in _CODES:
         (value,) = struct.unpack_from(f"<{_CODES[base]}", data, at)
         return value, at + struct.calcsize(_CODES[base])
@@ -141,8 +145,7 @@ def _read_one(base: str, data: bytes, at: int) -> tuple[Any, int]:
     if base in _TIMES:
         made, form = _TIMES[base]
         return made(*struct.unpack_from(form, data, at)), at + 8
-    package, _, short = base.partition("/")
-    kind = ros1.message_class(package, short) or ros1.CARRIED.get(base)
+    kind = find(base)
     if kind is None:
         raise WireError(f"message type {base} is not known")
-    return _read_message(kind, data, at)
+    return _read_message(kind, data, at, find)

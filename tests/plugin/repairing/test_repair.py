@@ -258,7 +258,7 @@ def test_a_full_ranking_goes_on_after_the_repair_and_says_how_certain_it_is(tank
     assert "--tarl-repair --tarl-localize full" in told
     assert {one["method"] for one in full["culprits"] if one["operands"]} == {"ranking"}
     (page,) = tank.path.glob(".tarl/report/*.html")
-    assert "How certain: the repair of the first held on" in page.read_text()
+    assert "Confidence in this order: the repair of the first held on" in page.read_text()
 
 
 def test_localize_takes_its_kinds_and_goes_with_a_repair(tank: pytest.Pytester) -> None:

@@ -12,6 +12,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from benchmarks.foreign_messages import filled
 from pytest_tarl.ros import message_type
+from pytest_tarl.ros.messages.ros1 import field_class
 from pytest_tarl.ros.messages.ros1_wire import WireError, deserialize, full_text, serialize
 from tests.plugin.ros.conftest import Start
 
@@ -32,7 +33,7 @@ def test_bytes_are_those_of_ros(name: str, store: Any) -> None:
     data = serialize(message)
     other = name.replace("/", "/msg/")
     assert bytes(store.serialize_ros1(store.deserialize_ros1(data, other), other)) == data
-    again = deserialize(type(message), data)
+    again = deserialize(type(message), data, field_class)
     assert serialize(again) == data
     assert again == type(message)._tarl_copy(message)  # type: ignore[attr-defined]
 
@@ -42,7 +43,7 @@ def test_wrong_bytes_are_told() -> None:
     data = serialize(filled(kind, 1))
     for wrong in (data[:-1], data + b"\0", data[:12] + b"\xff\xff\xff\xff" + data[16:], b""):
         with pytest.raises(WireError):
-            deserialize(kind, wrong)
+            deserialize(kind, wrong, field_class)
 
 
 def test_messages_read_and_write_themselves() -> None:
