@@ -1,1 +1,1 @@
-"""Which mutation, under which guard, and does it hold."""
+"""Search for a mutation and its guard, and test whether the repair holds."""

@@ -1,10 +1,13 @@
-"""Does a repair hold? One test a candidate, on seeds that nothing was chosen by, final after its last look.
+"""Test whether a repair holds: one group-sequential test per candidate, on seeds that the search never used.
 
-It has to show, in the drifted and in the designed world, that a mission earns on average not less than one as designed
-by more than the margin δ, and that at most five points more of them fail. A mission counts as losing at most what a
-designed one earns, since failures are judged apart. Each mission of a candidate is paired with the mission of the same
-seed that the program as it is runs in the designed world. What the test takes from the candidate beforehand, the size
-of its bets, comes from a few seeds of their own, which can end in a refusal only.
+In both the drifted and the designed world the test must show that
+
+- the mean total reward is at most the margin δ below that of the unrepaired program in the designed world, and
+- the failure rate is at most five percentage points higher.
+
+A mission counts as losing at most what a designed one earns, because failures are judged apart. Each mission is paired
+with the unrepaired program's mission of the same seed in the designed world. Only the size of the bets is fitted to the
+candidate; this uses separate seeds at the beginning, which can refuse the candidate but not accept it.
 """
 
 from __future__ import annotations
@@ -20,17 +23,21 @@ from pytest_tarl.model import Reason
 from pytest_tarl.searching.acceptance_numbers import acceptance_numbers
 
 SCREEN = 8  # episodes before the test
-EARLY = (8, 16, 32)  # episodes after which the test can end in a refusal ...
-LOOKS = tuple(range(60, 201, 20))  # ... and after which it can end either way
+EARLY = (8, 16, 32)  # looks (numbers of episodes) at which the test can only refuse ...
+LOOKS = tuple(range(60, 201, 20))  # ... and looks at which it can also accept
 SEEDS = SCREEN + LOOKS[-1]
 PASS_RATE_LOSS = 0.05
-TOO_LITTLE: tuple[Reason, ...] = ("gain too small", "fails too often", "not shown")  # in the drifted world
-SHARE = 2 / 3  # of the risk for the first candidate; each one after it has a third of the one before
+TOO_LITTLE: tuple[Reason, ...] = (
+    "gain too small",
+    "fails too often",
+    "not shown",
+)  # reasons in the drifted world
+SHARE = 2 / 3  # of the risk α for the first candidate; each later one gets a third of the risk before it
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """One episode: total reward, whether the test passed, and what formulas came to."""
+    """One episode: total reward, whether the test passed, and the verdicts of its formulas."""
 
     total: float
     passed: bool
@@ -39,9 +46,10 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """The off-line world that a repair is held against; `margin` is δ, a reward per episode.
+    """The designed world as recorded, to which a repair is compared; `margin` is δ, in reward per episode.
 
-    No mission earns less than `lowest`, in either world, and none more than `highest`, where a range is declared.
+    A declared range of the reward bounds every mission in both worlds: none earns less than `lowest` or more than
+    `highest`.
     """
 
     totals: Sequence[float]
@@ -52,34 +60,34 @@ class Reference:
 
     @property
     def mean(self) -> float:
-        """Return the off-line average total reward."""
+        """Return the recorded mean total reward."""
         return fmean(self.totals)
 
     @property
     def tolerated(self) -> float:
-        """Return the failure rate that a repair must be shown to stay below."""
+        """Return the failure rate below which a repair must be shown to stay."""
         return min(1.0 - self.pass_rate + PASS_RATE_LOSS, 1.0)
 
     @property
     def least(self) -> float:
-        """Return the least difference between a mission and the designed one of its seed that is counted.
+        """Return the lower bound at which differences between a mission and its designed counterpart are clipped.
 
-        There is none below that of the worst mission, declared or else recorded. Where that one loses more than 20
-        times the margin, which is all that a designed mission earns at a margin of 5 %, it counts as that much: a
-        mission cannot do more than fail, and how many fail is shown apart. Without that limit the least loss that 200
-        episodes can show would grow with what a failure costs, and repairs that are right would be refused.
+        No difference is below that of the worst mission, declared or recorded. If that difference exceeds 20 times the
+        margin (with a margin of 5 % that is all a designed mission earns), it is clipped there: failures are counted by
+        a test of their own. Without the clip, the smallest loss that 200 episodes can show would grow with the cost of
+        a failure, and correct repairs would be refused.
         """
         best = max(self.totals) if self.highest is None else self.highest
         return max(min(self.lowest, *self.totals) - best, -self.margin / PASS_RATE_LOSS)
 
 
 def unforeseen(wanted: Sequence[object]) -> None:
-    """Begin nothing ahead."""
+    """Start no episodes ahead of time."""
 
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """Where a program is run, by seed; `foresee` is told the seeds that will be asked for, unless the test ends."""
+    """Run a program by seed; `foresee` receives the seeds that are requested next unless the test ends."""
 
     run: Callable[[int], Outcome]
     foresee: Callable[[Sequence[int]], None] = unforeseen
@@ -87,13 +95,13 @@ class World:
 
 @dataclass
 class Designed:
-    """The program as it is in the designed world; each seed is run once, for both worlds of a candidate."""
+    """The unrepaired program in the designed world; each seed runs once, for both worlds of a candidate."""
 
     world: World
     known: dict[int, Outcome] = field(default_factory=dict)
 
     def __call__(self, seeds: Sequence[int]) -> list[float]:
-        """Return the totals of these seeds."""
+        """Return the total rewards of these seeds."""
         new = [seed for seed in seeds if seed not in self.known]
         self.world.foresee(new)
         self.known.update((seed, self.world.run(seed)) for seed in new)
@@ -102,11 +110,14 @@ class Designed:
 
 @dataclass(frozen=True, slots=True)
 class Acceptance:
-    """How the test ended: `drifted` and `nominal` are its episodes, nominal empty when none were needed.
+    """Result of a test.
 
-    A candidate that its first few seeds refuse is not `tested`: it takes nothing of the risk. `episodes` counts all
-    that were run, those of the program as it is included. `bets` are what was bet in the two worlds, `seeds` those of
-    the drifted episodes, `designed` what the program as it is earns on them in the designed world.
+    - `drifted`, `nominal`: the episodes in the two worlds; `nominal` is empty if none were needed.
+    - `tested`: False if the first seeds refused the candidate, which then spends no risk.
+    - `episodes`: number of all episodes, including those of the unrepaired program.
+    - `bets`: the bets placed in the two worlds.
+    - `seeds`: the seeds of the drifted episodes; `designed`: the unrepaired program's totals on them in the designed
+      world.
     """
 
     accepted: bool
@@ -121,7 +132,7 @@ class Acceptance:
 
 
 def risk_of(alpha: float, before: int) -> float:
-    """Return the risk of a test that so many others came before; over all of them it adds up to α."""
+    """Return the risk of the test after `before` earlier ones; over all tests the risks sum to at most α."""
     return alpha * SHARE * (1.0 - SHARE) ** before
 
 
@@ -133,10 +144,10 @@ def accept(
     reference: Reference,
     risk: float,
 ) -> Acceptance:
-    """Test one candidate; `nominal` is None where the repair cannot make a difference in the designed world.
+    """Test one candidate; `nominal` is None if the repair cannot make a difference in the designed world.
 
-    `seeds` must be fresh, `SEEDS` of them; `risk` is the probability at most with which a candidate is accepted that
-    loses more than the margin, or fails too often, in one of the worlds.
+    `seeds` are `SEEDS` fresh ones. `risk` bounds the probability of accepting a candidate that loses more than the
+    margin or fails too often in one of the worlds.
     """
     original = Designed(designed)
     worlds = [_World(drifted, original, reference, risk, "gain too small")]
@@ -174,7 +185,7 @@ def _ended(
 
 @dataclass
 class _World:
-    """A candidate in one world, against the designed missions of the same seeds."""
+    """A candidate in one world, paired with the designed missions of the same seeds."""
 
     world: World
     designed: Designed
@@ -186,14 +197,14 @@ class _World:
     bet: Bet | None = None
 
     def screened(self, seeds: Sequence[int]) -> Reason:
-        """Run the first seeds, which can only refuse; the bet is made by them."""
+        """Run the first seeds, which can only refuse, and choose the bet from them."""
         self.first = self._run(seeds)
         differences = self._differences(self.first, seeds)
         self.bet = bet(self.reference.margin, self.reference.least, differences)
         return self._hopeless(self.first, differences, LOOKS[-1])
 
     def tested(self, seeds: Sequence[int]) -> Reason:
-        """Run the test; return why it was refused, if it was."""
+        """Run the test; return the reason for a refusal, "" if accepted."""
         numbers = dict(zip(LOOKS, self._numbers(), strict=True))
         for look in (*EARLY, *LOOKS):
             self.seen += self._run(seeds[len(self.seen) : look])
@@ -205,7 +216,7 @@ class _World:
         return self.worse if fmean(differences) < -self.reference.margin else "not shown"
 
     def _shown(self, differences: Sequence[float], number: int | None) -> bool:
-        """Tell whether a look shows both that missions succeed and that they lose nothing."""
+        """Tell whether a look shows both that missions succeed and that they lose no more than the margin."""
         if number is None or self.bet is None or self._failed(self.seen) > number:
             return False
         if fmean(differences) < -self.reference.margin:
@@ -213,7 +224,7 @@ class _World:
         return self.bet.wealth(differences) >= -log(self.risk)
 
     def _hopeless(self, outcomes: Sequence[Outcome], differences: Sequence[float], left: int) -> Reason:
-        """Say why a test cannot end well any more; "" where it can."""
+        """Return the reason why the test can no longer accept, "" if it can."""
         if self._failed(outcomes) > self._numbers()[-1]:
             return "fails too often" if self.worse == "gain too small" else self.worse
         if self.bet is None or not self.bet.hopeless(differences, left, self.risk):

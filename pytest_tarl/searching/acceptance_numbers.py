@@ -1,7 +1,8 @@
-"""Acceptance numbers: how many failures at most show that missions fail seldom enough, look after look.
+"""Acceptance numbers: the largest number of failures that still shows a tolerable failure rate, for each look.
 
-One look at n missions with c failures is the bound of Clopper and Pearson: 0 of 59 shows 5 % at 95 %. Several looks
-share the risk; what a look spends is computed exactly, over the paths of the count that no earlier look ended.
+With a single look at n missions and c failures this is the bound of Clopper and Pearson: 0 of 59 shows 5 % at 95 %.
+Several looks share the risk. The risk spent by a look is computed exactly, by convolving the distribution of the
+failure count over the paths that no earlier look accepted.
 """
 
 from __future__ import annotations
@@ -17,12 +18,12 @@ NEVER = -1  # no number of failures suffices at this look
 
 @lru_cache(maxsize=64)
 def acceptance_numbers(looks: tuple[int, ...], tolerated: float, risk: float) -> tuple[int, ...]:
-    """Return the acceptance number of each look, `NEVER` where there is none.
+    """Return the acceptance number of each look, `NEVER` where no number suffices.
 
-    A program that fails with probability `tolerated` or more is accepted with probability `risk` at most, over all
-    looks. By look n of N, risk × √(n/N) may be spent: early looks get a larger share than they have episodes.
+    A program that fails with probability `tolerated` or more is accepted with probability at most `risk` over all
+    looks. By look n of N, risk × √(n/N) may be spent, so early looks get more than their proportion of the episodes.
     """
-    waiting = np.ones(1)  # P(so many failures, not accepted until now), at the tolerated rate
+    waiting = np.ones(1)  # P(k failures so far and not accepted yet) at the tolerated rate, shape (k,)
     spent, seen = 0.0, 0
     numbers: list[int] = []
     for look in looks:
@@ -38,6 +39,6 @@ def acceptance_numbers(looks: tuple[int, ...], tolerated: float, risk: float) ->
 
 
 def _binomial(trials: int, rate: float) -> np.ndarray:
-    """Return the probabilities of 0 … `trials` failures."""
+    """Return the probabilities of 0 … `trials` failures, shape (trials + 1,)."""
     counts: Sequence[int] = range(trials + 1)
     return np.array([comb(trials, k) * rate**k * (1.0 - rate) ** (trials - k) for k in counts])

@@ -1,4 +1,4 @@
-"""Any optimiser as a search: it is asked for factors and told what they gained (ask / tell)."""
+"""Adapter for any optimiser: ask it for factors, then tell it their gain (ask/tell interface)."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from pytest_tarl.searching.search import (
 )
 from tarl_lint.model import Operand
 
-UNMOVED = 0.02  # a factor this close to one changes nothing
-MOST_IDLE = 200  # proposals in a row that cost no episode
+UNMOVED = 0.02  # a factor this close to 1 leaves the constant unchanged
+MOST_IDLE = 200  # consecutive proposals without a new episode, after which the search ends
 MOST_AT_ONCE = 1000
 
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A constant at its use, as an optimiser sees it; `value` is None where it is known at run time only."""
+    """A use of a constant as the optimiser sees it; `value` is None if it is known only at run time."""
 
     path: str
     line: int
@@ -42,26 +42,27 @@ class Constant:
 
 
 class Optimiser(Protocol):
-    """What a plug-in has to be. It may have `batch`, the number of proposals that it makes before it is told.
+    """Interface of a plug-in. The optional attribute `batch` is the number of proposals to request at once.
 
-    Episodes of a batch run side by side under `--tarl-workers`; the batch is never made larger or smaller for that.
+    Episodes of a batch run in parallel under `--tarl-workers`; the number of workers never changes the batch.
     """
 
     def ask(self) -> Sequence[float]:
-        """Return a factor for every constant: 1 leaves it, a negative one turns its sign, or flips a boolean.
+        """Return a factor for every constant; raise StopIteration to end the search.
 
-        Zero moves by `factor - 1` above one, by `1 - 1 / factor` below. StopIteration says that there is no more.
+        A factor of 1 leaves the constant unchanged; a negative factor flips its sign, or flips a boolean. A constant
+        that is zero moves by `factor - 1` for factors above 1 and by `1 - 1 / factor` for factors below 1.
         """
 
     def tell(self, factors: Sequence[float], gain: float) -> None:
-        """Take what these factors gained, in reward, over the unmutated run of the same seed."""
+        """Take the gain in reward of these factors over the unmutated run of the same seed."""
 
 
 Factory = Callable[[Sequence[Constant], int], Optimiser]
 
 
 def factory(name: str, folders: Sequence[Path]) -> Factory:
-    """Return what `module:factory` names; modules are looked for in the folders first. Raises SettingsError."""
+    """Import `module:factory`, searching the folders for the module first. Raises SettingsError."""
     module, _, attribute = name.partition(":")
     where = f"--tarl-search={name}"
     try:
@@ -83,7 +84,7 @@ def factory(name: str, folders: Sequence[Path]) -> Factory:
 
 
 class Asking:
-    """A search that an optimiser leads, one of its kind for every guard, in turns."""
+    """A search led by optimisers, one for each guard, in turns. Raises SearchError for faults of the plug-in."""
 
     def __init__(
         self,
@@ -109,7 +110,7 @@ class Asking:
         self._found: list[Candidate] = []
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield what came near and was confirmed, without what it does not need."""
+        """Yield confirmed candidates, each without the mutations that it does not need."""
         turn, idle, leads = 0, 0, list(self._leads)
         while self.operands and leads and idle < MOST_IDLE:
             guard, optimiser = leads[turn % len(leads)]
@@ -122,7 +123,7 @@ class Asking:
             turn += 1
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, per site, what its operands gained in the best candidate that was confirmed."""
+        """Return, for each site, the gain of its operands in the best confirmed candidate."""
         best: dict[tuple[str, str], OperandEffect] = {}
         for candidate in self._found:
             gain = self.trials.gain(candidate, self.goal.pairs)
@@ -136,7 +137,7 @@ class Asking:
         return found
 
     def _asked(self, optimiser: Optimiser) -> list[list[float]]:
-        """Ask for a batch; fewer where there is no more."""
+        """Ask for a batch; it is shorter if the optimiser has no more proposals. Raises SearchError."""
         asked: list[list[float]] = []
         with self._heeding("ask()"):
             for _ in range(getattr(optimiser, "batch", 1)):
@@ -170,7 +171,7 @@ class Asking:
                 yield kept
 
     def _candidate(self, factors: Sequence[float], guard: Guard) -> Candidate:
-        """Return the mutations that the factors make; a boolean is flipped by a negative one only."""
+        """Return the mutations for these factors; only a negative factor flips a boolean."""
         moved = (
             self.mutate(operand, factor)
             for operand, factor in zip(self.operands, factors, strict=True)
@@ -179,7 +180,7 @@ class Asking:
         return Candidate(tuple(mutation for mutation in moved if mutation is not None), guard)
 
     def _gained(self, candidate: Candidate, pair: Pair) -> tuple[float, bool]:
-        """Run a candidate; one that cannot be written earns as little as the worst episode."""
+        """Run a candidate; one that cannot be written into the source earns as little as the worst episode."""
         if not candidate.mutations:
             return 0.0, False
         try:
@@ -189,7 +190,7 @@ class Asking:
         return outcome.total - pair.total, self.goal.reached(outcome, pair.seed)
 
     def _least(self, candidate: Candidate, pair: Pair) -> Candidate:
-        """Leave out, one after the other, what the seed does not need: an optimiser moves everything a little."""
+        """Drop, one by one, mutations that the seed does not need: optimisers tend to move everything a little."""
         for mutation in candidate.mutations:
             kept = tuple(one for one in candidate.mutations if one != mutation)
             fewer = Candidate(kept, candidate.guard)
@@ -201,12 +202,12 @@ class Asking:
         return candidate
 
     def _check(self, optimiser: Any) -> None:
-        """Raise SearchError where an object is no optimiser."""
+        """Raise SearchError if an object is not an optimiser."""
         missing = [name for name in ("ask", "tell") if not callable(getattr(optimiser, name, None))]
         if missing:
             raise SearchError(
-                f"--tarl-search={self.name}: what it made, {type(optimiser).__name__}, has no method "
-                f"{' and no '.join(missing)}; it takes ask() and tell(factors, gain)."
+                f"--tarl-search={self.name}: the factory returned {type(optimiser).__name__}, which has no method "
+                f"{' and no '.join(missing)}; an optimiser needs ask() and tell(factors, gain)."
             )
         batch = getattr(optimiser, "batch", 1)
         if not isinstance(batch, int) or not 1 <= batch <= MOST_AT_ONCE:
@@ -216,7 +217,7 @@ class Asking:
 
     @contextmanager
     def _heeding(self, what: str) -> Iterator[None]:
-        """Name the plug-in where its own code fails."""
+        """Turn an exception of the plug-in into a SearchError that names the plug-in."""
         try:
             yield
         except (BudgetSpentError, SearchError, KeyboardInterrupt):
@@ -226,7 +227,7 @@ class Asking:
 
 
 def _told(problem: BaseException) -> str:
-    """Name an exception and the line that it comes from."""
+    """Describe an exception and the line that raised it."""
     frames = traceback.extract_tb(problem.__traceback__)
     last = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
     return f"{type(problem).__name__}: {problem}{last}"

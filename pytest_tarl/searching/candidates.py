@@ -1,4 +1,4 @@
-"""Candidate guards: what region, novelty and single sensors propose; simulation selects among them."""
+"""Candidate guards, proposed by the region, by novel cells and by single sensors; simulation selects among them."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from pytest_tarl.model import Conjunct, Guard, Region
 from pytest_tarl.sensors import Cell, Sensor
 
 ALWAYS = Guard()
-COVERED = 0.95  # share of the on-line steps
-HARMLESS = 0.25  # what it is worth that a guard never holds off-line ...
-CONDITION = 0.1  # ... and what a second condition costs, both as shares of the change
-EVERYWHERE = 0.3  # the best guard tells less than this where the drift is everywhere
-WIDER = 2  # bins by which an interval is widened on either side, as a last proposal
+COVERED = 0.95  # share of the drifted steps from which a guard counts as holding everywhere
+HARMLESS = 0.25  # bonus in `merit` for a guard that never holds in the designed world ...
+CONDITION = 0.1  # ... and cost of a second condition, both as shares of the change
+EVERYWHERE = 0.3  # if the best merit is lower, the drift counts as being everywhere
+WIDER = 2  # bins by which an interval is widened on either side, as the last proposals
 
-Bins = tuple[int, int]  # first and last
+Bins = tuple[int, int]  # first and last bin, both included
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """What a guard can be read from: both worlds, the region, and how far on-line differs by cell."""
+    """Data from which guards are derived: both worlds, the region, and the change per cell."""
 
     sensors: Sequence[Sensor]
     offline: Sample
@@ -34,10 +34,10 @@ class Evidence:
     changes: Mapping[Cell, float]
 
     def shares(self) -> dict[Cell, float]:
-        """Return, per cell, the share of the whole change less the share of the off-line steps that fall there.
+        """Return, for each cell, its share of the change minus its share of the designed steps.
 
-        Where nothing was ever seen off-line, being there is the change: novel cells have their share of the on-line
-        steps, and the known cells that are visited on-line divide the rest as they changed.
+        In a novel cell, one never visited in the designed world, every visit is a change. Its share of the change is
+        therefore its share of the drifted steps. The visited known cells divide the rest in proportion to their change.
         """
         visited, designed = _occupancy(self.online), _occupancy(self.offline)
         novel = {cell: visited.get(cell, 0.0) for cell in self.region.novel}
@@ -49,7 +49,7 @@ class Evidence:
 
 
 def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
-    """Return the guards worth simulating: fewest conditions first, then those that hold least often off-line."""
+    """Return the guards worth simulating: fewest conditions first, then those that hold least in the designed world."""
     region = evidence.region
     proposals = [
         ALWAYS,
@@ -72,12 +72,12 @@ def candidate_guards(evidence: Evidence) -> tuple[Guard, ...]:
 
 
 def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Guard, ...]:
-    """Return the guards to search under: those that hold where much changed and seldom elsewhere, and none at all.
+    """Return the guards to search under: those that hold where much changed and rarely elsewhere, and `ALWAYS`.
 
-    Ordered by the share of the change that falls under the guard less the share of off-line steps that do (Youden's
-    J), better where it never holds off-line and so can do no harm there, worse with two conditions. None at all has
-    the second place; the first where the drift is everywhere, so that no guard tells much, and where the best guard
-    holds wherever the robot came on-line: it then says nothing of the places that only a repaired robot reaches.
+    A guard's merit is the share of the change under it minus the share of designed steps under it (Youden's J), plus a
+    bonus if it never holds in the designed world, minus a cost for a second condition. `ALWAYS` comes second. It comes
+    first if the drift is everywhere, so that no guard has much merit, and if the best guard holds wherever the drifted
+    robot came: such a guard says nothing about the places that only a repaired robot reaches.
     """
     shares, designed = evidence.shares(), evidence.offline
 
@@ -91,18 +91,18 @@ def telling(guards: Iterable[Guard], evidence: Evidence, most: int) -> tuple[Gua
     if not best or merit(best[0]) < EVERYWHERE:
         return (ALWAYS, *best)
     if share(best[0], evidence.online, evidence.sensors) >= COVERED:
-        return (ALWAYS, best[0])  # the designed world decides later whether it is needed
+        return (ALWAYS, best[0])  # the test in the designed world decides whether the guard is needed
     return (best[0], ALWAYS, *best[1:])
 
 
 def share(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> float:
-    """Return the share of steps with a known cell in which the guard holds."""
+    """Return the share of steps in known cells at which the guard holds."""
     steps = np.bincount(world.chain.cell, weights=world.chain.count, minlength=len(world.cells))
     return float(steps[_holding(guard, world, sensors)].sum() / max(steps.sum(), 1.0))
 
 
 def _occupancy(world: Sample) -> dict[Cell, float]:
-    """Return the share of a world's steps in every cell that was visited."""
+    """Return the share of a world's steps in each visited cell."""
     counts = np.bincount(world.chain.cell, world.chain.count, minlength=len(world.cells))
     steps = max(float(counts.sum()), 1.0)
     return {cell: count / steps for cell, count in zip(world.cells, counts.tolist(), strict=True) if count}
@@ -115,7 +115,7 @@ def firing_episodes(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> t
 
 
 def holds(guard: Guard, cell: Cell, sensors: Sequence[Sensor]) -> bool:
-    """Tell whether the guard is true in a cell; its bounds lie on those of bins."""
+    """Tell whether the guard holds in a cell; guard bounds coincide with bin bounds."""
     bins = dict(zip((sensor.name for sensor in sensors), cell, strict=True))
     return all(_within(conjunct, bins[conjunct.sensor.name]) for conjunct in guard.conjuncts)
 
@@ -127,13 +127,13 @@ def _holding(guard: Guard, world: Sample, sensors: Sequence[Sensor]) -> NDArray[
 def _within(conjunct: Conjunct, index: int) -> bool:
     low, high = conjunct.sensor.interval(index, index)
     slack = 1e-9 * max(1.0, abs(low), abs(high)) if np.isfinite(high - low) else 0.0
-    if conjunct.low > conjunct.high:  # an angle, across the ends of its range
+    if conjunct.low > conjunct.high:  # an angle whose interval crosses the end of the range
         return conjunct.low <= low + slack or high - slack <= conjunct.high
     return conjunct.low <= low + slack and high - slack <= conjunct.high
 
 
 def _hull(cells: Sequence[Cell], i: int, sensor: Sensor) -> Bins | None:
-    """Return the bins of a sensor that the cells span; of an angle the shortest arc, which may pass the last bin."""
+    """Return the bins that the cells span on a sensor; for an angle the shortest arc, which may pass the last bin."""
     chosen = sorted({cell[i] for cell in cells})
     if not chosen:
         return None
@@ -145,7 +145,7 @@ def _hull(cells: Sequence[Cell], i: int, sensor: Sensor) -> Bins | None:
 
 
 def _steepest(evidence: Evidence, i: int) -> Bins | None:
-    """Return the interval of a sensor's bins that holds most change in fewest off-line steps (Kadane's maximum sum)."""
+    """Return the interval of bins with the largest sum of `shares` (Kadane's maximum subarray, circular for angles)."""
     by_bin: dict[int, float] = {}
     for cell, value in evidence.shares().items():
         by_bin[cell[i]] = by_bin.get(cell[i], 0.0) + value
@@ -166,7 +166,7 @@ def _steepest(evidence: Evidence, i: int) -> Bins | None:
 
 
 def _values(evidence: Evidence) -> Iterator[Guard]:
-    """Yield every value of a boolean or categorical sensor that was met on-line, where it has others."""
+    """Yield a guard for each value that a boolean or categorical sensor took in the drifted world."""
     for i, sensor in enumerate(evidence.sensors):
         met = sorted({cell[i] for cell in evidence.online.cells}) if not sensor.numeric else []
         for index in met:
@@ -175,7 +175,7 @@ def _values(evidence: Evidence) -> Iterator[Guard]:
 
 
 def _combined(intervals: Sequence[Bins | None], evidence: Evidence) -> Iterator[Guard]:
-    """Yield the conditions on single sensors and on pairs of them that can be false and that a node can ask."""
+    """Yield conditions on single sensors and on pairs, if they can be false and a node can check them."""
     conjuncts = []
     for i, (sensor, bins) in enumerate(zip(evidence.sensors, intervals, strict=True)):
         seen = {cell[i] for world in (evidence.offline, evidence.online) for cell in world.cells}
@@ -187,13 +187,13 @@ def _combined(intervals: Sequence[Bins | None], evidence: Evidence) -> Iterator[
 
 
 def _spans(bins: Bins, seen: set[int], sensor: Sensor) -> bool:
-    """Tell whether bins hold all that was ever seen."""
+    """Tell whether the bins contain every bin ever seen."""
     turn = sensor.bins if sensor.angle and sensor.bins else 0
     return all(bins[0] <= index <= bins[1] or bins[0] <= index + turn <= bins[1] for index in seen)
 
 
 def _conjunct(sensor: Sensor, bins: Bins, seen: set[int]) -> Conjunct:
-    """Return the interval of the bins, left open at an end beyond which nothing was ever seen."""
+    """Return the interval of the bins, unbounded at an end beyond which no bin was ever seen."""
     low, high = sensor.interval(*bins)
     if sensor.numeric and not sensor.angle:
         low = -np.inf if bins[0] <= min(seen) else low
@@ -202,12 +202,12 @@ def _conjunct(sensor: Sensor, bins: Bins, seen: set[int]) -> Conjunct:
 
 
 def _asking(guard: Guard) -> Guard:
-    """Leave out conditions that always hold: what is written is the same without them."""
+    """Drop conditions that always hold, so that equal guards compare equal."""
     return Guard(tuple(one for one in guard.conjuncts if np.isfinite(one.low) or np.isfinite(one.high)))
 
 
 def _widened(guard: Guard) -> Guard:
-    """Widen every numeric interval by a few bins."""
+    """Widen every numeric interval by `WIDER` bins on either side."""
     return Guard(tuple(_wider(conjunct) for conjunct in guard.conjuncts))
 
 
@@ -220,7 +220,7 @@ def _wider(conjunct: Conjunct) -> Conjunct:
     step = WIDER * sensor.resolution
     low, high = conjunct.low - step, conjunct.high + step
     within = 1e-9 * step
-    # What lies outside of the range is one bin on either side: it is in or out as a whole.
+    # Values outside the range fall into one bin on either side, which is either inside the guard or outside it.
     return Conjunct(
         sensor,
         low if low >= sensor.low - within else -np.inf,
@@ -229,7 +229,7 @@ def _wider(conjunct: Conjunct) -> Conjunct:
 
 
 def _wider_arc(conjunct: Conjunct, low: float, period: float) -> Conjunct:
-    """Widen the arc of an angle; one that would come round to itself is every angle."""
+    """Widen the arc of an angle; an arc that would close on itself becomes unbounded."""
     step = WIDER * conjunct.sensor.resolution
     if (conjunct.high - conjunct.low) % period + 2 * step >= period - 1e-9 * period or np.isinf(conjunct.low):
         return Conjunct(conjunct.sensor, -np.inf, np.inf)

@@ -1,4 +1,4 @@
-"""The paper's search: SARSA over mutations, ε-greedy, one mutation an episode, the state being the last one."""
+"""The paper's search: ε-greedy SARSA over mutations, one mutation per episode; the state is the previous mutation."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ if TYPE_CHECKING:
 
 
 class EpsilonGreedy:
-    """Learn on fresh seeds which mutation pays, then confirm the best on episodes that lost."""
+    """Learn on fresh seeds which mutation pays off, then confirm the best ones on episodes that lost reward."""
 
     EPSILON = 0.2
     ALPHA = 0.3
     GAMMA = 0.5
-    SITES = 3  # the sites that the slices rank first
-    CONFIRMED = 3  # how many of the best mutations are confirmed in the end
+    SITES = 3  # sites to search, those that the slices rank first
+    CONFIRMED = 3  # best mutations to confirm at the end
     EPISODES = 200
 
     @classmethod
     def episodes(cls, budget: int) -> int:
-        """Return how many episodes to learn for, so that a third of the budget is left for confirming and guards."""
+        """Return the number of episodes for learning; a third of the budget stays for confirming and for guards."""
         return max(1, min(cls.EPISODES, 2 * budget // 3))
 
     def __init__(
@@ -58,10 +58,10 @@ class EpsilonGreedy:
         self.generator = generator
         self.q: dict[tuple[int, int], float] = {}
         self.seen: dict[int, list[float]] = {}
-        self.refused = set[int]()  # what cannot be written into the source
+        self.refused = set[int]()  # actions that cannot be written into the source
 
     def candidates(self) -> Iterator[Candidate]:
-        """Learn for all seeds, then yield the best mutations that confirm."""
+        """Learn on all seeds, then yield the best mutations that are confirmed."""
         if not self.actions:
             return
         self._learn()
@@ -76,7 +76,7 @@ class EpsilonGreedy:
                 yield candidate
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, per site, the mean gain of the best mutation of each operand over the unmutated world."""
+        """Return, for each site, each operand's best mean gain over the mean of the drifted world."""
         best: dict[tuple[str, str], OperandEffect] = {}
         for action, totals in self.seen.items():
             if action in self.refused:
@@ -111,7 +111,7 @@ class EpsilonGreedy:
             last, action = action, following
 
     def _choose(self, state: int) -> int:
-        """Explore with probability ε and while something is untried, else take the best known mutation."""
+        """Explore with probability ε, or 1/2 while mutations are untried; else return the best known mutation."""
         untried = [a for a in range(len(self.actions)) if a not in self.seen]
         if untried and self.generator.random() < 0.5:
             return untried[int(self.generator.integers(len(untried)))]

@@ -1,7 +1,7 @@
-"""Several culprits: add the best of all others to what gains most, and again, until it suffices.
+"""Combined repairs by greedy forward selection: add the best other unit to the best one until the goal is reached.
 
-A greedy choice by main effects, as in matching pursuit, with the parts balanced against each other after each step;
-what turns out not to be needed is dropped before the candidate is handed on.
+Units are chosen by their main effects, as in matching pursuit. After each step the parts are balanced against each
+other. Parts that turn out to be unnecessary are dropped before the candidate is yielded.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials, confirmed
 from pytest_tarl.searching.units import NEAR, Unit
 
-MOST = 3  # parts of a joint repair
-PROMISING = 0.5  # a union that gains this share of the loss is worth balancing
-LEADERS = 5  # those that are added to the first, of which one may have too little to show alone
-STEPS = (1.5, 0.65)  # by which the parts are moved
+MOST = 3  # parts of a combined repair
+PROMISING = 0.5  # share of the loss that a combination must gain to be balanced
+LEADERS = 5  # units to combine with the first; one of them may gain too little alone to stand out
+STEPS = (1.5, 0.65)  # factors by which balancing moves a part
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,24 +34,24 @@ class Joint:
         )
 
     def with_part(self, unit: Unit, factor: float) -> Joint:
-        """Return it with a part added or replaced."""
+        """Return a copy with this part added or replaced."""
         kept = tuple(part for part in self.parts if part[0] != unit)
         return Joint((*kept, (unit, factor)), self.guard)
 
     def without(self, unit: Unit) -> Joint:
-        """Return it with a part left out."""
+        """Return a copy without this part."""
         return Joint(tuple(part for part in self.parts if part[0] != unit), self.guard)
 
 
 @dataclass(frozen=True)
 class Settled:
-    """Candidates that were tried on further seeds, and those of them that held and were handed on."""
+    """Candidates that were tried on further seeds, and the ones among them that held and were yielded."""
 
     tried: set[Candidate] = field(default_factory=set)
     held: set[Candidate] = field(default_factory=set)
 
     def holds(self, candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
-        """Try a candidate on further seeds, once; False for one that was tried before."""
+        """Confirm a candidate on further seeds; return False if it was tried before."""
         if candidate in self.tried:
             return False
         self.tried.add(candidate)
@@ -62,7 +62,7 @@ class Settled:
 
 
 class ForwardSelection:
-    """Joins units; `gains` are those of the single ones by factor, `slack` is the gain that makes a difference."""
+    """Combine units; `gains` are the gains of single units by factor, `slack` is the smallest gain that matters."""
 
     def __init__(
         self,
@@ -83,10 +83,10 @@ class ForwardSelection:
         self.settled = settled or Settled()
 
     def candidates(self, base: Joint) -> Iterator[Candidate]:
-        """Yield joint candidates that hold on every seed they were tried on."""
+        """Yield combined candidates that hold on every seed they ran on."""
         gain = yield from self.gain(base)
         if base.candidate(self.mutate) in self.settled.held:
-            return  # nothing is missing on this seed that another part could add
+            return  # it reaches the goal on this seed, so no further part can show a gain
         while gain is not None and len(base.parts) < MOST:
             better, most = base, gain
             widened = list(self._with_another(base))
@@ -100,7 +100,7 @@ class ForwardSelection:
             base, gain = yield from self._balanced(better, most)
 
     def unions(self, parts: Sequence[tuple[Unit, float]], guard: Guard) -> Iterator[Candidate]:
-        """Join the leading part with the next ones, the best two with a third, and balance what gains most."""
+        """Combine the first part with the next ones, the best two with a third, and balance the best combination."""
         first = Joint(tuple(parts[:1]), guard)
         if first.candidate(self.mutate) in self.settled.held:
             return
@@ -116,17 +116,17 @@ class ForwardSelection:
                 if gained is not None and (best is None or gained > best[1]):
                     best, base = (joint, gained), joint
             if best is not None and best[1] >= self.goal.enough - self.goal.pairs[0].total:
-                break  # two suffice here, though not on fresh seeds: better values help, not more parts
+                break  # two parts suffice on this seed but not on fresh ones: adjust values, do not add parts
         if best is not None and best[1] > PROMISING * needed:
             yield from self._balanced(*best)
 
     def expect(self, joints: Sequence[Joint]) -> None:
-        """Tell which joint candidates are run next, unless something comes between."""
+        """Announce the combinations that run next unless a result changes the order."""
         seed = self.goal.pairs[0].seed
         self.trials.expect((joint.candidate(self.mutate), seed) for joint in joints)
 
     def gain(self, joint: Joint) -> Generator[Candidate, None, float | None]:
-        """Run a joint candidate once and return its gain, None where it cannot run; hand it on when it holds."""
+        """Run a combination once and return its gain, None if it cannot run; yield it if it holds."""
         candidate = joint.candidate(self.mutate)
         try:
             near = self._reached(candidate)
@@ -137,7 +137,7 @@ class ForwardSelection:
         return self.trials.gain(candidate, self.goal.pairs)
 
     def _settling(self, joint: Joint, candidate: Candidate) -> Iterator[Candidate]:
-        """Hand on what holds, without the parts that it does not need; nothing where the rest was handed on before."""
+        """Yield a combination that holds, without its unneeded parts, unless the rest was yielded before."""
         fewer = self._least(joint).candidate(self.mutate)
         if fewer in self.settled.held:
             self.settled.tried.add(candidate)
@@ -148,7 +148,7 @@ class ForwardSelection:
                 return
 
     def _with_another(self, base: Joint) -> Iterator[Joint]:
-        """Yield joints with one part more, first as each was best alone, then the other way."""
+        """Yield combinations with one more part, first with its better near factor, then with the other."""
         taken = {unit for unit, _ in base.parts}
         for turn in range(len(NEAR)):
             for unit in self.units:
@@ -158,7 +158,7 @@ class ForwardSelection:
                     yield base.with_part(unit, ranked[turn])
 
     def _balanced(self, base: Joint, gain: float) -> Generator[Candidate, None, tuple[Joint, float]]:
-        """Move the parts one by one, as long as that gains."""
+        """Move the parts one by one while that increases the gain; return the result and its gain."""
         for unit, factor in base.parts:
             for step in STEPS:
                 moved = base.with_part(unit, round(factor * step, 3))
@@ -169,7 +169,7 @@ class ForwardSelection:
         return base, gain
 
     def _least(self, joint: Joint) -> Joint:
-        """Leave out what is not needed on the first seed."""
+        """Drop the parts that the first seed does not need."""
         for unit, _ in joint.parts:
             fewer = joint.without(unit)
             if fewer.parts and self._reached(fewer.candidate(self.mutate)):

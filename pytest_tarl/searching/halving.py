@@ -1,8 +1,8 @@
-"""Sequential halving: every operand by every factor, half of them dropped after each round of common seeds.
+"""Sequential halving: run every operand with every factor, and drop half of them after each round.
 
-Beside the halves go those that gain nothing and those that the paired race shows to be behind; the best are refined
-between the rounds (Karnin, Koren & Somekh 2013; the race as in Maron & Moore 1994). What it is good for: it tries
-everything once before it decides, and so costs as many episodes as there are operands times factors, and more.
+Each round uses common seeds. It also drops arms that gain nothing or that the paired race shows to be behind, and it
+refines the best ones (Karnin, Koren & Somekh 2013; the race as in Maron & Moore 1994). This search tries everything
+once before it decides, so it needs at least as many episodes as there are operands times factors.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from pytest_tarl.searching.search import FACTORS, Candidate, Goal, Mutate, Trial
 from pytest_tarl.searching.units import units
 from tarl_lint.model import Operand
 
-ROUNDS = (1, 2, 4, 8)  # seeds that an arm has run on, after each round
-REFINED = 3  # arms that are refined between two rounds
-SLACK = 0.1  # share of the loss that counts as a gain
+ROUNDS = (1, 2, 4, 8)  # seeds per arm after each round
+REFINED = 3  # arms to refine between two rounds
+SLACK = 0.1  # least gain that counts, as a share of the loss
 
 
 class Halving:
-    """Sequential halving with local refinement and a paired race, under one guard after the other."""
+    """Sequential halving with local refinement and a paired race, for one guard after the other."""
 
     def __init__(
         self,
@@ -40,7 +40,7 @@ class Halving:
         self._confirmed: set[Candidate] = set()
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield candidates that hold on every seed they were tried on, round by round."""
+        """Yield candidates that hold on every seed they ran on, round by round."""
         for guard in self.guards:
             arms = [Arm(unit, factor, guard) for factor in FACTORS for unit in self.units]
             for seeds in ROUNDS:
@@ -50,11 +50,11 @@ class Halving:
             yield from self._together(guard)
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, per site, what each operand's best arm gained over the unmutated runs of the same seeds."""
+        """Return, for each site, the gain of each operand's best arm over the unmutated runs of the same seeds."""
         return arm_effects(self.race)
 
     def _holding(self, arms: Sequence[Arm]) -> Iterator[Candidate]:
-        """Confirm what came near on all seeds of the round, best first."""
+        """Confirm the arms that came near on all seeds of the round, best first."""
         race = self.race
         for arm in race.ranked(arms):
             candidate = arm.candidate(race.mutate)
@@ -67,13 +67,13 @@ class Halving:
                     yield candidate
 
     def _kept(self, arms: Sequence[Arm]) -> list[Arm]:
-        """Return the better half of what gains and is not surely behind, and what lies around the best of it."""
+        """Return the better half of the arms that gain and are not behind, plus arms around the best of them."""
         gaining = [arm for arm in self.race.abreast(arms) if self.race.gain(arm) > self.slack]
         kept = gaining[: (len(gaining) + 1) // 2]
         return list(dict.fromkeys([*kept, *(one for arm in kept[:REFINED] for one in self.race.around(arm))]))
 
     def _together(self, guard: Guard) -> Iterator[Candidate]:
-        """Where no operand suffices: join the best with others."""
+        """Combine the best operand with others, for losses that no single operand removes."""
         race = self.race
         ranked = race.ranked(arm for arm in race.gains if arm.guard == guard)
         if ranked and race.gain(ranked[0]) > self.slack:
@@ -83,7 +83,7 @@ class Halving:
 
 
 def arm_effects(race: Race) -> dict[str, list[OperandEffect]]:
-    """Return, per site, what each operand gained at its best; of equals the one that was tried first."""
+    """Return, for each site, each operand's best gain; ties go to the value tried first."""
     best: dict[Operand, OperandEffect] = {}
     for arm in race.gains:
         for mutation in arm.unit.mutations(race.mutate, arm.factor):

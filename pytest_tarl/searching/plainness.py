@@ -1,4 +1,4 @@
-"""Which of two repairs a maintainer would rather write."""
+"""Decide which of two repairs a maintainer would prefer to write."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tarl_lint.model import Operand
 
 
 class Oddness(IntEnum):
-    """How a change reads: a gain on a named constant, a gain on a number in a line, an offset or another sign."""
+    """How unusual a change reads: scaling a named constant, scaling a literal, adding an offset or flipping a sign."""
 
     NAMED = 0
     INNER = 1
@@ -21,17 +21,17 @@ class Oddness(IntEnum):
 
 
 def oddness(mutations: Iterable[Mutation]) -> Oddness:
-    """Return how the oddest of some mutations reads."""
+    """Return the highest oddness among the mutations."""
     return max((_of(one) for one in mutations), default=Oddness.NAMED)
 
 
 def plainer(
     odd: Oddness, gains: Mapping[Unit, Mapping[float, float]], units: Sequence[Unit], promising: float
 ) -> list[Unit]:
-    """Return the units that read plainer than what was found, the most gaining first.
+    """Return the units whose change is plainer than the candidate found, best gain first.
 
-    Those that gain a good share are worth refining. In place of an offset those that were not tried yet are worth a
-    look, too, named constants first.
+    Units that gain at least `promising` are worth refining. If the candidate is an offset, untried units are worth
+    trying too, named constants first.
     """
     read = [unit for unit in units if _kind(unit) < odd]
     gaining = [unit for unit in read if max(gains.get(unit, {}).values(), default=0.0) >= promising]
@@ -40,10 +40,10 @@ def plainer(
 
 
 def writing(operand: Operand) -> Oddness:
-    """Return how a change of an operand reads, which is the order to try them in.
+    """Return the oddness of changing an operand, which is also the order to try operands in.
 
-    In one product a named constant and a literal are the same change, and a maintainer makes it in the named one. A
-    literal zero is a bound or a start more often than a number that somebody chose.
+    In a product, scaling a named constant and scaling a literal have the same effect; a maintainer changes the named
+    one. A literal zero is more often a bound or a start value than a tuned number.
     """
     zero = operand.value == 0 and not isinstance(operand.value, bool)
     if not operand.literal:
@@ -52,7 +52,7 @@ def writing(operand: Operand) -> Oddness:
 
 
 def edges(guard: Guard) -> tuple[str, ...]:
-    """Return the sensors at whose values a repair under this guard sets in from one moment to the next."""
+    """Return the sensors at whose thresholds a repair under this guard sets in abruptly."""
     return tuple(
         one.sensor.name
         for one in guard.conjuncts

@@ -1,4 +1,4 @@
-"""Races: candidates are run on the same seeds, so that what they gain can be compared pair by pair."""
+"""Race candidates on common seeds, so that their gains can be compared pair by pair."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from pytest_tarl.model import Guard
 from pytest_tarl.searching.search import Candidate, Mutate, Pair, Trials
 from pytest_tarl.searching.units import Unit
 
-CONFIDENCE = 0.95  # of an interval, which is approximate: it says what to run next, not what holds
-LEAST = 3  # common seeds before anything is said to be behind
-FINEST = 1.1  # ratio of two factors between which there is nothing to find
+CONFIDENCE = 0.95  # of an approximate interval; it decides what to run next, not whether a repair holds
+LEAST = 3  # common seeds before one arm can be behind another
+FINEST = 1.1  # two factors with a smaller ratio are not refined further
 
-Gains = Mapping[int, float]  # by seed, over the unmutated run of that seed
+Gains = Mapping[int, float]  # seed → gain over the unmutated run of that seed
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,13 +29,13 @@ class Arm:
     guard: Guard
 
     def candidate(self, mutate: Mutate) -> Candidate | None:
-        """Return what it is in the source; None where the factor changes nothing."""
+        """Return the arm as a candidate, None if the factor changes nothing."""
         mutations = self.unit.mutations(mutate, self.factor)
         return Candidate(mutations, self.guard) if mutations else None
 
 
 class Race:
-    """Runs arms on the same seeds and keeps what each of them gained."""
+    """Run arms on common seeds and store their gains."""
 
     def __init__(self, mutate: Mutate, trials: Trials, pairs: Sequence[Pair]) -> None:
         self.mutate = mutate
@@ -44,7 +44,7 @@ class Race:
         self.gains: dict[Arm, dict[int, float]] = {}
 
     def run(self, arms: Sequence[Arm], seeds: int) -> None:
-        """Run all arms on the first so many seeds, where they were not run yet. Raises BudgetSpentError."""
+        """Run all arms on the first `seeds` seeds, skipping those already run. Raises BudgetSpentError."""
         pairs = self.pairs[:seeds]
         wanted = [(arm, one) for arm in arms if (one := arm.candidate(self.mutate)) is not None]
         for pair in pairs:
@@ -59,17 +59,17 @@ class Race:
                 self.gains.setdefault(arm, {})[pair.seed] = total - pair.total
 
     def gain(self, arm: Arm) -> float:
-        """Return what an arm gained on average; one that was never run gained nothing."""
+        """Return the mean gain of an arm, 0 if it has not run."""
         return fmean(self.gains[arm].values()) if arm in self.gains else 0.0
 
     def ranked(self, arms: Iterable[Arm]) -> list[Arm]:
-        """Return the arms that were run, the most gaining first."""
+        """Return the arms that have run, best gain first."""
         return sorted(
             (arm for arm in dict.fromkeys(arms) if arm in self.gains), key=lambda arm: -self.gain(arm)
         )
 
     def abreast(self, arms: Iterable[Arm]) -> list[Arm]:
-        """Return the arms, ranked, without those that are surely behind the first one."""
+        """Return the ranked arms except those that are significantly behind the first."""
         ranked = self.ranked(arms)
         return [arm for arm in ranked if not behind(self.gains[arm], self.gains[ranked[0]])]
 
@@ -89,17 +89,17 @@ class Race:
 
 
 def behind(gains: Gains, leader: Gains) -> bool:
-    """Tell whether one surely gains less than the leader, on the seeds of both."""
+    """Tell whether one arm gains significantly less than the leader on their common seeds."""
     differences = paired(leader, gains)
     return len(differences) >= LEAST and ahead_by(differences)[0] > 0.0
 
 
 def ahead_by(differences: Sequence[float]) -> tuple[float, float]:
-    """Return the approximate interval, at `CONFIDENCE`, of what one gains more than another on average."""
+    """Return the approximate interval, at `CONFIDENCE`, of the mean of these differences."""
     found = mean_of(differences, (1.0 + CONFIDENCE) / 2)
     return found.low, found.high
 
 
 def paired(one: Gains, other: Gains) -> list[float]:
-    """Return by how much one gained more than the other, on each seed of both."""
+    """Return the difference in gain on each common seed."""
     return [one[seed] - other[seed] for seed in one if seed in other]

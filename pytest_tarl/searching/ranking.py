@@ -1,6 +1,7 @@
-"""The full ranking: what every site can gain, and how surely one is ahead of another.
+"""The full ranking: the possible gain at every site, and how certain the order is.
 
-Every operand takes every factor once, the best of each site are refined, and then they race on common seeds.
+Every operand runs once with every factor; the best factors of each site are refined, and then the sites race on common
+seeds.
 """
 
 from __future__ import annotations
@@ -17,16 +18,17 @@ from pytest_tarl.searching.units import NEAR, units
 from tarl_lint.model import Operand, SiteId
 
 FLIP = -1.0
-OF_A_SITE = 2  # arms of a site that race
-SEEDS = 8  # that they race on
+OF_A_SITE = 2  # arms per site in the first race
+SEEDS = 8  # common seeds of the final race
 
 
 @dataclass(frozen=True, slots=True)
 class Certainty:
-    """How surely the first site is ahead of all others.
+    """How certain it is that the first site is ahead of all others.
 
-    `by` is the approximate interval of what it gains more than the next one, on `seeds` common seeds; None where these
-    are too few. `level` other sites cannot be told from it, `ahead` gain surely more; `gaining` gain at all.
+    `by` is the approximate interval of its lead over the second site in gain, measured on `seeds` common seeds; None if
+    these are too few. `level` other sites cannot be distinguished from it and `ahead` sites gain significantly more.
+    `gaining` is the number of sites that gain at all.
     """
 
     gaining: int
@@ -37,7 +39,7 @@ class Certainty:
 
 
 class Ranking:
-    """Ranks all sites under one guard."""
+    """Rank all sites under one guard."""
 
     def __init__(
         self, operands: Sequence[Operand], mutate: Mutate, guard: Guard, trials: Trials, goal: Goal
@@ -50,7 +52,7 @@ class Ranking:
         self.whole = False
 
     def run(self) -> None:
-        """Run the ranking; where the budget ends first, it is as good as it got."""
+        """Run the ranking; if the budget ends first, keep the result so far."""
         try:
             self._sweep()
             self._race()
@@ -59,11 +61,11 @@ class Ranking:
             pass
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, per site, what each operand gained at its best."""
+        """Return, for each site, each operand's best gain."""
         return arm_effects(self.race)
 
     def certainty(self, first: str) -> Certainty | None:
-        """Say how surely a site, named by its id, is the first; None where it was not run."""
+        """Return how certain it is that this site id is the first, None if the site has not run."""
         arms = {str(site): arm for site, arm in self._best().items()}
         if first not in arms:
             return None
@@ -88,7 +90,7 @@ class Ranking:
         )
 
     def _sweep(self) -> None:
-        """Let every operand take every factor on the first seed; what never moves the reward, the near ones only."""
+        """Run every operand with every factor on the first seed; only the near factors if the reward never changes."""
         for at, factor in enumerate((*FACTORS, FLIP)):
             moving = self.units if at < len(NEAR) else [unit for unit in self.units if self._moves(unit)]
             self.race.run([Arm(unit, factor, self.guard) for unit in moving], 1)
@@ -103,7 +105,7 @@ class Ranking:
         )
 
     def _race(self) -> None:
-        """Race the best of each site: the field on a few seeds, what gains on them all."""
+        """Race the best arms of each site on a few seeds, then the gaining ones on all seeds."""
         for seeds in (LEAST, SEEDS):
             field = [
                 arm
@@ -114,7 +116,7 @@ class Ranking:
             self.race.run(field, seeds)
 
     def _best(self) -> Mapping[SiteId, Arm]:
-        """Return the best arm of every site; what ran on more seeds goes before what was lucky on one."""
+        """Return the best arm of every site; arms with more seeds come first, as one seed may be luck."""
         best: dict[SiteId, Arm] = {}
         for arm in self.race.gains:
             site = arm.unit.operands[0].site

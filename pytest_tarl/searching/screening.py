@@ -1,7 +1,7 @@
-"""Factorial screening, where operands are many: each run mutates a few at random, ridge regression finds main effects.
+"""Factorial screening for many operands: each run mutates a few at random; ridge regression finds the main effects.
 
-The number of runs grows with the square root of the number of operands; the sweep then begins with those whose main
-effect is best. A run that happens to be near the off-line reward is a candidate at once.
+The number of runs grows with the square root of the number of operands. The sweep then starts with the operands of the
+best main effects. A run that happens to come near the designed reward becomes a candidate at once.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from pytest_tarl.searching.forward_selection import ForwardSelection, Joint
 from pytest_tarl.searching.search import Candidate
 from pytest_tarl.searching.units import NEAR, Unit
 
-MANY = 40  # units: fewer are swept one by one
-BLOCK = 20  # units that are swept together after a screening
-AT_ONCE = 4  # units that a run mutates
-RUNS = 6.0  # times the square root of the number of units
+MANY = 40  # units; up to this number a sweep takes them one by one
+BLOCK = 20  # units per sweep after a screening
+AT_ONCE = 4  # units mutated per run
+RUNS = 6.0  # number of runs, as a multiple of the square root of the number of units
 RIDGE = 1.0
 
 
 def screened(
     together: ForwardSelection, guard: Guard, generator: np.random.Generator
 ) -> Generator[Candidate, None, tuple[Unit, ...]]:
-    """Yield candidates that hold by chance; the generator's value is all units, those of the best effect first."""
+    """Yield candidates that hold by chance; return all units, best main effect first."""
     units = together.units
     drawn = [_drawn(units, generator) for _ in range(ceil(RUNS * sqrt(len(units))))]
     joints = [Joint(tuple((units[i], NEAR[turn]) for i, turn in one), guard) for one in drawn]
@@ -48,25 +48,28 @@ def screened(
 
 
 def _drawn(units: Sequence[Unit], generator: np.random.Generator) -> list[tuple[int, int]]:
-    """Draw the units that a run mutates, and which way each."""
+    """Draw the units that a run mutates, each with an index into `NEAR`."""
     chosen = generator.choice(len(units), AT_ONCE, replace=False).tolist()
     turns = generator.integers(len(NEAR), size=AT_ONCE).tolist()
     return list(zip(chosen, turns, strict=True))
 
 
 def main_effects(design: np.ndarray, gains: np.ndarray) -> np.ndarray:
-    """Return what each column contributes to the gains, by ridge regression; the design has shape (runs, columns)."""
+    """Return each column's contribution to the gains by ridge regression.
+
+    `design` has shape (runs, columns), `gains` shape (runs,), the result shape (columns,).
+    """
     size = design.shape[1]
     effects: np.ndarray = np.linalg.solve(design.T @ design + RIDGE * np.eye(size), design.T @ gains)
     return effects
 
 
 def worth_screening(units: Sequence[Unit]) -> bool:
-    """Tell whether a sweep over all units would take longer than screening them first."""
+    """Tell whether screening first is shorter than a sweep over all units."""
     return len(units) > MANY
 
 
 def blocks(units: Sequence[Unit]) -> list[Sequence[Unit]]:
-    """Cut what was screened into blocks, so that the best is refined before the rest is looked at."""
+    """Split screened units into blocks, so that the best are refined before the rest are tried."""
     size = BLOCK if worth_screening(units) else max(len(units), 1)
     return [units[start : start + size] for start in range(0, len(units), size)]

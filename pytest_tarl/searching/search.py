@@ -1,6 +1,6 @@
-"""What every search shares: candidates, trials in the drifted world, and when one counts as confirmed.
+"""Shared by all searches: candidates, trials in the drifted world, and the rule that confirms a candidate.
 
-A search yields confirmed candidates, best first; whether one is accepted is decided elsewhere, on fresh seeds.
+A search yields confirmed candidates, best first. `searching.accept` then tests them on fresh seeds.
 """
 
 from __future__ import annotations
@@ -16,30 +16,30 @@ from pytest_tarl.searching.accept import Outcome, unforeseen
 from tarl_lint.model import Operand
 
 Mutate = Callable[[Operand, float], Mutation | None]
-Wanted = tuple["Candidate", int]  # an episode: a candidate and the seed to run it with
+Wanted = tuple["Candidate", int]  # an episode: a candidate and its seed
 
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
-CONFIRMATIONS = 5  # further seeds that a promising candidate must hold on
-FAR = 0.6  # share of the wanted gain that is worth more episodes
-PAIRED = 2  # seeds on which a candidate is compared with one that fell short
+CONFIRMATIONS = 5  # further seeds on which a promising candidate must hold
+FAR = 0.6  # share of the wanted gain that releases the reserve of episodes
+PAIRED = 2  # least number of common seeds for comparing two candidates
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """Mutations that hold together under one guard."""
+    """Mutations that are applied together, under one guard."""
 
     mutations: tuple[Mutation, ...]
     guard: Guard
 
     @property
     def changes(self) -> tuple[Mutation, ...]:
-        """Return the mutations, wherever they are written."""
+        """Return the mutations without their place in the source, to compare candidates by their effect."""
         return tuple(replace(mutation, place=None) for mutation in self.mutations)
 
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """An on-line episode that lost: its seed, and its total reward without any mutation."""
+    """An episode in the drifted world: its seed and its total reward without any mutation."""
 
     seed: int
     total: float
@@ -47,11 +47,15 @@ class Pair:
 
 @dataclass(frozen=True)
 class Goal:
-    """What the search is after. `near`: a total worth confirming; `enough`: a mean that confirms.
+    """The target of a search.
 
-    `online` is the mean reward of all on-line episodes, those that did not lose included. With `passing` a failed
-    mission is never near: ending early can earn more than carrying on. `harder` says, per seed, how much less than
-    the mean its mission earns as designed, where that is known. `controls` are on-line episodes that did not lose.
+    - `pairs`: episodes that lost reward in the drifted world.
+    - `near`: the total reward from which a candidate is worth confirming.
+    - `enough`: the mean total reward that confirms a candidate.
+    - `online`: the mean total reward of all episodes in the drifted world, including those that lost nothing.
+    - `passing`: a failed mission is never near, because ending early can earn more than carrying on.
+    - `harder`: for each seed, how much less than the mean its mission earns in the designed world, where known.
+    - `controls`: episodes in the drifted world that lost nothing.
     """
 
     pairs: tuple[Pair, ...]
@@ -61,51 +65,53 @@ class Goal:
     passing: bool = False
     harder: Mapping[int, float] = field(default_factory=dict)
     controls: tuple[Pair, ...] = ()
-    ranged: bool = False  # whether missions differ in size, so that one that fails may fail for its size
+    ranged: bool = False  # missions vary in size, so a mission may fail because of its size
 
     @property
     def wanted(self) -> float:
-        """Return the gain per episode that a repair has to bring."""
+        """Return the gain per episode that a repair must bring."""
         return max(self.enough - self.online, 0.0)
 
     def reached(self, outcome: Outcome, seed: int) -> bool:
-        """Tell whether an episode is as good as the one of its seed off-line."""
+        """Tell whether an episode earns about as much as the same seed in the designed world."""
         return outcome.total >= self.near - self.harder.get(seed, 0.0) and not self.lost(outcome)
 
     def lost(self, outcome: Outcome) -> bool:
-        """Tell whether an episode is a clear failure: its mission failed, and designed ones succeed."""
+        """Tell whether an episode failed its mission although missions succeed in the designed world."""
         return self.passing and not outcome.passed
 
     def enough_on(self, seeds: Sequence[int]) -> float:
-        """Return the mean that confirms on these seeds."""
+        """Return the mean total reward that confirms a candidate on these seeds."""
         return self.enough - fmean(self.harder.get(seed, 0.0) for seed in seeds)
 
 
 class BudgetSpentError(Exception):
-    """The search has used up its episodes."""
+    """The search has spent its budget of episodes."""
 
 
 @dataclass
 class Trials:
-    """Runs candidates in the drifted world, each seed once, and keeps count and history.
+    """Run candidates in the drifted world, each seed once, and keep the outcomes.
 
-    `beside` counts the episodes of the same budget that were run elsewhere, in the nominal world; `foresee` is told
-    what will probably be asked for next.
+    `beside` counts episodes of the same budget that run in the designed world. `foresee` receives the episodes that
+    are likely to be requested next.
     """
 
     run: Callable[[Candidate, int], Outcome]
     budget: int
     beside: int = 0
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
-    reserve: int = 0  # episodes beyond the budget, for what has come far ...
-    worth: Goal | None = None  # ... on the way to this goal
+    reserve: int = 0  # episodes beyond the budget, released once a candidate has gained `FAR` ...
+    worth: Goal | None = None  # ... of the gain that this goal wants
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
-    _short: list[dict[int, float]] = field(default_factory=list)  # totals by seed, of each that fell short
+    _short: list[dict[int, float]] = field(
+        default_factory=list
+    )  # per candidate that fell short: seed → total
 
     def __call__(self, candidate: Candidate, seed: int) -> Outcome:
-        """Run one episode, or remember it. Raises BudgetSpentError, or RepairError from writing the candidate."""
+        """Return the outcome of one episode, from the cache if it has run. Raises BudgetSpentError and RepairError."""
         key = (candidate, seed)
         if key not in self._known:
             self._afford()
@@ -115,28 +121,29 @@ class Trials:
         return self._known[key]
 
     def expect(self, wanted: Iterable[Wanted]) -> None:
-        """Tell which episodes will probably be asked for next, in this order: workers may begin them."""
+        """Announce the episodes that are likely to be requested next, in order, so that workers can start them."""
         left = max(self.budget - self.spent, 0)
         self.foresee([one for one in wanted if one not in self._known][:left])
 
     def charge(self) -> None:
-        """Count an episode that is about to be run elsewhere. Raises BudgetSpentError."""
+        """Count an episode that is about to run in the designed world. Raises BudgetSpentError."""
         self._afford()
         self.beside += 1
 
     def gain(self, candidate: Candidate, pairs: Iterable[Pair]) -> float:
-        """Return what a candidate gained over the unmutated runs of the same seeds, on average; it was run on one."""
+        """Return a candidate's mean gain over the unmutated runs of the seeds on which it has run (at least one)."""
         known = ((self._known.get((candidate, pair.seed)), pair.total) for pair in pairs)
         return fmean(outcome.total - total for outcome, total in known if outcome is not None)
 
     def fell_short(self, candidate: Candidate, pairs: Iterable[Pair]) -> None:
-        """Remember a candidate that came near on every seed, and yet earned too little."""
+        """Remember a candidate that came near on every seed but earned too little on average."""
         self._short.append(self._totals(candidate, pairs))
 
     def falls_short(self, candidate: Candidate, pairs: Sequence[Pair], enough: float) -> bool:
-        """Tell whether a candidate will earn too little, as one did that it is paired with on at least two seeds.
+        """Tell whether a candidate will probably earn too little, judged by earlier candidates that did.
 
-        What the other earned in all, and by how much this one differs from it on the seeds of both (control variate).
+        The estimate uses an earlier candidate as a control variate: its mean total plus the mean difference between the
+        two on their common seeds, of which there must be at least `PAIRED`.
         """
         totals = self._totals(candidate, pairs)
         for other in self._short:
@@ -153,7 +160,7 @@ class Trials:
 
     @property
     def spent(self) -> int:
-        """Return how many episodes were run."""
+        """Return how many episodes have run."""
         return len(self.totals) + self.beside
 
     def _afford(self) -> None:
@@ -163,7 +170,7 @@ class Trials:
             raise BudgetSpentError
 
     def _come_far(self, goal: Goal) -> bool:
-        """Tell whether a candidate that was run on several seeds gained most of what is wanted."""
+        """Tell whether a candidate that ran on several seeds gained at least `FAR` of the wanted gain."""
         before = {pair.seed: pair.total for pair in goal.pairs}
         gains: dict[Candidate, list[float]] = {}
         for (candidate, seed), outcome in self._known.items() if self.reserve else ():
@@ -173,7 +180,7 @@ class Trials:
 
 
 def label(candidate: Candidate) -> str:
-    """Name a candidate's mutations for people: `line 30: 5 → 11.0`."""
+    """Describe a candidate's mutations for a report: `line 30: 5 → 11.0`."""
     return ", ".join(
         f"line {m.operand.span.line}: {m.operand.code} → {m.value:.4g}"
         if m.operand.literal
@@ -183,10 +190,10 @@ def label(candidate: Candidate) -> str:
 
 
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
-    """Try further seeds, beginning after the pair `first`.
+    """Tell whether a candidate holds on further seeds, starting after `goal.pairs[first]`.
 
-    A candidate is dropped at its first failed mission where designed ones succeed, else at its second miss, and as soon
-    as it does no better than one that earned too little.
+    Stop early at the first failed mission if missions succeed in the designed world (unless they vary in size), at the
+    second seed that falls short, and as soon as the candidate does no better than one that earned too little.
     """
     others = [goal.pairs[(first + i) % len(goal.pairs)] for i in range(1, len(goal.pairs))][:CONFIRMATIONS]
     seeds = [pair.seed for pair in others]
@@ -207,24 +214,24 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
 
 
 class Strategy(Protocol):
-    """A search."""
+    """Interface of a search."""
 
     def candidates(self) -> Iterator[Candidate]:
         """Yield confirmed candidates, best first. Raises BudgetSpentError."""
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, per site id, what each of its operands was found to gain."""
+        """Return, for each site id, the best gain found for each of its operands."""
 
 
 def operand_effect(mutation: Mutation, gain: float) -> OperandEffect:
-    """Say what a mutation's value gained; a constant known only at run time has a factor for a value."""
+    """Return the gain of a mutation; the value is a factor if the constant is known only at run time."""
     constant = mutation.operand.value
     known = None if constant is None else float(constant)
     return OperandEffect(mutation.operand.code, known, effective_value(mutation), gain, factor=known is None)
 
 
 def effective_value(mutation: Mutation) -> float:
-    """Return the value that the use has under the mutation; of a constant known only at run time, the factor."""
+    """Return the value of the use under the mutation; a factor if the constant is known only at run time."""
     if mutation.place is not None:
         return float(redefinition(mutation))
     if mutation.form is not None:

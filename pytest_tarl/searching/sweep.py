@@ -1,8 +1,8 @@
-"""Sweep and confirm, the default search: one factor over all operands, then the next.
+"""Sweep and confirm, the default search: try one factor on all operands, then the next factor.
 
-Each run is paired with the unmutated run of the same seed; whatever comes near the off-line reward is confirmed on
-further seeds. What was found out on the way decides what is tried next: further out goes only what did not lose on
-the way there, the most gaining first. Where no operand suffices, those that gained are tried together.
+Each run is paired with the unmutated run of the same seed. A candidate that comes near the designed reward is confirmed
+on further seeds. Results steer the search: a larger step is tried only where the smaller one did not lose, best gain
+first. If no single operand suffices, the search combines those that gained.
 """
 
 from __future__ import annotations
@@ -24,29 +24,30 @@ from tarl_lint.model import Operand, SiteId
 if TYPE_CHECKING:
     import numpy as np
 
-FURTHER = ((5.0, 2.2), (0.15, 0.4))  # ... and those beyond, each behind the one that leads there
-OUTWARD = 2.3  # by how much the outermost factor is exceeded where it is the best
-FLIP = -1.0
+FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (factor, the smaller step that must not have lost)
+OUTWARD = 2.3  # ratio by which to go beyond the outermost factor if that one is the best
+FLIP = -1.0  # another sign
 BETWEEN = (1.5, 0.65)
-FINE = (1.22, 0.82, 1.1, 0.91)  # tried for what moves the reward, where larger steps found nothing
+FINE = (1.22, 0.82, 1.1, 0.91)  # for operands that move the reward although larger steps found nothing
 LAST = (10.0, 0.05)
-FLIPPED = 3  # units that gained when made smaller, and so may have the wrong sign
-REFINEMENTS = 3  # of one operand in a row ...
-PROMISING = 0.4  # ... while it gains at least this share of the loss ...
-REFINED = 8  # ... and runs that refine one operand in all
-FINEST = 1.1  # ratio of two factors between which there is nothing to find ...
-ALMOST = 0.9  # ... unless one gains this share of the loss: then its window may be narrower, down to ...
-NARROWEST = 1.02
-PLAINER_ROUNDS = 2  # of refinement, of each constant that reads plainer than what was found ...
-PLAINER = 12  # ... and runs after which none is looked for any more
-SLACK = 0.1  # share of the loss that may be lost on the way further out
+FLIPPED = 3  # units that gained from a smaller value and are tried with the other sign
+REFINEMENTS = 3  # consecutive refinements of one operand ...
+PROMISING = 0.4  # ... while its gain is at least this share of the loss ...
+REFINED = 8  # ... and at most so many refining runs per operand
+FINEST = 1.1  # two factors with a smaller ratio are not refined further ...
+ALMOST = 0.9  # ... unless one gains this share of the loss; its window may be narrower, down to ...
+NARROWEST = 1.02  # ... this ratio
+PLAINER_ROUNDS = 2  # refinements of each constant that is plainer than the candidate found ...
+PLAINER = 12  # ... and runs after which the search for plainer ones ends
+SLACK = 0.1  # loss to tolerate on the way to larger steps, as a share of the loss to repair
 
 
 class Sweep:
-    """Sweep and confirm, operands in the given order, each mutated at its use under one of the guards.
+    """Sweep and confirm: operands in the given order, each mutated at its use under one of the guards.
 
-    The first guard is the one that tells most, the second is the second opinion; others are left for the end. With
-    `proposed` the operands' values are proposals that the program does not hold yet, and are tried as they are first.
+    The first two guards are used throughout (the second is the second opinion), the others only at the end. With
+    `proposed` the operands' values are proposals that the program does not contain yet, so they are first tried
+    unchanged.
     """
 
     def __init__(
@@ -69,15 +70,15 @@ class Sweep:
         self.generator = generator
         self.slack = SLACK * goal.wanted
         self.proposed = proposed
-        self._gains: dict[tuple[Unit, Guard], dict[float, float]] = {}  # factor → gain in reward
+        self._gains: dict[tuple[Unit, Guard], dict[float, float]] = {}  # factor → gain in total reward
         self._tried: set[Candidate] = set()
         self._settled = Settled()
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
-        self._refused: set[tuple[Unit, Guard]] = set()  # held in the search, and was refused afterwards
+        self._refused: set[tuple[Unit, Guard]] = set()  # yielded as confirmed, then refused by the caller
         self._turn = 0
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield candidates that hold on every seed they were tried on."""
+        """Yield candidates that hold on every seed they ran on."""
         chief = self.guards[: 1 if not self.guards[0].conjuncts else 2]
         if self.generator is not None and worth_screening(self.units):
             self.units = yield from screened(self._joining({}), self.guards[0], self.generator)
@@ -103,11 +104,11 @@ class Sweep:
                 yield from self._all(factor, guard, self.units)
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, per site, what each operand's best value gained over the unmutated runs of the same seeds."""
+        """Return, for each site, the gain of each operand's best value over the unmutated runs of the same seeds."""
         return best_effects([(unit, gains) for (unit, _), gains in self._gains.items()], self.mutate)
 
     def _near_ones(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
-        """Move every unit both ways, then those closer that lose both ways, and join what gains most."""
+        """Try each unit larger and smaller, then in smaller steps if it lost both ways, and combine the best."""
         moving = self._moving(block)
         for factor in (1.0, *NEAR) if self.proposed else NEAR:
             yield from self._all(factor, guard, moving)
@@ -115,7 +116,7 @@ class Sweep:
         yield from self._leaders_together(guard)
 
     def _all(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """Try one factor on several operands, then refine what gains most."""
+        """Try one factor on several operands, then refine the best one."""
         pair = self._turn % len(self.goal.pairs)
         self._turn += 1
         for at, unit in enumerate(among):
@@ -127,13 +128,13 @@ class Sweep:
         yield from self._refine(pair)
 
     def _late_ones(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Move what takes part in no flow, such as the period of a timer, since nothing that does suffices."""
+        """Try operands that take part in no flow, such as the period of a timer, after those in flows failed."""
         self.units = (*self.units, *self.late)
         for guard in guards:
             yield from self._near_ones(self.late, guard)
 
     def _narrow(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
-        """Try smaller steps of what lost both ways: it matters, and the right value lies close to the original."""
+        """Try smaller steps where both near factors lost: the operand matters and its best value is close by."""
         tried = {unit: self._gains.get((unit, guard), {}) for unit in among}
         lost = [
             unit for unit, gains in tried.items() if all(gains.get(one, 0.0) < -self.slack for one in NEAR)
@@ -143,11 +144,11 @@ class Sweep:
                 yield from self._all(factor, guard, lost)
 
     def _gained(self) -> bool:
-        """Tell whether anything gained enough to be built upon."""
+        """Tell whether any gain is large enough to build upon."""
         return any(max(gains.values()) > self.slack for gains in self._gains.values())
 
     def _finely(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
-        """Try small steps of what moves the reward and was not refined: its window may be narrow."""
+        """Try small steps on operands that move the reward and were not refined: their window may be narrow."""
         for factor in FINE:
             for guard in guards:
                 moved = [unit for unit in self._moving(self.units) if self._moves(unit)]
@@ -159,14 +160,14 @@ class Sweep:
         return any(any(gains.values()) for (tried, _), gains in self._gains.items() if tried == unit)
 
     def _moving(self, among: Sequence[Unit]) -> list[Unit]:
-        """Leave out what was moved both ways, under one guard or another, and never changed a reward."""
+        """Return the units except those moved both ways, under any guard, without changing a reward."""
         gains: dict[Unit, list[float]] = {}
         for (unit, _), by_factor in self._gains.items():
             gains.setdefault(unit, []).extend(gain for factor, gain in by_factor.items() if factor != 1.0)
         return [unit for unit in among if len(gains.get(unit, ())) < len(NEAR) or any(gains[unit])]
 
     def _leading(self, before: float, guard: Guard, least: float | None = None) -> list[Unit]:
-        """Return what gained at least so much under a factor, else what did not lose, the most gaining first."""
+        """Return the units that gained at least `least` with factor `before` (default: lost nothing), best first."""
         least = -self.slack if least is None else least
         gains = {unit: self._gains.get((unit, guard), {}).get(before) for unit in self._moving(self.units)}
         kept = [(gain, unit) for unit, gain in gains.items() if gain is not None and gain >= least]
@@ -192,11 +193,11 @@ class Sweep:
                 self._refused.add((unit, guard))
 
     def _plainer(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
-        """Spend a few episodes on what a maintainer would rather write than what was found."""
+        """Spend a few episodes on changes that a maintainer would prefer to the candidate found."""
         odd, guard, begun = oddness(found.mutations), found.guard, self.trials.spent
         before = (
             set(self._refused) if odd is Oddness.OFFSET else set()
-        )  # refined once more in place of an offset
+        )  # in place of an offset, refused units are refined once more
         gains = {one: gains for (one, held), gains in self._gains.items() if held == guard and one != unit}
         others = [one for one in self.units if one != unit]
         for other in plainer(odd, gains, others, PROMISING * self.goal.wanted):
@@ -211,13 +212,13 @@ class Sweep:
                 return
 
     def _expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
-        """Tell what is tried next, unless something comes between."""
+        """Announce the tries that come next unless a result changes the order."""
         seed = self.goal.pairs[pair].seed
         candidates = [Candidate(unit.mutations(self.mutate, factor), guard) for unit, guard, factor in tries]
         self.trials.expect((one, seed) for one in candidates if one.mutations and one not in self._tried)
 
     def _near(self, candidate: Candidate, pair: int) -> bool | None:
-        """Run a candidate once; None where it cannot be written into the source."""
+        """Run a candidate once; return None if it cannot be written into the source."""
         try:
             seed = self.goal.pairs[pair].seed
             return self.goal.reached(self.trials(candidate, seed), seed)
@@ -225,9 +226,9 @@ class Sweep:
             return None
 
     def _refine(self, pair: int) -> Iterator[Candidate]:
-        """Refine the most improving operand, and go on as long as it comes closer to what is needed.
+        """Refine the best operand as long as it comes closer to the wanted gain.
 
-        What gains hardly anything is not refined: a mission that fails a little later says nothing of the right value.
+        Tiny gains are not refined: a mission that fails a little later says nothing about the right value.
         """
         for _ in range(REFINEMENTS):
             open_to = [
@@ -264,7 +265,7 @@ class Sweep:
             yield from self._try(*best, one, pair)
 
     def _together(self) -> Iterator[Candidate]:
-        """Add others to what gains most."""
+        """Combine the best operand with others."""
         every = [
             (gain, *key, factor)
             for key, gains in self._gains.items()
@@ -278,9 +279,9 @@ class Sweep:
         yield from self._joining(gains).candidates(Joint(((unit, factor),), guard))
 
     def _leaders_together(self, guard: Guard) -> Iterator[Candidate]:
-        """Join what gained most at different places, each as it was best: main effects that add up.
+        """Combine the best operands of different sites, each with its best factor, assuming additive main effects.
 
-        What was refused alone is refined again afterwards only: others beside it come before its near-duplicates.
+        An operand refused alone is refined again only afterwards: combinations come before its near-duplicates.
         """
         self._refused -= {tried for tried in self._refused if tried[1] == guard}
         leaders: dict[SiteId, tuple[float, Unit, float]] = {}

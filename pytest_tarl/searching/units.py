@@ -1,4 +1,4 @@
-"""What a search moves at once: an operand, or the uses of one constant within a statement."""
+"""Units of a search: an operand, or all uses of one constant within a statement."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.searching.search import Mutate, operand_effect
 from tarl_lint.model import Operand
 
-NEAR = (2.2, 0.4)  # factors that everything is tried with first
+NEAR = (2.2, 0.4)  # the first factors to try on every unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,13 +20,13 @@ class Unit:
     operands: tuple[Operand, ...]
 
     def mutations(self, mutate: Mutate, factor: float) -> tuple[Mutation, ...]:
-        """Return one mutation for every operand that the factor changes."""
+        """Return a mutation for every operand that the factor changes."""
         tried = (mutate(operand, factor) for operand in self.operands)
         return tuple(mutation for mutation in tried if mutation is not None)
 
 
 def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
-    """Group uses of one constant, and limits that lie symmetrically about zero; order is kept."""
+    """Group uses of one constant, and literal limits that are symmetric about zero; keep the order."""
     groups: list[list[Operand]] = []
     for operand in operands:
         alike = next((group for group in groups if _alike(group[0], operand)), None)
@@ -40,7 +40,7 @@ def units(operands: Sequence[Operand]) -> tuple[Unit, ...]:
 def best_effects(
     gained: Iterable[tuple[Unit, Mapping[float, float]]], mutate: Mutate
 ) -> dict[str, list[OperandEffect]]:
-    """Return, per site id, what each operand gained at its best factor; of equals the one that was tried first."""
+    """Return, for each site id, the gain of each operand at its best factor; ties go to the factor tried first."""
     best: dict[Operand, OperandEffect] = {}
     for unit, gains in gained:
         tried = [factor for factor in gains if unit.mutations(mutate, factor)]

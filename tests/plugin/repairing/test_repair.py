@@ -239,7 +239,7 @@ def test_a_search_that_fails_is_the_tests_problem_in_one_sentence(tank: pytest.P
     tank.runpytest(*RECORD)
     done = tank.runpytest(*REPAIR, "--tarl-search=mine:Silent")
     done.assert_outcomes(failed=1, deselected=1)
-    done.stdout.fnmatch_lines(["*what it made, Silent, has no method ask and no tell*"])
+    done.stdout.fnmatch_lines(["*the factory returned Silent, which has no method ask and no tell*"])
 
 
 def test_a_full_ranking_goes_on_after_the_repair_and_says_how_certain_it_is(tank: pytest.Pytester) -> None:
