@@ -1,4 +1,4 @@
-"""The common contents of all bags: typed channels, and messages in the order of their times."""
+"""The contents of a bag in any format: typed channels, and messages in order of time."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 
 class Channel(NamedTuple):
-    """A recorded topic. `type` is written as in ROS 2, `std_msgs/msg/Bool`, for bags of both generations.
+    """A recorded topic. `type` has the form of ROS 2, `std_msgs/msg/Bool`, for bags of both generations.
 
-    `definition` is the text of the type, empty if the bag has none; `latched` tells whether it was kept for late
-    subscribers.
+    `definition` is the text of the type, empty if the bag has none; `latched` tells whether the publisher
+    kept its last message for late subscribers.
     """
 
     topic: str
@@ -20,7 +20,7 @@ class Channel(NamedTuple):
 
 
 class Recorded(NamedTuple):
-    """A serialised message and when it was recorded, in ns."""
+    """A serialised message and the time of its recording in ns."""
 
     time: int
     topic: str

@@ -10,17 +10,17 @@ from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.messages.snapshot import field_names, is_message
 from pytest_tarl.ros.messages.values import FieldError
 
-OF_ONE_GENERATION = {"seq"}  # of a header: ROS 2 has none
+OF_ONE_GENERATION = {"seq"}  # fields that only ROS 1 has, in a header
 
 
 def class_named(name: str, kind: Kind) -> type[Any] | None:
-    """Return the class of a type that is written as in ROS 2; None if nobody knows it."""
+    """Return the class of a type written as in ROS 2; None if the type is unknown."""
     package, _, short = name.replace("/msg/", "/").partition("/")
     return find_class(kind, package, short)
 
 
 def converted(recorded: Any, wanted: type[Any]) -> Any:
-    """Carry a recorded message over, field by field. Raise FieldError if the recorded type lacks a field."""
+    """Convert a recorded message field by field. Raise FieldError if the recorded type lacks a field."""
     made = wanted()
     kind: Kind = "ros1" if hasattr(wanted, "_slot_types") else "ros2"
     for name in field_names(wanted):
@@ -32,7 +32,7 @@ def converted(recorded: Any, wanted: type[Any]) -> Any:
 
 
 def _value(value: Any, template: Any, kind: Kind) -> Any:
-    """Return a field's value in the form of `template`, which is what the field holds in a new message."""
+    """Return a field's value in the form of `template`, the field's value in a new message."""
     if hasattr(template, "nsecs"):
         return type(template)(value.sec, value.nanosec)
     if is_message(template):

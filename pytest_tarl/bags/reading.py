@@ -24,20 +24,20 @@ ENDINGS = (".bag", ".bag.active", ".mcap", ".db3")
 
 @dataclass
 class Bag:
-    """A recorded mission: its channels by topic, and how to go through its messages.
+    """A recorded mission: its channels by topic, and access to its messages.
 
-    `notes` are sentences for the user; reading the messages may add to them.
+    `notes` are sentences for the user; reading messages can add to them.
     """
 
     path: Path
     kind: Kind
     channels: Mapping[str, Channel]
     source: Callable[[], Iterator[Recorded]]
-    start: int  # when the first message was recorded, ns
+    start: int  # time of the first message, ns
     notes: list[str] = field(default_factory=list)
 
     def messages(self) -> Iterator[Recorded]:
-        """Yield the messages in the order of their times, as far as they can be read."""
+        """Yield the messages in order of time, up to the first that cannot be read."""
         last = self.start
         try:
             for one in self.source():
@@ -50,7 +50,7 @@ class Bag:
             )
 
     def decode(self, topic: str, data: bytes) -> Any:
-        """Return a message as `rosbags` reads it. Raise KeyError for a type that nobody has defined."""
+        """Return a message as an object of `rosbags`. Raise KeyError for an undefined type."""
         name = self.channels[topic].type
         store = self._stores[0] if name in self._stores[0].fielddefs else self._stores[1]
         return (
@@ -59,7 +59,7 @@ class Bag:
 
     @cached_property
     def _stores(self) -> tuple[Any, Any]:
-        """Return the definitions that the bag holds, and those that it may count on."""
+        """Return the type definitions in the bag, and the standard ones of its ROS generation."""
         from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 
         own, usual = (
@@ -79,7 +79,7 @@ class Bag:
 
 
 def opened(path: Path) -> Bag:
-    """Open a bag. Raise LogError if nothing of it can be read, with a sentence that says why."""
+    """Open a bag. Raise LogError, with the reason, if nothing of it can be read."""
     if not path.exists():
         raise LogError(f"{path}: no such bag.")
     if not path.is_dir() and not path.name.endswith(ENDINGS):
@@ -105,7 +105,7 @@ def _require() -> None:
 
 
 def _unreadable() -> tuple[type[Exception], ...]:
-    """Return what reading a damaged bag can end in."""
+    """Return the exceptions that reading a damaged bag can raise."""
     import apsw
     from rosbags.rosbag1 import ReaderError as Error1
     from rosbags.rosbag2 import ReaderError as Error2
@@ -151,7 +151,7 @@ def _channel(connection: Any) -> Channel:
 
 
 def _salvaged(path: Path, kind: Kind, reason: str) -> Bag:
-    """Open what is left of a bag. Raise LogError if that is nothing."""
+    """Open the readable part of a truncated bag. Raise LogError if there is none."""
     files = (
         [path] if not path.is_dir() else sorted(one for one in path.iterdir() if one.name.endswith(ENDINGS))
     )

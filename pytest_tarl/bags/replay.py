@@ -1,4 +1,4 @@
-"""Replay a recorded mission in place of the simulated world: sensor topics go to the node, a monitor gives rewards."""
+"""Replay a recorded mission in place of the simulated world; a monitor gives the rewards."""
 
 from __future__ import annotations
 
@@ -33,39 +33,39 @@ ALWAYS_THERE = {"/clock", "/rosout", "/parameter_events", "/tf", "/tf_static"}  
 
 
 class MissionReplayed(Skipped):
-    """Leaves the test's body once the recorded mission has been replayed: the rest of it is for its own world."""
+    """Raised to leave the test body after the replay: the rest of the body drives its own world."""
 
 
 class Moment:
-    """What a monitor reads at the end of a step: the newest recorded message of every topic."""
+    """The state that a monitor reads at the end of a step: the newest recorded message of every topic."""
 
     def __init__(self, bag: Bag) -> None:
         self.now = 0.0  # seconds since the bag began
         self.over = False  # whether this is the last step
-        self.observe: Callable[..., None] = _unheard  # gives values of signals that no topic holds
+        self.observe: Callable[..., None] = _unheard  # sets signals that are on no topic
         self._bag = bag
         self._data: dict[str, bytes] = {}
         self._read: dict[str, Any] = {}
         self._spelled = {absolute(topic): topic for topic in bag.channels}
 
     def latest(self, topic: str) -> Any | None:
-        """Return the newest message on the topic, with the fields that its type has; None before the first."""
+        """Return the newest message on the topic, as recorded; None before the first."""
         name = self._spelled.get(absolute(topic), topic)
         if name not in self._read and name in self._data:
             self._read[name] = self._bag.decode(name, self._data[name])
         return self._read.get(name)
 
     def take(self, message: Recorded) -> None:
-        """Hold a message; it is read when somebody asks for it."""
+        """Keep a message; it is deserialised when `latest` asks for it."""
         self._data[message.topic] = message.data
         self._read.pop(message.topic, None)
 
 
 class Replay:
-    """One bag on its way through the nodes of an episode.
+    """The replay of one bag to the nodes of an episode.
 
-    Replayed are the topics that sensors are read from and those that a node subscribes to, but none that a node of the
-    episode publishes itself. `notes` are what the user should hear.
+    It replays the topics of sensors and those that a node subscribes to, but none that a node of the episode
+    publishes itself. `notes` are sentences for the user.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class Replay:
         self._refused: set[str] = set()
 
     def begin(self, ros: Ros) -> None:
-        """Set the clock to the mission's, and let nothing that the test's own world publishes reach the nodes."""
+        """Set the clock to the start of the mission, and discard messages of the test's own world."""
         ros.scheduler.time = self.bag.start
         ros.bus.muted = True
 
@@ -98,9 +98,12 @@ class Replay:
         close: Close,
         observe: Callable[..., None],
     ) -> None:
-        """Replay the mission in steps of `dt` seconds; each from when `ready` on, which is asked, is closed.
+        """Replay the mission in steps of `dt` seconds; close each step once `ready` returns true.
 
-        `close` gets the monitor's judgement, None if formulas judge. `observe` is what the monitor may tell.
+        `close` gets the monitor's judgement, or None if formulas judge. `observe` lets the monitor set
+        signals.
+
+        Raises SettingsError if `dt` is not positive.
         """
         step = nanoseconds(dt)
         if step <= 0:
@@ -143,7 +146,7 @@ class Replay:
         ros.bus.publish(place.name, told, latch=channel.latched)
 
     def _class(self, ros: Ros, topic: str) -> type[Any]:
-        """Return the class of the messages that the nodes expect. Raise FieldError if they expect another type."""
+        """Return the message class that the nodes subscribe with. Raise FieldError if it is another type."""
         name = self.bag.channels[topic].type
         expected = [
             one.message_type for one in ros.bus.topic(topic).subscriptions if one.message_type is not None
@@ -157,7 +160,7 @@ class Replay:
         return found
 
     def _conclude(self, ros: Ros) -> None:
-        """Add notes on topics that the nodes waited for in vain."""
+        """Add notes on subscribed topics without a message, and on nodes that published nothing."""
         held = {absolute(topic) for topic in self.bag.channels}
         own = {place.name for place in ros.bus.topics() if place.publications}
         for topic in sorted(ros.subscribed - held - own - ALWAYS_THERE):
@@ -173,20 +176,20 @@ def _sentence(problem: Exception) -> str:
 
 
 def _unheard(**values: Any) -> None:
-    """Take values of signals where nobody follows them."""
+    """Ignore values of signals outside an episode."""
 
 
 def _chosen(
     monitor: Monitor | None, judge: Judge | None, sensors: Sequence[Sensor], requirements: Requirements
 ) -> Monitor | None:
-    """Return what judges a mission: where formulas do, the monitor only observes."""
+    """Return the monitor of a mission; if formulas judge, it only observes."""
     if requirements.rewarding:
         return _watching(_made(monitor)) if monitor is not None else None
     return _made(monitor) if monitor is not None else _judging(judge, sensors)
 
 
 def _watching(monitor: Monitor) -> Any:
-    """Return a monitor whose judgement is left to the formulas."""
+    """Return a monitor whose own judgement is discarded."""
 
     def watch(moment: Moment) -> None:
         monitor(moment)
@@ -195,13 +198,13 @@ def _watching(monitor: Monitor) -> Any:
 
 
 def _made(monitor: Any) -> Monitor:
-    """Return the monitor of one mission: a class is one to make an instance of."""
+    """Return the monitor of one mission, a new instance if the marker names a class."""
     made: Monitor = monitor() if isinstance(monitor, type) else monitor
     return made
 
 
 def _judging(judge: Judge | None, sensors: Sequence[Sensor]) -> Monitor:
-    """Return a monitor that asks the marker's `judge`, which is told the sensors before and after each step."""
+    """Return a monitor that calls the marker's `judge` with the sensors before and after each step."""
     if judge is None:
         raise SettingsError(NO_REWARDS)
     before: dict[str, Any] = {}

@@ -1,6 +1,6 @@
 """Read a truncated bag up to its last complete record.
 
-A recorder that is killed writes no index, and without one `rosbags` reads nothing. Formats: rosbag 2.0
+A killed recorder writes no index, and `rosbags` cannot read a bag without one. Formats: rosbag 2.0
 (wiki.ros.org/Bags/Format/2.0), MCAP (mcap.dev/spec), SQLite.
 """
 
@@ -21,8 +21,8 @@ from pytest_tarl.bags.channels import Channel, Recorded
 Walk = Iterator[Channel | Recorded]
 _ROS1_MAGIC = b"#ROSBAG V2.0\n"
 _MCAP_MAGIC = b"\x89MCAP0\r\n"
-_MESSAGE, _CHUNK, _CONNECTION = 2, 5, 7  # operations of rosbag 2.0 that matter here
-_SCHEMA, _CHANNEL, _MCAP_MESSAGE, _MCAP_CHUNK = 3, 4, 5, 6  # of MCAP
+_MESSAGE, _CHUNK, _CONNECTION = 2, 5, 7  # record types of rosbag 2.0
+_SCHEMA, _CHANNEL, _MCAP_MESSAGE, _MCAP_CHUNK = 3, 4, 5, 6  # record types of MCAP
 
 
 class CutOffError(Exception):
@@ -30,7 +30,7 @@ class CutOffError(Exception):
 
 
 def walk(path: Path) -> Walk:
-    """Yield the channels and messages of a file, each channel before its messages, until it cannot be read on."""
+    """Yield the channels and messages of a file up to the damage, each channel before its messages."""
     walks: dict[str, Callable[[Path], Walk]] = {".bag": _walk_bag, ".mcap": _walk_mcap, ".db3": _walk_db3}
     found = walks.get(".bag" if path.name.endswith(".bag.active") else path.suffix)
     if found is not None:
@@ -90,7 +90,7 @@ def _bag_chunk(file: BinaryIO, compression: str, topics: dict[bytes, str]) -> Wa
 
 
 def _fields(text: bytes) -> Mapping[str, bytes]:
-    """Return the fields of a header of rosbag 2.0."""
+    """Return the fields of a rosbag 2.0 header."""
     file, found = BytesIO(text), {}
     while file.tell() < len(text):
         name, _, value = _sized(file).partition(b"=")
@@ -111,7 +111,7 @@ def _mcap_records(
         operation = _take(file, 1)[0]
         (size,) = struct.unpack("<Q", _take(file, 8))
         data = file.read(size)
-        if len(data) < size and operation != _MCAP_CHUNK:  # of a chunk the beginning can be read
+        if len(data) < size and operation != _MCAP_CHUNK:  # the beginning of a cut chunk is readable
             raise CutOffError
         record = BytesIO(data)
         if operation == _SCHEMA:
@@ -131,26 +131,26 @@ def _mcap_records(
         elif operation == _MCAP_CHUNK:
             _take(record, 28)  # times, size and checksum
             compression = _sized(record).decode()
-            _take(record, 8)  # size of what follows
+            _take(record, 8)  # size of the remaining chunk data
             with suppress(CutOffError):
                 yield from _mcap_records(BytesIO(_inflated(record.read(), compression)), schemas, channels)
 
 
 def _transient(profiles: str) -> bool:
-    """Return whether the publisher of a ROS 2 topic kept its messages, from the text of its quality of service."""
+    """Return whether a recorded QoS text says transient local."""
     flat = profiles.replace(" ", "")
     return "durability:1" in flat or "durability:transient_local" in flat
 
 
 def _inflated(data: bytes, compression: str) -> bytes:
-    """Decompress as much as there is: the rest of a chunk may be missing."""
+    """Decompress the available part of a chunk; its end may be missing."""
     if compression in ("", "none"):
         return data
     return bytes(_decompressor(compression).decompress(data))
 
 
 def _decompressor(compression: str) -> Any:
-    """Return what decompresses bit by bit, of the libraries that some version of `rosbags` comes with."""
+    """Return a streaming decompressor, from whichever library the installed `rosbags` depends on."""
     if compression == "bz2":
         return bz2.BZ2Decompressor()
     homes = {
@@ -164,11 +164,11 @@ def _decompressor(compression: str) -> Any:
 
 
 def _walk_db3(path: Path) -> Walk:
-    """Walk through a database in the order in which messages were written."""
+    """Yield the contents of an SQLite bag in the order in which messages were written."""
     with closing(sqlite3.connect(f"{path.resolve().as_uri()}?immutable=1", uri=True)) as database:
-        database.execute("PRAGMA writable_schema=ON")  # else nothing is read of a file that is too short
+        database.execute("PRAGMA writable_schema=ON")  # without it SQLite refuses a truncated file
         texts: dict[str, tuple[str, str]] = {}
-        with suppress(sqlite3.Error):  # recordings before 2023 have no definitions
+        with suppress(sqlite3.Error):  # table missing in recordings before 2023
             query = "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
             texts = {name: (encoding, text) for name, encoding, text in database.execute(query)}
         topics = {}

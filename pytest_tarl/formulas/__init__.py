@@ -1,1 +1,1 @@
-"""Requirements as formulas of signal temporal logic over named signals; rtamt is imported where one is used."""
+"""Requirements in signal temporal logic over named signals; rtamt is imported only when a formula is used."""

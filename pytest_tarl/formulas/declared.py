@@ -1,4 +1,4 @@
-"""The formulas of a marker: their signals, the requirements, and the reward by robustness."""
+"""Read and check the marker's arguments on formulas: signals, requirements, and reward by robustness."""
 
 from __future__ import annotations
 
@@ -16,24 +16,27 @@ from pytest_tarl.sensors import Sensor
 
 ARGUMENTS = ("requires", "signals", "reward", "robustness_cap", "lasts")
 CAP = 100.0
-LONGEST = 1e9  # seconds that an episode may last
+LONGEST = 1e9  # s, upper bound on an episode's length
 
 
 @dataclass(frozen=True)
 class Requirements:
-    """The formulas of a test. `cap` bounds the reward where it is by robustness, `lasts` is in virtual seconds."""
+    """The formulas of a test.
+
+    `cap` bounds the reward if the reward is by robustness; `lasts` is the longest episode in virtual seconds.
+    """
 
     signals: tuple[Signal, ...] = ()
     formulas: tuple[Formula, ...] = ()
-    names: tuple[str, ...] = ()  # that formulas may use: sensors that hold numbers, and signals
+    names: tuple[str, ...] = ()  # numeric sensors and signals, which formulas may use
     rewarding: bool = False
     cap: float = CAP
-    followed: bool = False  # whether signals are followed from the beginning of an episode
+    followed: bool = False  # whether an episode records signals from its beginning
     said: Said = NOTHING_SAID
 
     @property
     def topics(self) -> frozenset[str]:
-        """Return the topics that signals are read from."""
+        """Return the topics from which signals are read."""
         return frozenset(signal.topic for signal in self.signals if signal.topic is not None)
 
 
@@ -43,10 +46,11 @@ NOTHING_REQUIRED = Requirements()
 def requirements(
     where: str, given: Mapping[str, Any], sensors: Sequence[Sensor], said: Said = NOTHING_SAID
 ) -> Requirements:
-    """Check the arguments of a marker on formulas; `said` holds the formulas and signals in the test's source.
+    """Check the marker's arguments on formulas; `said` holds the formulas and signals found in the test's source.
 
-    A name that a formula uses and that is neither sensor nor signal is one that the test observes. Raises
-    SettingsError.
+    If a formula uses a name that is neither a sensor nor a signal, the test must give it by `tarl.observe`.
+
+    Raises SettingsError.
     """
     declared = _signals(where, given.get("signals", ()), sensors)
     signals = (*declared, *_observed(given.get("requires", ()), said, [*sensors, *declared]))
@@ -81,7 +85,7 @@ def _signals(where: str, given: Any, sensors: Sequence[Sensor]) -> tuple[Signal,
 
 
 def _observed(given: Any, said: Said, declared: Sequence[Sensor | Signal]) -> tuple[Signal, ...]:
-    """Return the signals that the test observes and that a formula names, without those that are declared."""
+    """Return the undeclared signals that a formula names and the test observes."""
     known = {one.name for one in declared}
     texts = " ".join(
         one for one in (*(given if isinstance(given, Sequence) else ()), *said.texts) if isinstance(one, str)
@@ -105,7 +109,7 @@ def _formulas(
 
 
 def check_texts(where: str, text: Any, sensors: Sequence[Sensor]) -> None:
-    """Raise SettingsError where a formula names a sensor that holds texts."""
+    """Raise SettingsError if a formula names a sensor with string values."""
     for sensor in sensors:
         if sensor.categories and isinstance(text, str) and re.search(rf"\b{sensor.name}\b", text):
             raise SettingsError(
@@ -124,7 +128,7 @@ def _rewarding(where: str, given: Any, formulas: Sequence[Formula]) -> bool:
         )
     if not formulas:
         raise SettingsError(
-            f'{where}: reward="robustness" is that of the formulas in requires=[…], and there is none: add one.'
+            f'{where}: reward="robustness" needs at least one formula in requires=[…]: add one.'
         )
     return True
 

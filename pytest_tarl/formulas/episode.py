@@ -1,4 +1,4 @@
-"""The formulas of an episode that runs: its signals as they are given, and the verdict when its body is over."""
+"""Collect the signals of a running episode, and judge its formulas when the test body ends."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pytest_tarl.sensors import Sensor
 
 
 class EpisodeFormulas:
-    """What is required of one episode; `now` returns its virtual time in ns."""
+    """The signals and requirements of one episode; `now` returns its virtual time in ns."""
 
     def __init__(self, requirements: Requirements, sensors: Sequence[Sensor], now: Callable[[], int]) -> None:
         self.judged: tuple[Judged, ...] = ()
@@ -24,34 +24,38 @@ class EpisodeFormulas:
         )
 
     def give(self, name: str, value: object) -> None:
-        """Let a signal have a value from now on. Raise SettingsError for what is no number."""
+        """Set a signal from now on. Raise SettingsError if the value is not a number."""
         if self._judge is not None:
             self._judge.give(name, value, self._now())
 
     def require(self, formula: str, *, begun: bool) -> None:
-        """Require a formula; `begun` tells whether signals were given already. Raise SettingsError on failure."""
+        """Add a requirement; `begun` tells whether the episode has begun.
+
+        Raises SettingsError if the formula cannot be used, or if the episode has begun without recording
+        signals.
+        """
         check_texts("tarl.require", formula, self._sensors)
         if self._judge is None:
             if begun or self._now():
                 raise SettingsError(
-                    "tarl.require: the episode has begun and its signals were not followed until now: call it before "
-                    "the world moves, or say requires=[] in the marker."
+                    "tarl.require: the episode has begun, and its signals were not recorded so far: call it before "
+                    "the first step, or put requires=[] into the marker."
                 )
             self._judge = Judge(self._requirements.names, (), self._requirements.said)
         self._judge.require(formula)
 
     def stepped(self) -> bool:
-        """Close a step; return whether formulas give its reward, which is known when the episode is over."""
+        """Close a step; return whether formulas give its reward, which is known only when the episode ends."""
         if self._judge is None:
             return False
         self._judge.steps.append(self._now())
         return self._requirements.rewarding
 
     def conclude(self, *, whole: bool, alone: bool) -> None:
-        """Judge the formulas of an episode whose body is over; only a `whole` one can fail by them.
+        """Judge the formulas after the test body has ended; only a complete (`whole`) episode can violate them.
 
-        `alone` tells whether it is the only episode of a plain run, which must be long enough for every formula.
-        Raise RequirementError if one is violated.
+        `alone` means a plain run of one episode, which must be long enough for every formula. Raise
+        RequirementError if one is violated.
         """
         if self._judge is None:
             return
@@ -71,7 +75,7 @@ class EpisodeFormulas:
             raise RequirementError(violation)
 
     def rewards(self) -> list[float] | None:
-        """Return the reward of each step by the formulas; None if the test gives it."""
+        """Return the reward of each step, shape (steps,), by the formulas; None if the test gives rewards."""
         if not self._requirements.rewarding or self._judge is None:
             return None
         return self._judge.rewards(self._now(), self._requirements.cap)

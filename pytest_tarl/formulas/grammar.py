@@ -1,4 +1,4 @@
-"""rtamt's grammar: words of a formula, and its tree."""
+"""Tokenise and parse formulas with rtamt's grammar; explain syntax errors."""
 
 from __future__ import annotations
 
@@ -42,26 +42,26 @@ HINTS = (
     (r"(true|false)\b", "booleans are 1 and -1, so write (delivered > 0)"),
     (r"=[^=]", "two values are compared with =="),
     (r"[&|]", "write and, or"),
-)  # by what stands where a text cannot be understood any more
+)  # hints by the first token that does not parse
 MINUS = "write (0 - gap) for -gap"
 _PLACE = re.compile(r"^(?:RTAMT Exception: )?\d+:(?P<column>\d+): Syntax ERROR, ")
 
 
 class ReadingError(Exception):
-    """A text is no formula; says why, without a full stop."""
+    """A text is not a formula; the message gives the reason, without a full stop."""
 
 
 class _Strict(ErrorListener):  # type: ignore[misc]
-    """Raise where antlr would print to the terminal and go on."""
+    """Raise on a syntax error; antlr would print it to the terminal and continue."""
 
     def syntaxError(self, *told: Any) -> None:  # noqa: N802
-        """Say which characters no formula has; the fifth argument is antlr's message."""
+        """Raise ReadingError for characters that are not in the grammar; the fifth argument is antlr's message."""
         msg: str = told[4]
         raise ReadingError(f"{msg.partition(': ')[2]} means nothing in a formula")
 
 
 def words(text: str) -> tuple[list[str], list[str]]:
-    """Return the names in a text and its other words. Raise ReadingError for characters that no formula has."""
+    """Return the names in a text and its other tokens. Raise ReadingError for characters not in the grammar."""
     lexer = LtlLexer(InputStream(text))
     lexer.removeErrorListeners()
     lexer.addErrorListener(_Strict())
@@ -71,7 +71,7 @@ def words(text: str) -> tuple[list[str], list[str]]:
 
 
 def tree(text: str, names: Sequence[str]) -> Any:
-    """Return the tree of a formula over those names, in the connectives of `semantics`. Raises ReadingError."""
+    """Parse a formula over those names into a tree of the connectives in `semantics`. Raises ReadingError."""
     ast = StlAst()
     for name in names:
         ast.declare_var(name, "float")
@@ -80,7 +80,7 @@ def tree(text: str, names: Sequence[str]) -> Any:
         ast.parse()
     except RTAMTException as problem:
         raise ReadingError(_reason(text, str(problem))) from None
-    except AttributeError:  # rtamt reads the bounds of `unless` without looking whether there are any
+    except AttributeError:  # rtamt raises this for `unless` without bounds
         raise ReadingError("unless needs bounds, such as unless[0:10]") from None
     except (ValueError, KeyError, RecursionError) as problem:
         raise ReadingError(f"{problem}".strip("'") or "it is nested too deeply") from None
@@ -97,7 +97,7 @@ def nodes(node: Any) -> Iterator[Any]:
 
 
 def atoms(node: Any) -> Iterator[Any]:
-    """Yield the comparisons of a formula, and what stands in the place of one."""
+    """Yield the atoms of a formula: its comparisons, and any other node that is not a connective."""
     if not isinstance(node, CONNECTIVES):
         yield node
         return
@@ -106,7 +106,7 @@ def atoms(node: Any) -> Iterator[Any]:
 
 
 def signals(node: Any) -> tuple[str, ...]:
-    """Return the names that a formula is about, in order of appearance."""
+    """Return the names in a formula, in order of appearance."""
     return tuple(dict.fromkeys(one.var for one in nodes(node) if isinstance(one, Variable)))
 
 
@@ -124,7 +124,7 @@ def _reason(text: str, problem: str) -> str:
 
 
 def _connected(node: AbstractNode) -> Any:
-    """Check a tree and write iff and xor by other connectives. Raise ReadingError on failure."""
+    """Check a tree and expand iff and xor into other connectives. Raises ReadingError."""
     if isinstance(node, COUNTING):
         raise ReadingError(
             "next, prev, rise and fall count samples, and steps may differ in length: say it in seconds, such as "
@@ -150,7 +150,7 @@ def _check(node: Any) -> None:
 
 
 def _numeric(node: Any) -> Any:
-    """Return an atom. Raise ReadingError if formulas are compared, or nothing is."""
+    """Return an atom. Raise ReadingError if it compares formulas or names no signal."""
     if any(isinstance(one, (*CONNECTIVES, *COUNTING, Iff, Xor)) for one in nodes(node)):
         raise ReadingError("it compares or computes with a formula: only numbers can be compared")
     if isinstance(node, Constant) or not signals(node):

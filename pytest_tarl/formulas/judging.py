@@ -14,14 +14,14 @@ from pytest_tarl.formulas.signals import NANOSECONDS, Timeline
 if TYPE_CHECKING:
     from pytest_tarl.formulas.robustness import Course
 
-LARGEST = 1e9  # a robustness beyond it, of an infinite range for instance, counts as that
-NEGLIGIBLE = 1e-12  # a margin that is shown as 0
+LARGEST = 1e9  # robustness is clipped to ± this, so that an infinite laser range stays finite
+NEGLIGIBLE = 1e-12  # margins below this are shown as 0
 
 
 class Judged(NamedTuple):
-    """What a formula came to in an episode: robustness, above 0 if it holds, and when it was lost, in s.
+    """The verdict on one formula: its robustness, above 0 if it holds, and the time in s when it was lost.
 
-    Robustness is NaN if the episode ended before the formula could be judged; `lost` is NaN if it was not lost.
+    Robustness is NaN if the episode ended before the formula could be judged; `lost` is NaN if it never was.
     """
 
     formula: str
@@ -35,22 +35,22 @@ class Judged(NamedTuple):
 
 
 class Judge:
-    """Follow the signals of an episode, and evaluate its formulas at the end."""
+    """Record the signals of an episode, and evaluate its formulas at the end."""
 
     def __init__(self, names: Sequence[str], formulas: Sequence[Formula], said: Said = NOTHING_SAID) -> None:
         self.names = tuple(names)
         self.said = said
         self.timeline = Timeline(names)
         self.formulas = list(formulas)
-        self.steps: list[int] = []  # when each step ended, in ns since the episode began
+        self.steps: list[int] = []  # end of each step, ns since the episode began
         self._courses: dict[str, Course] = {}
 
     def give(self, name: str, value: Any, time: int) -> None:
-        """Let a signal have a value from an instant on. Raise SettingsError for what is no number."""
+        """Set a signal from an instant on. Raise SettingsError if the value is not a number."""
         self.timeline.give(name, value, time)
 
     def require(self, text: str) -> None:
-        """Add a formula. Raise SettingsError for what is none."""
+        """Add a formula. Raise SettingsError if the text is not one."""
         added = formula("tarl.require", text, self.names, self.said)
         if added not in self.formulas:
             self.formulas.append(added)
@@ -61,7 +61,7 @@ class Judge:
         return tuple(self._judged(one, end) for one in self.formulas)
 
     def unjudged(self, end: int) -> str:
-        """Return a sentence on a formula that the episode was too short for; empty if there is none."""
+        """Return a sentence about a formula for which the episode was too short; empty if there is none."""
         from pytest_tarl.formulas.reach import unjudged
 
         for one in self.formulas:
@@ -74,9 +74,10 @@ class Judge:
         return ""
 
     def rewards(self, end: int, cap: float) -> list[float]:
-        """Return the reward of each step: the increments of the least robustness so far, within ±cap.
+        """Return the reward of each step, shape (steps,): the increments of the least robustness so far.
 
-        They add up to its value at the end. An episode that ended before its signals were known is worth -cap.
+        The robustness is clipped to ±cap. The rewards add up to its value at the end of the episode; an
+        episode that ended before its signals were known gets -cap in total.
         """
         ends = [*self.steps[:-1], end] if self.steps else []
         if not ends:
@@ -147,5 +148,5 @@ class Judge:
 
 
 def margin(robustness: float) -> str:
-    """Write a robustness for people."""
+    """Format a robustness for display."""
     return f"{0.0 if abs(robustness) < NEGLIGIBLE else robustness:.4g}"

@@ -15,14 +15,14 @@ from pytest_tarl.formulas.signals import NANOSECONDS
 
 @dataclass
 class Followed:
-    """The signals of one mission as its records are read; times in seconds since it began."""
+    """The signals of one mission, collected from its log records; times in seconds since it began."""
 
-    changes: list[tuple[float, str, float]] = field(default_factory=list)  # when, which, what it became
-    times: list[float] = field(default_factory=list)  # when steps were closed
-    lasted: float | None = None  # None in a log that was written without signals
+    changes: list[tuple[float, str, float]] = field(default_factory=list)  # (time, name, new value)
+    times: list[float] = field(default_factory=list)  # end of each step
+    lasted: float | None = None  # length of the mission, s; None in a log without signals
 
     def add(self, record: Mapping[str, Any]) -> None:
-        """Take what a record holds of signals."""
+        """Add the signals that a record holds."""
         self.changes += map(tuple, record.get("changes", ()))
         self.times += record.get("times", ())
         self.lasted = record.get("lasted", self.lasted)
@@ -30,7 +30,7 @@ class Followed:
 
 @dataclass(frozen=True)
 class LookedBack:
-    """What formulas came to in a mission; `rewards` where the marker says that they give them."""
+    """The verdicts on a mission's formulas; `rewards` only if the marker sets reward="robustness"."""
 
     judged: tuple[Judged, ...] = ()
     violation: str = ""
@@ -38,7 +38,7 @@ class LookedBack:
 
 
 def judgeable(missions: Sequence[Followed], requirements: Requirements) -> tuple[Formula, ...]:
-    """Return the formulas whose signals every mission holds.
+    """Return the formulas whose signals are in every mission's log.
 
     Raise LogError if the reward is by robustness and a formula is missing.
     """
@@ -55,7 +55,7 @@ def judgeable(missions: Sequence[Followed], requirements: Requirements) -> tuple
 
 
 def looked_back(mission: Followed, known: Sequence[Formula], requirements: Requirements) -> LookedBack:
-    """Evaluate the formulas of a mission like those of an episode."""
+    """Evaluate the formulas of a mission, as for an episode."""
     if not known or not mission.lasted:
         return LookedBack()
     judge = Judge(requirements.names, known)
@@ -70,7 +70,7 @@ def looked_back(mission: Followed, known: Sequence[Formula], requirements: Requi
 
 
 def left_out(log: str, known: Sequence[Formula], requirements: Requirements) -> tuple[str, ...]:
-    """Tell which formulas a log cannot tell of."""
+    """Name the signals that a log lacks, and the formulas that are therefore not judged."""
     names = [repr(one.text) for one in requirements.formulas if one not in known]
     if not names:
         return ()

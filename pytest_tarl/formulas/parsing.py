@@ -15,13 +15,13 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.extras import install_command
 from pytest_tarl.formulas.said import NOTHING_SAID, Said
 
-NEWEST = (3, 12)  # for which the parser that rtamt is built on can be imported
+NEWEST = (3, 12)  # newest Python that can import rtamt's parser
 EXAMPLE = 'such as "always (gap > 0.3)"'
 
 
 @dataclass(frozen=True)
 class Formula:
-    """A formula that can be judged: its text, the signals that it names, its tree in nodes of rtamt."""
+    """A parsed formula: its text, the signals that it names, and its tree of rtamt nodes."""
 
     text: str
     signals: tuple[str, ...]
@@ -29,9 +29,9 @@ class Formula:
 
 
 def formula(where: str, text: Any, names: Sequence[str], said: Said = NOTHING_SAID) -> Formula:
-    """Read a formula over those signals. Raises SettingsError; `where` begins its sentence.
+    """Parse a formula over those signals. Raises SettingsError, whose message begins with `where`.
 
-    `said` tells what else the test observes, so that the sentence on an unknown name can be of help.
+    `said` holds the names that the test's source observes, for suggestions in the message on an unknown name.
     """
     if not isinstance(text, str) or not text.strip():
         raise SettingsError(f"{where}: a formula is a string {EXAMPLE}, got {text!r}.")
@@ -48,7 +48,7 @@ def formula(where: str, text: Any, names: Sequence[str], said: Said = NOTHING_SA
 
 
 def require_rtamt(where: str) -> None:
-    """Raise SettingsError where formulas cannot be read here."""
+    """Raise SettingsError if rtamt is missing or does not support this Python."""
     if sys.version_info[:2] > NEWEST:
         raise SettingsError(
             f"{where}: formulas need rtamt, which runs on Python 3.10 to 3.12; this is Python "
@@ -73,7 +73,7 @@ def _formula(text: str, names: tuple[str, ...]) -> Formula:
     from pytest_tarl.formulas import grammar
     from pytest_tarl.formulas.reach import unjudged
 
-    plain = re.sub(r"!=(?!=)", "!==", text)  # as in Python
+    plain = re.sub(r"!=(?!=)", "!==", text)  # accept Python's != for rtamt's !==
     used, others = grammar.words(plain)
     reserved = next((name for name in names if name in others), None)
     if reserved is not None:

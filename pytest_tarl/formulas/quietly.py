@@ -1,4 +1,4 @@
-"""rtamt without the DeprecationWarning that its parsers raise when they are imported (`typing.io`)."""
+"""Import rtamt without the DeprecationWarning (`typing.io`) of its parsers."""
 
 import warnings
 

@@ -8,13 +8,14 @@ from typing import Any
 from pytest_tarl.formulas.semantics import BOOLEAN, FUTURE, PAST, TIMED, bounds, operands
 from pytest_tarl.formulas.signals import NANOSECONDS
 
-Span = tuple[float, float]  # of instants in ns, both ends included
+Span = tuple[float, float]  # first and last instant in ns, both included
 
 
 def unjudged(tree: Any, end: float = math.inf) -> str:
-    """Return why a formula can never be judged in an episode that ends then (ns), without a full stop; else empty.
+    """Return why a formula can never be judged in an episode that ends at `end` (ns); empty if it can be.
 
-    A formula is judged at the beginning; what it holds, at the instants that its operators look at from there.
+    A formula is evaluated at the beginning of the episode, and its operands at the instants that its
+    operators reach from there. The reason has no full stop.
     """
     if not _temporal(tree):
         return "it is evaluated at the beginning of the episode only: put always or eventually before it"
@@ -33,7 +34,7 @@ def _unjudged(node: Any, span: Span, end: float) -> str:
 
 
 def _spans(node: Any, first: float, last: float) -> list[Span]:
-    """Return the instants at which a node's operands are looked at; none for a comparison."""
+    """Return the spans of instants at which a node's operands are evaluated; none for a comparison."""
     if isinstance(node, FUTURE):
         begin, end = bounds(node) if isinstance(node, TIMED) else (0, math.inf)
         return [(first, last + end), (first + begin, last + end)][-len(operands(node)) :]

@@ -1,4 +1,4 @@
-"""Robustness of a formula over an episode: at its end, after every step of it, and when it was lost for good."""
+"""Robustness of a formula over an episode: at its end, after every step, and the instant when it was lost."""
 
 from __future__ import annotations
 
@@ -29,28 +29,28 @@ from pytest_tarl.formulas.semantics import (
 )
 from pytest_tarl.formulas.signals import Samples, cut
 
-Values = Mapping[int, Samples]  # of the atoms of a formula, by identity
-FARTHEST = 1e308  # what an atom may still come to when nothing is known of it
+Values = Mapping[int, Samples]  # samples of a formula's atoms, by id(node)
+FARTHEST = 1e308  # bound on the unknown future value of an atom
 
 
 @dataclass(frozen=True)
 class Course:
-    """A formula and what its atoms were in an episode."""
+    """A formula and the values of its atoms over an episode."""
 
     formula: Formula
     values: Values
 
     def until(self, end: int) -> Course:
-        """Return what was known at an instant."""
+        """Return the course up to an instant."""
         return replace(self, values={key: cut(samples, end) for key, samples in self.values.items()})
 
 
 def course(formula: Formula, signals: Mapping[str, Samples]) -> Course:
-    """Compute the atoms. Raise SettingsError if one has no value, as by a division by zero."""
+    """Compute the atoms. Raise SettingsError if one has no value, for instance after a division by zero."""
     visitor = Atoms(signals)
     try:
         return Course(formula, {id(atom): visitor.visit(atom) for atom in atoms(formula.tree)})
-    except Exception as problem:  # rtamt raises plain ones
+    except Exception as problem:  # rtamt raises bare Exception
         raise SettingsError(
             f"The formula {formula.text!r} has no value: {str(problem).rstrip('.')}. Correct the formula, or the "
             "values of its signals."
@@ -58,20 +58,21 @@ def course(formula: Formula, signals: Mapping[str, Samples]) -> Course:
 
 
 def robustness(course: Course, end: int) -> float:
-    """Return the value of a formula over what was known at an instant; above 0 it is satisfied."""
+    """Return the robustness of a formula on the course up to an instant; above 0 it is satisfied."""
     samples = Skeleton(course.until(end).values, end).visit(course.formula.tree)
     return float(samples[0][1])
 
 
 def running(course: Course, ends: Sequence[int]) -> list[float]:
-    """Return the robustness over what was known at each of the instants, which rise."""
+    """Return the robustness on the course up to each of the instants, which are in ascending order."""
     return _running(course, course.formula.tree, ends)
 
 
 def lost_at(course: Course, instants: Sequence[int]) -> int | None:
-    """Return the first of the instants from which on nothing can satisfy the formula; None if something could.
+    """Return the first of the instants after which no future can satisfy the formula; None if some future can.
 
-    It is never too early: where atoms depend on each other, the loss may be noticed later than it could be.
+    The result is never too early. It can be late where atoms depend on each other, since each is bounded
+    alone.
     """
     low, high = 0, len(instants)
     while low < high:
@@ -92,7 +93,7 @@ def _hopeless(course: Course, now: int) -> bool:
 
 
 def _hopeful(node: Any, sign: int, known: Values, now: int, values: dict[int, Samples]) -> Any:
-    """Return a copy of a tree whose atoms come to what is best for it after `now`."""
+    """Return a copy of a tree whose atoms take the most favourable values after `now`."""
     copy = _copied(node)
     if not isinstance(node, CONNECTIVES):
         values[id(copy)] = [*known[id(node)], [now + 1, sign * FARTHEST]]
@@ -107,14 +108,17 @@ def _hopeful(node: Any, sign: int, known: Values, now: int, values: dict[int, Sa
 
 
 def _copied(node: Any) -> Any:
-    """Copy a node alone: an atom that stands at two places gets a value at each."""
+    """Copy a node without its children, so that an atom used in two places gets a value in each."""
     copied = object.__new__(type(node))
     copied.__dict__.update(node.__dict__)
     return copied
 
 
 def _running(course: Course, node: Any, ends: Sequence[int]) -> list[float]:
-    """Follow always and eventually over what does not look ahead step by step, and judge everything else anew."""
+    """Return the robustness of a node at each instant.
+
+    Always and eventually over operands that do not look ahead are computed incrementally, all others from scratch.
+    """
     if isinstance(node, BOOLEAN):
         parts = [_running(course, child, ends) for child in operands(node)]
         return [_joined(node, values) for values in zip(*parts, strict=True)]
@@ -135,7 +139,7 @@ def _extremes(
     window: tuple[float, float],
     extreme: Callable[[float, float], float],
 ) -> list[float]:
-    """Return the least or largest value in a window from the beginning on, as far as it is known at each instant."""
+    """Return the running extreme of the values in a window after the beginning, one for each instant."""
     found: list[float] = []
     place, begun, seen = 0, False, samples[0][1]
 
@@ -166,7 +170,7 @@ def _joined(node: Any, values: tuple[float, ...]) -> float:
         return min(values)
     if isinstance(node, Disjunction):
         return max(values)
-    raise TypeError(f"{node!r} is no connective.")
+    raise TypeError(f"{node!r} is not a connective.")
 
 
 def _looks_ahead(node: Any) -> bool:

@@ -1,4 +1,4 @@
-"""Formulas and signals in a test's source, besides its marker."""
+"""Formulas and signals found in a test's source, outside its marker."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Said:
-    """Names that `tarl.observe` is called with, and the texts given to `tarl.require`, where they stand in the source.
+    """Literal names in calls of `tarl.observe`, and literal texts in calls of `tarl.require`.
 
-    `computed` tells whether observed names are computed somewhere, `requires` whether tarl.require is called at all.
+    `computed` tells whether some observed name is computed, `requires` whether the test calls tarl.require.
     """
 
     observed: tuple[str, ...] = ()

@@ -1,12 +1,13 @@
-"""What a formula is worth: rtamt's dense-time evaluation, with the readings in which rtamt differs from its own text.
+"""Evaluate formulas in dense time with rtamt, corrected where rtamt differs from its documentation.
 
-Time is counted in whole nanoseconds, as on the virtual clock. Signals are constant from one change to the next, and so
-is every subformula. Where a window reaches beyond the end of what is known, a subformula keeps the value that it had
-last, and before the beginning the value that it had first; so values are finite wherever signals are.
+Time is counted in whole nanoseconds, as on the virtual clock. Signals are constant from one change to the
+next, and so is every subformula. Where a window reaches beyond the known part of an episode, a subformula
+keeps its last value, and before the beginning its first; so values are finite wherever signals are.
 
-Differences from rtamt 0.4 in dense time: `until` and `since` need no left side at the instant of the right one, as in
-discrete time; a comparison at equality has the sign of its truth; an empty window is no infinity; units of bounds are
-converted the right way round.
+Differences from rtamt 0.4 in dense time: `until` and `since` do not require the left side at the instant of
+the right one, as in discrete time; a comparison at equality is slightly positive if it holds and slightly
+negative if not (`TRUTH`); an empty window is not infinite; units of bounds are converted in the right
+direction.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ __all__ = [
     "Eventually", "Implies", "Neg", "Skeleton", "TimedAlways", "TimedEventually", "bounds", "operands",
 ]  # fmt: skip
 
-TRUTH = 1e-300  # robustness of a comparison that holds at equality; a formula above 0 is satisfied
+TRUTH = 1e-300  # |robustness| of a comparison at equality, so that above 0 always means satisfied
 UNITS = {"": 10**9, "s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}
 
 BOOLEAN = (Neg, Conjunction, Disjunction, Implies)
@@ -57,7 +58,7 @@ STRICT = ("<", ">", "!=")  # comparisons that do not hold at equality
 
 
 def operands(node: Any) -> tuple[Any, ...]:
-    """Return the children of a node; rtamt lists them twice for some."""
+    """Return the children of a node; rtamt lists those of some nodes twice."""
     binary = isinstance(node, (Conjunction, Disjunction, Implies, Until, TimedUntil, Since, TimedSince))
     return tuple(node.children[: 2 if binary else 1])
 
@@ -68,42 +69,42 @@ def bounds(node: Any) -> tuple[int, int]:
 
 
 class Atoms(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
-    """Values of comparisons, and of numbers that stand for a formula."""
+    """Evaluate atoms: comparisons, and numbers used as formulas."""
 
     def __init__(self, signals: Mapping[str, Samples]) -> None:
         self._signals = signals
 
     def visitVariable(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return a signal."""
+        """Return the samples of a signal."""
         return self._signals[node.var]
 
     def visitConstant(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return a constant."""
+        """Return a constant as one sample."""
         return [[0, node.val]]
 
     def visitPredicate(self, node: Any, *args: Any, **kwargs: Any) -> Samples:  # noqa: N802
-        """Return a comparison, never zero: at equality its sign is its truth. Raise ArithmeticError for NaN."""
+        """Return the margin of a comparison, ±TRUTH instead of 0. Raise ArithmeticError for NaN."""
         equal = -TRUTH if str(node.operator) in STRICT else TRUTH
         found: Samples = super().visitPredicate(node, *args, **kwargs)
         if any(math.isnan(value) for _, value in found):
-            raise ArithmeticError("infinity minus infinity is no number")
+            raise ArithmeticError("infinity minus infinity is not a number")
         return [[time, value or equal] for time, value in found]
 
 
 class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
-    """Values of a formula whose atoms are known up to `end`, by their identity."""
+    """Evaluate the connectives of a formula; its atoms' samples are given by id(node), known up to `end` (ns)."""
 
     def __init__(self, atoms: Mapping[int, Samples], end: float) -> None:
         self._atoms = atoms
         self._end = end
 
     def visit(self, node: Any, *args: Any, **kwargs: Any) -> Samples:
-        """Return the value of a node over time, nothing of it beyond the end."""
+        """Return the value of a node over time, cut off at the end."""
         known = self._atoms.get(id(node))
         return known if known is not None else self._clipped(super().visit(node, *args, **kwargs))
 
     def time_unit_transformer(self, node: Any) -> tuple[int, int]:
-        """Return the window of a timed operator, where rtamt asks for it."""
+        """Return the window of a timed operator; rtamt calls this."""
         return bounds(node)
 
     def visitUntil(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
@@ -115,7 +116,7 @@ class Skeleton(dense.StlDenseTimeOfflineAstVisitor):  # type: ignore[misc]
         return _since(*self._both(node))
 
     def visitTimedUntil(self, node: Any, *_: Any, **__: Any) -> Samples:  # noqa: N802
-        """Return until with a window: left up to where it begins, then until within what is left of it."""
+        """Return until with a window: left holds up to the window's begin, then until holds within the window."""
         (left, right), (begin, end) = self._both(node), bounds(node)
         within = dense.and_operation(
             dense.eventually_timed_operation(right, 0, end - begin), _until(left, right)
@@ -179,5 +180,5 @@ def _once(sample: Samples, begin: int, end: int) -> Samples:
 
 
 def _begun(samples: Samples, operand: Samples) -> Samples:
-    """Put the operand's first value where a window lies wholly before the beginning, which rtamt makes infinite."""
+    """Use the operand's first value where a window lies wholly before the beginning; rtamt gives infinity there."""
     return [[time, operand[0][1] if i == 0 else value] for i, (time, value) in enumerate(samples)]

@@ -1,4 +1,4 @@
-"""Signals: named, piecewise constant numbers over virtual time."""
+"""Signals: named numbers, piecewise constant over virtual time."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ Samples = list[list[Any]]  # [[time in ns, value], …] in order of time, as rta
 class Signal:
     """A number for formulas that is not a sensor.
 
-    With `topic` and `field` (dotted, or a function of the message) it is read from every message on the topic, those
-    that the node publishes included. Without them the test gives it: `tarl.observe(gap=…)`.
+    With `topic` and `field` (a dotted path, or a function of the message), it is read from every message on
+    the topic, including those that the node publishes. Without them the test sets it: `tarl.observe(gap=…)`.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Signal:
 
 
 def stored_signal(signal: Signal) -> Signal:
-    """Return the signal as it can be written down: a function by its name."""
+    """Return the signal in a form that can be stored: a function becomes its name."""
     if not callable(signal.field):
         return signal
     return replace(
@@ -55,16 +55,16 @@ def stored_signal(signal: Signal) -> Signal:
 
 
 class Timeline:
-    """What every signal of an episode was, by virtual time in ns since the episode began."""
+    """The values of all signals over an episode; times in virtual ns since it began."""
 
     def __init__(self, names: Iterable[str]) -> None:
         self._times: dict[str, list[int]] = {name: [] for name in names}
         self._values: dict[str, list[float]] = {name: [] for name in self._times}
 
     def give(self, name: str, value: Any, time: int) -> None:
-        """Let a signal have a value from an instant on; of several at one instant the last holds, NaN tells nothing.
+        """Set a signal from an instant on; the last of several values at one instant counts, NaN is ignored.
 
-        Raises SettingsError for what is no number.
+        Raises SettingsError if the value is not a number.
         """
         number = signal_value(name, value)
         if math.isnan(number):
@@ -81,14 +81,14 @@ class Timeline:
         return next((name for name in names if not self._times[name]), None)
 
     def samples(self, names: Iterable[str]) -> dict[str, Samples]:
-        """Return the signals as rtamt takes them. What a signal was first is what it was from the beginning."""
+        """Return the signals in rtamt's form; a signal's first value is extended back to the beginning."""
         return {
             name: [[time if i else 0, value] for i, (time, value) in enumerate(self._columns(name))]
             for name in names
         }
 
     def at(self, names: Iterable[str], time: int) -> Mapping[str, float]:
-        """Return what the signals were at an instant."""
+        """Return the values of the signals at an instant."""
         found = {}
         for name in names:
             place = bisect_right(self._times[name], time) - 1
@@ -96,7 +96,7 @@ class Timeline:
         return found
 
     def instants(self, names: Iterable[str], end: int) -> list[int]:
-        """Return when any of the signals changed, in order, and the end."""
+        """Return the instants at which a signal changed, in order, followed by the end."""
         return sorted({time for name in names for time in self._times[name] if time < end} | {0, end})
 
     def _columns(self, name: str) -> Iterable[tuple[int, float]]:
@@ -104,7 +104,7 @@ class Timeline:
 
 
 def signal_value(name: str, value: Any) -> float:
-    """Return a value as formulas see it: booleans are 1 and -1. Raise SettingsError for what is no number."""
+    """Return a value as a float, booleans as 1 and -1. Raise SettingsError if it is not a number."""
     if isinstance(value, bool) or getattr(getattr(value, "dtype", None), "kind", "") == "b":
         return 1.0 if value else -1.0
     number = as_number(value)
@@ -117,7 +117,7 @@ def signal_value(name: str, value: Any) -> float:
 
 
 def cut(samples: Samples, end: int) -> Samples:
-    """Return what was known at an instant."""
+    """Return the samples up to an instant."""
     return samples[: max(1, bisect_left(samples, end + 1, key=_time))]
 
 

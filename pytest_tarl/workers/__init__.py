@@ -1,1 +1,1 @@
-"""Episodes in other processes, on this machine or on a cluster."""
+"""Run episodes in other processes, on this machine or on a cluster."""

@@ -10,10 +10,10 @@ from pytest_tarl.errors import SettingsError
 from pytest_tarl.extras import install_command
 from pytest_tarl.workers.pool import Pool, Post
 
-REACHED = 10  # seconds to wait for the scheduler
-RETRIES = 2  # retries of an episode on another machine after its machine is lost
+REACHED = 10  # s to wait for the scheduler
+RETRIES = 2  # retries on another machine after an episode's machine is lost
 
-_pools: list[Pool] = []  # of this process, a worker of the cluster
+_pools: list[Pool] = []  # one pool, made in each worker process of the cluster
 
 
 def serve_here(post: Post, request: bytes) -> bytes:

@@ -23,7 +23,7 @@ from pytest_tarl.workers.pool import TRIES, Pool, Post, WorkerDiedError, WorkerH
 
 Serve = Callable[[Post, bytes], bytes]
 
-# Plugins that a worker must not load or share: reports, caches of results, debuggers, nested workers.
+# Plugins that a worker does not load: reports, result caches, debuggers, nested workers.
 OFF: Mapping[str, Any] = {
     "cacheclear": False,
     "collectonly": False,
@@ -57,23 +57,30 @@ class EpisodeExecutor:
     workers: int
 
     def __call__(self, plan: EpisodePlan) -> EpisodeRun:
-        """Run one episode. Raise TarlError if the test cannot be run as asked, pytest's Exit and Skipped."""
+        """Run one episode and return its run.
+
+        Raises TarlError if the test cannot be run as configured; pytest's Exit and Skipped if the test raised
+        them.
+        """
         return self.begin(plan).result()
 
     def begin(self, plan: EpisodePlan) -> Answer:
-        """Ask for an episode."""
+        """Submit an episode."""
         return Answer(plan, self.executor.submit(self.serve, self.post, protocol.plan_message(plan)))
 
 
 @dataclass(frozen=True)
 class Answer:
-    """An episode that was asked for."""
+    """A submitted episode."""
 
     plan: EpisodePlan
     future: Future[bytes]
 
     def result(self) -> EpisodeRun:
-        """Wait for it. Raise TarlError if it could not be run, pytest's Exit and Skipped."""
+        """Wait for the episode and return its run.
+
+        Raises TarlError if it could not be run; pytest's Exit and Skipped if the test raised them.
+        """
         try:
             return protocol.answered(self.plan, self.future.result())
         except WorkerDiedError as died:
@@ -95,7 +102,7 @@ class Answer:
             raise RecordingError("The cluster cancelled an episode: check its scheduler's log.") from None
 
     def cancel(self) -> bool:
-        """Do without it, if no worker has begun it."""
+        """Cancel the episode unless a worker has begun it."""
         return self.future.cancel()
 
 
@@ -103,7 +110,7 @@ class Answer:
 def opened(
     item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor], options: Options
 ) -> Iterator[EpisodeExecutor]:
-    """Open an executor for a test; end all its workers on exit."""
+    """Yield an executor for a test; end all its workers on exit."""
     post = posted(item, instruments, sensors)
     if options.cluster is not None:
         from pytest_tarl.workers.cluster import joined, serve_here
@@ -122,7 +129,7 @@ def opened(
 
 
 def posted(item: pytest.Function, instruments: Instruments, sensors: Sequence[Sensor]) -> Post:
-    """Say what a worker needs in order to hold the item ready."""
+    """Describe the job of a worker: everything that it needs to prepare the item."""
     config = item.config
     plain = {name: value for name, value in vars(config.option).items() if _plain(value)}
     rooted = {"rootdir": str(config.rootpath)}
@@ -131,7 +138,7 @@ def posted(item: pytest.Function, instruments: Instruments, sensors: Sequence[Se
     plugins = [*config.option.plugins, "no:terminal"]
     folder = str(config.invocation_params.dir)
     start = {
-        "path": [str(Path(folder, entry)) for entry in sys.path],  # an absolute entry stays what it is
+        "path": [str(Path(folder, entry)) for entry in sys.path],  # an absolute entry stays unchanged
         "options": plain | dict(OFF) | rooted | {"plugins": plugins, "basetemp": None},
         "target": f"{item.path}::{item.nodeid.partition('::')[2]}",
     }

@@ -18,9 +18,11 @@ from pytest_tarl.held_interpreter import SIGNAL
 from pytest_tarl.ros.blame import describe_first
 from pytest_tarl.workers import protocol
 
-TRIES = 3  # most runs of an episode whose worker dies
+TRIES = 3  # runs of an episode whose worker dies, including the first
 PATIENCE = 5.0  # seconds for a worker to finish its fixtures before it is ended
-SILENCE = 180  # checks, one per second, without a sign of life; a suspended process does not check
+SILENCE = (
+    180  # checks without a sign of life, one per second; a count, since a suspended machine does not check
+)
 _FRAME = re.compile(r'^ *File "(.+)", line (\d+) in (.+)$', re.MULTILINE)
 WORKER_MAIN = Path(__file__).with_name("worker_main.py")
 
@@ -30,7 +32,7 @@ class WorkerDiedError(TarlError):
 
 
 class WorkerHeldError(TarlError):
-    """A node held the interpreter of a worker, which was ended; a retry would take as long again."""
+    """A node held a worker's interpreter, so the worker was ended; not retried, since it would hang again."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,7 @@ class Post:
     folder: str
     start: str
     first: bytes
-    loud: bool = False  # whether what nodes print is shown
+    loud: bool = False  # whether to show the output of nodes
 
 
 class Worker:
@@ -62,7 +64,10 @@ class Worker:
         self._over = threading.Event()
 
     def greet(self) -> None:
-        """Wait until it holds its test ready. Raise TarlError if it cannot, WorkerDiedError."""
+        """Send the first message and wait until the worker has prepared its test.
+
+        Raises TarlError if the worker cannot prepare it, WorkerDiedError if it dies.
+        """
         greeting = self.ask(self._post.first)
         if greeting != protocol.READY:
             protocol.refused(greeting)
@@ -76,7 +81,7 @@ class Worker:
             protocol.write(asked, request)
             while (answer := protocol.read(told)) == protocol.ALIVE:
                 self._silent = 0
-        except (OSError, ValueError):  # the latter of a pipe that `end` has closed
+        except (OSError, ValueError):  # ValueError: `end` has closed the pipe
             answer = None
         finally:
             self._asked = False
@@ -88,13 +93,15 @@ class Worker:
         return answer
 
     def _listen(self) -> None:
-        """End the worker if it shows no sign of life, so that it cannot block the run."""
+        """End the worker after SILENCE checks without a sign of life, so that it cannot block the run."""
         while not self._over.wait(1.0):
             self._silent += self._asked
             if self._silent > SILENCE:
                 self._held = True
                 with suppress(OSError, subprocess.TimeoutExpired):
-                    self._process.send_signal(signal.SIGABRT)  # for which pytest has faulthandler say where
+                    self._process.send_signal(
+                        signal.SIGABRT
+                    )  # faulthandler, enabled by pytest, then prints the stack
                     self._process.wait(PATIENCE)
                 self._process.kill()
                 return
@@ -136,7 +143,7 @@ class Worker:
 
 
 def place_held(log: str) -> str:
-    """Return the user's innermost line that faulthandler wrote down; empty if there is none."""
+    """Return the innermost line of user code in faulthandler's output; empty if there is none."""
     ours = str(WORKER_MAIN.parent.parent)
     frames = [
         (file, int(line), function)
@@ -147,7 +154,7 @@ def place_held(log: str) -> str:
 
 
 class Pool:
-    """The workers of this process by job, started on demand."""
+    """The workers of this process by job; started on demand, safe to use from several threads."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -156,7 +163,7 @@ class Pool:
         self._closed = False
 
     def serve(self, post: Post, request: bytes) -> bytes:
-        """Run a request on a free worker. Raise WorkerDiedError if as many as `TRIES` died of it."""
+        """Run a request on a free worker. Raise WorkerDiedError if `TRIES` workers in a row died."""
         for _ in range(TRIES - 1):
             with suppress(WorkerDiedError):
                 return self._once(post, request)
@@ -184,7 +191,7 @@ class Pool:
             self._busy.append(worker)
         try:
             if self._closed:
-                raise WorkerDiedError("not needed any more: the run is over")
+                raise WorkerDiedError("not needed: the run is over")
             if not known:
                 worker.greet()
             answer = worker.ask(request)
@@ -201,7 +208,7 @@ class Pool:
             return waiting.pop() if waiting else None
 
     def _move(self, worker: Worker, post: Post | None) -> None:
-        """Take a worker from its work, to wait for more where a post is given."""
+        """Mark a worker as no longer busy; with a post, make it available for that job."""
         with self._lock:
             self._busy.remove(worker)
             if post is not None:

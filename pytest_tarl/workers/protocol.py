@@ -1,4 +1,4 @@
-"""Messages between a run and its workers: JSON, followed by the columns of a trace."""
+"""Messages between a run and its workers: JSON, then the columns of a trace."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ COLUMNS = ("site", "flow", "event_cell", "event_step", "step_cell", "reward")
 TOLD = ("passed", "failure", "broken", "topics", "crashed", "stuck", "values")
 LENGTH = struct.Struct("<Q")
 READY = b"ready"
-ALIVE = b""  # sign of life: the worker's threads run
+ALIVE = b""  # heartbeat: the worker's threads run
 
 
 def write(pipe: BinaryIO, message: bytes) -> None:
-    """Send one message. Raise OSError if nobody reads any more."""
+    """Send one message. Raise OSError if the other side has closed the pipe."""
     pipe.write(LENGTH.pack(len(message)))
     pipe.write(message)
     pipe.flush()
 
 
 def read(pipe: BinaryIO) -> bytes | None:
-    """Receive one message; None if the other side is gone, or broke off in the middle of one."""
+    """Receive one message; None if the other side has gone, even in the middle of a message."""
     head = pipe.read(LENGTH.size)
     if len(head) < LENGTH.size:
         return None
@@ -41,14 +41,14 @@ def read(pipe: BinaryIO) -> bytes | None:
 
 
 def plan_message(plan: EpisodePlan) -> bytes:
-    """Write a plan."""
+    """Encode a plan."""
     overlay = {str(path): text for path, text in plan.overlay.items()}
     head = {"seed": str(plan.seed), "drift": plan.drift, "overlay": overlay, "record": plan.record}
     return _joined({**head, "bag": str(plan.bag or "")}, {})
 
 
 def planned(message: bytes) -> EpisodePlan:
-    """Read a plan."""
+    """Decode a plan."""
     head, _ = _parted(message)
     overlay = {Path(path): text for path, text in head["overlay"].items()}
     bag = Path(head["bag"]) if head["bag"] else None
@@ -56,7 +56,7 @@ def planned(message: bytes) -> EpisodePlan:
 
 
 def run_message(run: EpisodeRun) -> bytes:
-    """Write the result of an episode, without its plan."""
+    """Encode the result of an episode, without its plan."""
     trace = run.trace
     arrays = {name: getattr(trace, name) for name in COLUMNS}
     arrays |= {f"part {name}": column for name, column in trace.parts.items()}
@@ -78,7 +78,10 @@ def run_message(run: EpisodeRun) -> bytes:
 
 
 def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
-    """Read the result of an episode. Raises the TarlError that ended it, SkippedError and EndedError among them."""
+    """Decode the result of an episode.
+
+    Raises the TarlError that ended it, or SkippedError or EndedError.
+    """
     head, arrays = _parted(message)
     if "error" in head:
         raise _error(head["error"])(head["text"])
@@ -95,13 +98,13 @@ def answered(plan: EpisodePlan, message: bytes) -> EpisodeRun:
 
 
 def refused(message: bytes) -> None:
-    """Raise the TarlError that a message holds."""
+    """Raise the TarlError encoded in a message."""
     head, _ = _parted(message)
     raise _error(head["error"])(head["text"])
 
 
 def error_message(problem: TarlError) -> bytes:
-    """Write the error that prevented an episode."""
+    """Encode the error that prevented an episode."""
     return _joined({"error": type(problem).__name__, "text": str(problem)}, {})
 
 

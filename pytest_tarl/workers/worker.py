@@ -23,14 +23,14 @@ from pytest_tarl.sensors import with_edges
 from pytest_tarl.workers import protocol
 
 MEMORIES = ("lfplugin", "nfplugin", "stepwiseplugin")
-BEAT = 1.0  # seconds between two signs of life
-ENDED = 70  # exit status of a worker whose run is gone
+BEAT = 1.0  # s between two heartbeats
+ENDED = 70  # exit status after the run has gone
 
 
 def serve(requests: int, answers: int, config: Config | None, problem: str) -> None:
-    """Serve the parent process until it ends the session or exits.
+    """Serve the parent process until it closes the pipe or exits.
 
-    The arguments are the descriptors of the pipes, and pytest's configuration or why there is none.
+    The arguments are the descriptors of the pipes, and pytest's configuration or the error that prevented it.
     """
     alive, told = os.pipe()
     _thread.start_new_thread(_forwarded, (requests, told))
@@ -60,22 +60,22 @@ class Server:
         self.turn = threading.Lock()
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
-        """Keep why a test could not be collected."""
+        """Keep the reason why a test could not be collected."""
         if report.failed:
             self.problems.append(report.longreprtext)
 
     def pytest_internalerror(self, excrepr: object) -> None:
-        """Keep what pytest or a plugin of it stumbled over."""
+        """Keep an internal error of pytest or a plugin."""
         self.problems.append(str(excrepr))
 
     def pytest_sessionstart(self, session: pytest.Session) -> None:
-        """Leave pytest's memory of what failed last to the run."""
+        """Disable the cache of failed tests: only the parent run writes it."""
         for name in MEMORIES:
             session.config.pluginmanager.unregister(name=name)
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
-        """Run episodes as they are asked for."""
+        """Run an episode for each request."""
         wanted = [item for item in session.items if item.nodeid == self.post["nodeid"]]
         if not wanted or not isinstance(wanted[0], pytest.Function):
             self.refuse(f"{self.post['nodeid']} was not collected")
@@ -91,7 +91,7 @@ class Server:
         rollout = ItemRollout(item, told, instruments(self.post["instruments"]))
         self._say(protocol.READY)
         _thread.start_new_thread(self._beat, ())
-        while request := protocol.read(self.requests):  # an empty one says that there are no more
+        while request := protocol.read(self.requests):  # an empty request ends the session
             self._say(answer(rollout, request))
         finish(item, None)
         return True
@@ -101,14 +101,14 @@ class Server:
             protocol.write(self.answers, message)
 
     def _beat(self) -> None:
-        """Tell again and again that threads run here; the process that asks gives up on one that falls silent."""
+        """Send heartbeats; the parent ends a worker that stops sending them."""
         pause = threading.Event()
-        with suppress(OSError, ValueError):  # the run is gone
+        with suppress(OSError, ValueError):  # the run has gone
             while not pause.wait(BEAT):
                 self._say(protocol.ALIVE)
 
     def refuse(self, problem: str) -> None:
-        """Say why there is nothing to serve."""
+        """Answer the first message with the reason why the test cannot be prepared."""
         if not self.serving:
             protocol.write(
                 self.answers, protocol.error_message(TarlError("\n".join([problem, *self.problems])))
@@ -117,7 +117,7 @@ class Server:
 
 
 def answer(rollout: Rollout, request: bytes) -> bytes:
-    """Run the requested episode; return errors as answers."""
+    """Run the requested episode; return an error as an answer."""
     try:
         return protocol.run_message(rollout(protocol.planned(request)))
     except TarlError as problem:
@@ -133,7 +133,7 @@ def answer(rollout: Rollout, request: bytes) -> bytes:
 
 
 def instruments(given: dict[str, Any]) -> Instruments:
-    """Read what is recorded of the nodes."""
+    """Return the instruments: the sites to record in each node."""
     positions = {
         Path(path): {(line, column): number for line, column, number in places}
         for path, places in given["positions"].items()
@@ -142,9 +142,10 @@ def instruments(given: dict[str, Any]) -> Instruments:
 
 
 def _forwarded(requests: int, told: int) -> None:
-    """Hand requests on; when the run is gone, end this process in the middle of whatever its node does.
+    """Forward requests; when the run has gone, end this process at once, even if a node is running.
 
-    A plain thread that `threading` does not know of: a recorder looks there for the threads of nodes.
+    It runs in a plain thread, unknown to `threading`, because the recorder counts threads listed there as
+    nodes.
     """
     while chunk := os.read(requests, 1 << 16):
         while chunk:

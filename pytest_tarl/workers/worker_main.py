@@ -9,8 +9,8 @@ import sys
 
 
 def main() -> None:
-    """Take the pipes before a conftest can write to them, set pytest up, then serve."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the run; it ends its workers itself
+    """Reserve the pipes before a conftest can write to them, configure pytest, then serve."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the run, which ends its workers
     pipes = _pipes()
     start = json.loads(sys.argv[1])
     sys.path[:] = start["path"]
@@ -28,7 +28,7 @@ def main() -> None:
 
 
 def _pipes() -> tuple[int, int]:
-    """Take stdin and stdout for the messages, so that no node can read or write there."""
+    """Move stdin and stdout to new descriptors for messages, so that no node can read or write them."""
     requests, answers = os.dup(0), os.dup(1)
     nowhere = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nowhere, 0)

@@ -188,7 +188,7 @@ MISTAKES = {
         "s is a keyword of the formula language",
     ),
     "another reward": ('requires=["always wet"], reward="speed"', OBSERVE, 'reward must be "robustness"'),
-    "a reward of nothing": ('reward="robustness"', OBSERVE, "is that of the formulas in requires"),
+    "a reward of nothing": ('reward="robustness"', OBSERVE, "needs at least one formula in requires"),
     "a cap of nothing": ('requires=["always wet"], robustness_cap=3', OBSERVE, "robustness_cap needs"),
     "two rewards": (
         'requires=["always wet"], reward="robustness", signals=["gap"]',
@@ -229,7 +229,7 @@ MISTAKES = {
     "a require too late": (
         "drifts={}",
         "getattr(tarl, 'require')('always wet')",
-        "its signals were not followed until now",
+        "its signals were not recorded so far",
     ),
     "no field": (
         'requires=["always (a > 0)"], signals=[Signal("a", topic="/wet", field="datum")]',
