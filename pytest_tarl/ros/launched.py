@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.ros.messages.workspace import workspaces
+from pytest_tarl.ros.messages.workspace import on_forget, workspaces
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.model import Workspace
 
@@ -178,3 +178,7 @@ def _read(file: Path, workspace: Workspace) -> Launch:
     from tarl_lint.workspace.launch_xml import read_xml
 
     return read_python(file, workspace) if file.suffix == ".py" else read_xml(file, workspace)
+
+
+for known in (given, _bytes):
+    on_forget(known.cache_clear)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
-from pytest_tarl.ros.messages.workspace import package_folders
+from pytest_tarl.ros.messages.workspace import package_folders, packages
 from pytest_tarl.ros.missing import refuse
 
 __all__ = [
@@ -93,9 +92,9 @@ class RosPack:
         return [*package_folders()]
 
     def get_depends(self, name: str, implicit: bool = True) -> Any:  # noqa: ARG002 (rospkg's signature)
-        """List what a package depends on, as its manifest says."""
-        manifest = ElementTree.parse(Path(self.get_path(name), "package.xml"))  # noqa: S314 (the user's own file)
-        return [tag.text for tag in manifest.getroot() if tag.tag.endswith("depend") and tag.text]
+        """List the packages that a package's manifest depends on."""
+        self.get_path(name)
+        return [*packages()[name].dependencies]
 
 
 def __getattr__(name: str) -> Any:

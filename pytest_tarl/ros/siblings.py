@@ -9,7 +9,7 @@ from pathlib import Path
 from types import ModuleType
 
 from pytest_tarl.errors import UnsupportedApiError
-from pytest_tarl.ros.messages.workspace import packages
+from pytest_tarl.ros.messages.workspace import on_forget, packages
 from tarl_lint.workspace.cfg_files import Configuration, configurations
 
 
@@ -72,3 +72,6 @@ def _fill(module: ModuleType, found: Configuration) -> None:
             for key, table in (("min", "min"), ("max", "max"), ("default", "defaults"), ("level", "level"),
                                ("type", "type")):  # fmt: skip
                 names[table][one["name"]] = one[key]
+
+
+on_forget(_of_package.cache_clear)

@@ -10,7 +10,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from types import FrameType, ModuleType
 
-from pytest_tarl.ros.messages.workspace import packages, workspaces
+from pytest_tarl.ros.messages.workspace import on_forget, packages, workspaces
 from tarl_lint.workspace.folders import folders
 
 _MISSING = frozenset({"ImportError", "ModuleNotFoundError", "Exception", "BaseException"})
@@ -108,3 +108,7 @@ def _is_optional(file: str, line: int) -> bool:
             if caught & _MISSING:
                 return True
     return False
+
+
+for known in (_modules, _is_optional):
+    on_forget(known.cache_clear)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -11,6 +11,8 @@ from tarl_lint.workspace.model import Package, Workspace
 from tarl_lint.workspace.read import read
 
 _SEARCHED: list[Path] = []  # like sys.path: it grows with the folders that nodes are started from
+
+_CACHES: list[Callable[[], None]] = []  # functions that empty them
 
 _KEPT: set[Path] = set()  # folders of nodes in packages that the build tool is told to ignore
 
@@ -28,10 +30,15 @@ def search(folder: Path) -> None:
         forget()
 
 
+def on_forget(clear: Callable[[], None]) -> None:
+    """Register a function that empties a cache of facts about the workspaces."""
+    _CACHES.append(clear)
+
+
 def forget() -> None:
-    """Read the workspaces anew when they are next asked for."""
-    for known in (workspaces, workspace_types, workspace_packages, packages, package_folders):
-        known.cache_clear()
+    """Empty all caches of facts about the workspaces, so that they are read again when next asked for."""
+    for clear in _CACHES:
+        clear()
 
 
 @cache
@@ -75,3 +82,7 @@ def package_folders() -> Mapping[str, Path]:
         for name, package in packages().items()
         if (package.folder / "package.xml").is_file()
     }
+
+
+for known in (workspaces, packages, workspace_types, workspace_packages, package_folders):
+    on_forget(known.cache_clear)

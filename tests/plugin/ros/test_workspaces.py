@@ -10,9 +10,11 @@ from textwrap import dedent
 import pytest
 
 from pytest_tarl.errors import NodeError, SettingsError, UnsupportedApiError
-from pytest_tarl.ros import Ros
+from pytest_tarl.ros import Ros, launched, siblings, uninstalled
 from pytest_tarl.ros.launched import NOTHING, Given, given
 from pytest_tarl.ros.messages import workspace
+from pytest_tarl.ros.messages.workspace import package_folders
+from pytest_tarl.ros.packages import ResourceNotFound, RosPack
 from tests.plugin.ros.conftest import Start
 
 CFG = """
@@ -269,3 +271,27 @@ def test_start_takes_the_launch_file_or_none(launches: Path, pytester: pytest.Py
     result = pytester.runpytest("-q", "-s", *quiet, str(launches / "test_it.py"))
     result.assert_outcomes(passed=3)
     result.stdout.fnmatch_lines(["*RATE 9*", "*RATE None*", "*RATE None*"])
+
+
+def test_every_cache_of_workspace_facts_is_emptied(packages: Path, start: Start) -> None:
+    start(
+        "import rospy\nfrom arm_base.cfg import ArmConfig\nfrom arm_base.msg import Reading\nimport smoothing\n"
+    )
+    given(packages / "node.py")
+    package_folders()
+    caches = [
+        (module, name, value)
+        for module in (workspace, launched, siblings, uninstalled)
+        for name, value in vars(module).items()
+        if hasattr(value, "cache_info") and value.__module__ == module.__name__
+    ]
+    filled = [name for _, name, value in caches if value.cache_info().currsize]
+    assert {"workspaces", "packages", "given", "_of_package", "_modules"} <= set(filled)
+    workspace.forget()
+    assert [name for _, name, value in caches if value.cache_info().currsize] == []
+
+
+def test_the_dependencies_of_a_package_are_listed(packages: Path) -> None:
+    assert RosPack().get_depends("arm_base") == ["catkin"]
+    with pytest.raises(ResourceNotFound):
+        RosPack().get_depends("leg_base")
