@@ -6,12 +6,7 @@
 from __future__ import annotations
 
 import os
-import re
 from pathlib import Path
-
-from tarl_lint.trees import walk
-
-_SETUP = frozenset({"setup", "generate_distutils_setup"})
 
 
 class Layout:
@@ -73,61 +68,23 @@ class Layout:
 
 
 def _manifest_name(directory: Path) -> str:
-    try:
-        text = (directory / "package.xml").read_text("utf-8", errors="replace")
-    except OSError:
+    """Return the name in the package.xml of a directory, "" without one."""
+    if not (directory / "package.xml").is_file():
         return ""
-    found = re.search(r"<name>\s*([^<\s]+)\s*</name>", text)
-    return found[1] if found else directory.name
+    from tarl_lint.workspace.manifests import manifest
+
+    return manifest(directory)[0].name
 
 
 def _package_dirs(directory: Path) -> dict[str, str]:
     """Return the `package_dir` that setup.cfg and setup.py in a directory declare, as directory → package."""
-    pairs = {**_from_setup_cfg(directory / "setup.cfg"), **_from_setup_py(directory / "setup.py")}
-    return {os.path.normpath(directory / place): package for package, place in pairs.items()}
-
-
-def _from_setup_cfg(path: Path) -> dict[str, str]:
-    text = _read(path)
-    if "package_dir" not in text:
+    if not any("package_dir" in _read(directory / name) for name in ("setup.cfg", "setup.py")):
         return {}
-    import configparser
+    from tarl_lint.workspace.setup_files import setup
 
-    parser = configparser.ConfigParser(interpolation=None, strict=False)
-    try:
-        parser.read_string(text)
-        lines = parser.get("options", "package_dir", fallback="").splitlines()
-    except configparser.Error:
-        return {}
-    pairs = (line.partition("=") for line in lines if "=" in line)
-    return {package.strip(): place.strip() for package, _, place in pairs}
-
-
-def _from_setup_py(path: Path) -> dict[str, str]:
-    text = _read(path)
-    if "package_dir" not in text:
-        return {}
-    import ast
-
-    try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return {}
-    calls = (node for node in walk(tree) if isinstance(node, ast.Call))
-    setups = (call for call in calls if _name(call.func) in _SETUP)
-    for value in (k.value for call in setups for k in call.keywords if k.arg == "package_dir"):
-        if isinstance(value, ast.Dict):
-            return {
-                str(key.value): str(item.value)
-                for key, item in zip(value.keys, value.values, strict=True)
-                if isinstance(key, ast.Constant) and isinstance(item, ast.Constant)
-            }
-    return {}
-
-
-def _name(function: object) -> object:
-    """Return the last name of a called expression: `setup` of `setuptools.setup`."""
-    return getattr(function, "attr", None) or getattr(function, "id", None)
+    return {
+        os.path.normpath(directory / place): package for package, place in setup(directory).folders.items()
+    }
 
 
 def _read(path: Path) -> str:

@@ -165,7 +165,8 @@ def test_package_dir_of_setup_files_is_honoured(in_directory):
             "one/src/__init__.py": "",
             "one/src/robot/__init__.py": "",
             "one/src/robot/arm.py": "",
-            "two/setup.py": "d = generate_distutils_setup(package_dir={'eye': 'python'})\nsetup(**d)\n",
+            "two/setup.py": "from catkin_pkg.python_setup import generate_distutils_setup\n"
+            "from setuptools import setup\nd = generate_distutils_setup(package_dir={'eye': 'python'})\nsetup(**d)\n",
             "two/python/__init__.py": "",
             "two/python/lens.py": "",
             "three/setup.cfg": "[options]\npackage_dir =\n    ear = lib\n",
