@@ -174,10 +174,9 @@ def _bytes(file: Path) -> bytes:
 def _read(file: Path, workspace: Workspace) -> Launch:
     if not file.is_file():
         raise SettingsError(f"tarl.start: there is no launch file {file}.")
-    from tarl_lint.workspace.launch_py import read_python
-    from tarl_lint.workspace.launch_xml import read_xml
+    from tarl_lint.workspace.launch_read import read_launch
 
-    return read_python(file, workspace) if file.suffix == ".py" else read_xml(file, workspace)
+    return read_launch(file, workspace)
 
 
 for known in (given, _bytes):

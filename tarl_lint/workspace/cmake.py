@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.model import Problem
 
 LARGEST: Final = 500_000  # bytes
@@ -47,11 +48,9 @@ def cmake(folder: Path, package: str) -> Cmake:
     """Return what the `CMakeLists.txt` in a folder installs, nothing without such a file."""
     path = folder / "CMakeLists.txt"
     try:
-        text = path.read_text("utf-8", errors="replace") if path.is_file() else ""
-    except OSError as error:
-        return Cmake(problems=(Problem(path, 0, f"it cannot be read: {error.strerror}"),))
-    if len(text) > LARGEST:
-        return Cmake(problems=(Problem(path, 0, f"it has more than {LARGEST:,} bytes"),))
+        text = read_text(path, LARGEST) if path.is_file() else ""
+    except UnreadableError as reason:
+        return Cmake(problems=(Problem(path, 0, str(reason)),))
     programs: dict[str, str] = {}
     packages: dict[str, str] = {}
     uses_setup = False

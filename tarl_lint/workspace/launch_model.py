@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 from tarl_lint.workspace.model import Problem
 
 Scalar = str | int | float | bool
+Kind = Literal["node", "container", "component"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +27,11 @@ class Setting:
 
 @dataclass(frozen=True, slots=True)
 class LaunchedNode:
-    """A node that a launch file starts. `settings` are its private parameters, in the order in which they are set."""
+    """A node that a launch file starts. `settings` are its private parameters, in the order in which they are set.
+
+    Names that only the robot knows stay symbolic: `/$(arg robot)`. `condition` is the condition of which only the
+    robot knows whether it holds, "" if the node is started in any case. For a component, `executable` is its class.
+    """
 
     package: str
     executable: str
@@ -36,6 +42,8 @@ class LaunchedNode:
     remaps: tuple[tuple[str, str], ...] = ()
     settings: tuple[Setting, ...] = ()
     arguments: str = ""
+    kind: Kind = "node"
+    condition: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,248 +1,212 @@
-"""Read ROS 2 launch files in Python by interpreting their calls: nodes with names, remappings and parameters.
-
-Nothing is executed. Substitutions whose value is constant are replaced; launch arguments have their defaults.
-"""
+"""Read ROS 2 launch files in Python by interpreting their calls. Nothing is executed."""
 
 from __future__ import annotations
 
-import posixpath
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Final
 
-from tarl_lint.workspace.expressions import Library, Unknown
-from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
-from tarl_lint.workspace.model import Workspace
-from tarl_lint.workspace.statements import Interpreter
+from tarl_lint.workspace.expressions import Unknown
+from tarl_lint.workspace.launch_run import Action, Condition, Quoted
+from tarl_lint.workspace.launch_values import (
+    Choice,
+    Comparison,
+    Configuration,
+    Context,
+    Expression,
+    Here,
+    Joined,
+    Logic,
+    OnRobot,
+    Package,
+)
+from tarl_lint.workspace.model import Problem, Workspace
+from tarl_lint.workspace.statements import Function, Interpreter
 
-LARGEST: Final = 1_000_000  # bytes of a YAML file
-_NODES: Final = ("launch_ros.actions.Node", "launch_ros.actions.LifecycleNode")
-
-
-@dataclass(frozen=True)
-class _Argument:
-    """`LaunchConfiguration(name)`."""
-
-    name: str
-    default: Any = None
-
-
-@dataclass(frozen=True)
-class _Joined:
-    """A text from parts: a list of substitutions, or a path."""
-
-    parts: tuple[Any, ...]
-    between: str = ""
-
-
-@dataclass(frozen=True)
-class _Action:
-    """A node, group, declaration or namespace; `line` is that of its call."""
-
-    kind: str
-    line: int
-    values: dict[str, Any] = field(default_factory=dict)
-    readable: frozenset[str] = frozenset({"add_action"})
-
-    def add_action(self, action: Any) -> None:
-        """Add to a launch description or group."""
-        self.values.setdefault("actions", []).append(action)
-
-
-@dataclass
-class _Place:
-    namespace: str = "/"
-    arguments: dict[str, Any] = field(default_factory=dict)
-    remaps: tuple[tuple[str, str], ...] = ()
+_ACTIONS: Final = {
+    "launch.LaunchDescription": ("group", "actions"),
+    "launch.actions.DeclareLaunchArgument": ("argument", "name"),
+    "launch.actions.SetLaunchConfiguration": ("set", "name", "value"),
+    "launch.actions.UnsetLaunchConfiguration": ("unset", "name"),
+    "launch.actions.IncludeLaunchDescription": ("include", "source"),
+    "launch_ros.actions.Node": ("node",),
+    "launch_ros.actions.LifecycleNode": ("node",),
+    "launch_ros.actions.ComposableNodeContainer": ("container",),
+    "launch_ros.actions.LoadComposableNodes": ("load",),
+    "launch_ros.descriptions.ComposableNode": ("component",),
+    "launch_ros.actions.PushRosNamespace": ("namespace", "namespace"),
+    "launch_ros.actions.PushROSNamespace": ("namespace", "namespace"),
+    "launch_ros.actions.SetRemap": ("remap", "src", "dst"),
+    "launch_ros.actions.SetParameter": ("parameter", "name", "value"),
+    "launch_ros.actions.SetParametersFromFile": ("parameter file", "filename"),
+    "launch_ros.parameter_descriptions.ParameterFile": ("parameters of a file", "param_file"),
+    "launch_ros.descriptions.ParameterFile": ("parameters of a file", "param_file"),
+}
+_HOMES: Final = (
+    "description",
+    "substitution",
+    "action",
+)  # modules below launch that repeat what is above them
+_EVENTS: Final = ("on_exit", "on_start", "on_stdout", "on_stderr", "on_completion", "entities")
 
 
-class _Reader:
-    """Interprets one file and goes through its launch description."""
+class _File:
+    """The interpretation of one launch file."""
 
     def __init__(self, path: Path, workspace: Workspace) -> None:
         self.path, self.workspace = path, workspace
-        self.nodes: list[LaunchedNode] = []
         self.file = Interpreter(path, self._models())
 
-    def read(self) -> Launch:
-        """Return what the file starts."""
+    def actions(self, problems: list[Problem]) -> Any:
+        """Return the launch description; what cannot be read goes to `problems`, now and when functions are called."""
+        self.file.problems = problems
         self.file.run()
         description = self.file.called("generate_launch_description")
-        if isinstance(description, _Action):
-            self._actions(description.values.get("actions"), _Place())
-        else:
-            self.file.problem(0, "generate_launch_description returns nothing that can be followed")
-        return Launch(self.path, tuple(self.nodes), (), tuple(self.file.problems))
+        if isinstance(description, Action):
+            return description
+        self.file.problem(0, "generate_launch_description returns nothing that can be followed")
+        return ()
 
     def _models(self) -> dict[str, Any]:
-        models: dict[str, Any] = {name: self._action("node") for name in _NODES}
+        models: dict[str, Any] = {name: self._action(*made) for name, made in _ACTIONS.items()}
         models |= {
-            "launch.LaunchDescription": self._action("group", "actions"),
-            "launch.launch_description.LaunchDescription": self._action("group", "actions"),
-            "launch.actions.GroupAction": self._action("group", "actions"),
-            "launch.actions.DeclareLaunchArgument": self._action("argument", "name"),
-            "launch.actions.SetLaunchConfiguration": self._action("set", "name", "value"),
-            "launch_ros.actions.PushRosNamespace": self._action("namespace", "namespace"),
-            "launch_ros.actions.SetRemap": self._action("remap", "src", "dst"),
-            "launch.substitutions.LaunchConfiguration": _argument,
-            "launch.substitutions.TextSubstitution": lambda text="": text,
-            "launch.substitutions.PathJoinSubstitution": lambda parts: _Joined(tuple(parts), "/"),
-            "launch_ros.substitutions.FindPackageShare": self._folder,
-            "launch_ros.substitutions.FindPackage": self._folder,
-            "launch_ros.parameter_descriptions.ParameterValue": lambda value, **_: value,
-            "launch_ros.descriptions.ParameterValue": lambda value, **_: value,
-            "launch_ros.parameter_descriptions.ParameterFile": lambda param_file, **_: param_file,
-            "launch.substitutions.ThisLaunchFileDir": lambda: str(self.path.parent),
-            "ament_index_python.packages.get_package_share_directory": self._folder,
-            "ament_index_python.get_package_share_directory": self._folder,
-        }
-        module = "launch.substitutions"
-        return models | {
-            f"{module}.launch_configuration.LaunchConfiguration": models[f"{module}.LaunchConfiguration"]
-        }
+            "launch.actions.GroupAction": self._group,
+            "launch.actions.OpaqueFunction": self._opaque,
+            "launch.actions.TimerAction": self._action("group", "period"),
+            "launch.actions.RegisterEventHandler": self._handler,
+            **{f"launch.actions.{name}": self._action("other") for name in (
+                "ExecuteProcess", "LogInfo", "SetEnvironmentVariable", "AppendEnvironmentVariable", "EmitEvent",
+                "UnsetEnvironmentVariable", "Shutdown", "ExecuteLocal")},
+            **{f"launch.event_handlers.{name}": self._action("event") for name in (
+                "OnProcessExit", "OnProcessStart", "OnShutdown", "OnExecutionComplete")},
+            "launch_ros.event_handlers.OnStateTransition": self._action("event"),
+            "launch_ros.actions.SetUseSimTime": lambda value: self._action("parameter", "name", "value")(
+                "use_sim_time", value),
+            "launch.conditions.IfCondition": Condition,
+            "launch.conditions.UnlessCondition": lambda value: Condition(value, wanted=False),
+            "launch.conditions.LaunchConfigurationEquals": lambda name, value: Condition(value, name=name),
+            "launch.conditions.LaunchConfigurationNotEquals": lambda name, value: Condition(
+                value, wanted=False, name=name),
+            **_substitutions(),
+            **self._packages(),
+        }  # fmt: skip
+        repeated = {}
+        for name, model in models.items():
+            first, second, *last = name.split(".")
+            if last:
+                snake = "".join(f"_{c.lower()}" if c.isupper() else c for c in last[0]).lstrip("_")
+                repeated[f"{first}.{second}.{snake}.{last[0]}"] = model
+        models["launch.launch_description.LaunchDescription"] = models["launch.LaunchDescription"]
+        return repeated | models
 
-    def _action(self, kind: str, *names: str) -> Callable[..., _Action]:
-        def make(*values: Any, **keywords: Any) -> _Action:
-            return _Action(kind, self.file.line, {**dict(zip(names, values, strict=False)), **keywords})
+    def _packages(self) -> dict[str, Any]:
+        models: dict[str, Any] = {
+            f"launch_ros.substitutions.{name}": Package for name in ("FindPackageShare", "FindPackage")
+        }
+        for module in ("ament_index_python", "ament_index_python.packages"):
+            models[f"{module}.get_package_share_directory"] = self._folder
+            models[f"{module}.get_package_share_path"] = self._folder
+        models["launch_ros.substitutions.FindPackagePrefix"] = lambda name: OnRobot(f"find-pkg-prefix {name}")
+        return models
+
+    def _action(self, kind: str, *names: str) -> Callable[..., Action]:
+        def make(*values: Any, **keywords: Any) -> Action:
+            given = {**dict(zip(names, values, strict=False)), **keywords}
+            for old, new in (("node_executable", "executable"), ("node_name", "name"), ("node_plugin", "plugin"),
+                             ("node_namespace", "namespace"), ("launch_arguments", "arguments"),
+                             ("launch_description_source", "source"),
+                             ("composable_node_descriptions", "components")):  # fmt: skip
+                if old in given and (kind != "node" or old != "launch_arguments"):
+                    given.setdefault(new, given.pop(old))
+            if kind == "group":  # a list that is added to later belongs to this action alone
+                given["actions"] = list(given.get("actions") or given.get("initial_entities") or [])
+            return Action(kind, self.file.line, given)
 
         return make
 
+    def _group(self, actions: Any = (), **keywords: Any) -> Action:
+        return self._action("group", "actions")(actions, **{"scoped": True, **keywords})
+
+    def _handler(self, handler: Any = None, **keywords: Any) -> Action:
+        """Return the actions of an event handler: they are started when the event comes."""
+        handler = keywords.pop("event_handler", handler)
+        values = handler.values if isinstance(handler, Action) else {}
+        return self._action("group", "actions")([values[key] for key in _EVENTS if key in values], **keywords)
+
+    def _opaque(self, function: Any = None, **keywords: Any) -> Action:
+        line, args, named = self.file.line, keywords.pop("args", None), keywords.pop("kwargs", None)
+
+        def made(context: Context) -> Any:
+            given = args if isinstance(args, list | tuple) else ()
+            stated = named if isinstance(named, dict) else {}
+            if not isinstance(function, Function):
+                return Unknown(line, "OpaqueFunction")
+            return self.file.entered(function, [context, *given], dict(stated))
+
+        return self._action("opaque")(made=made, **keywords)
+
     def _folder(self, package: Any, *_: Any) -> Any:
         known = self.workspace.package(package) if isinstance(package, str) else None
-        return str(known.folder) if known is not None else Unknown(self.file.line, f"the folder of {package}")
-
-    def _actions(self, actions: Any, place: _Place) -> None:
-        for action in actions if isinstance(actions, list | tuple) else ():
-            if isinstance(action, list | tuple):
-                self._actions(action, place)
-            elif isinstance(action, _Action):
-                self._one(action, place)
-            elif isinstance(action, Unknown):
-                self.file.problem(action.line, f"`{action.text}` is not followed")
-
-    def _one(self, action: _Action, place: _Place) -> None:
-        values = action.values
-        if action.kind == "argument":
-            place.arguments.setdefault(str(values.get("name")), values.get("default_value"))
-        elif action.kind == "set":
-            place.arguments[str(values.get("name"))] = values.get("value")
-        elif action.kind == "group":
-            self._actions(values.get("actions"), replace(place, arguments=dict(place.arguments)))
-        elif action.kind == "namespace":
-            place.namespace = _joined(place.namespace, _text(values.get("namespace"), place) or "")
-        elif action.kind == "remap":
-            place.remaps = (*place.remaps, *_pairs([(values.get("src"), values.get("dst"))], place))
-        elif action.kind == "node":
-            self._node(action, place)
-
-    def _node(self, action: _Action, place: _Place) -> None:
-        values = action.values
-        found = {key: _text(values.get(key), place) for key in ("package", "executable", "name", "namespace")}
-        package, executable = (
-            found["package"],
-            found["executable"] or _text(values.get("node_executable"), place),
-        )
-        if package is None or executable is None:
-            self.file.problem(action.line, "package or executable of a node is not constant")
-            return
-        node = LaunchedNode(
-            package,
-            executable,
-            found["name"] or _text(values.get("node_name"), place) or "",
-            _joined(place.namespace, found["namespace"] or ""),
-            self.path,
-            action.line,
-            (*place.remaps, *_pairs(values.get("remappings"), place)),
-            tuple(self._settings(values.get("parameters"), place, action.line)),
-        )
-        self.nodes.append(node)
-
-    def _settings(self, parameters: Any, place: _Place, line: int) -> Iterator[Setting]:
-        for one in parameters if isinstance(parameters, list | tuple) else ():
-            if isinstance(one, dict):
-                yield from self._stated(one, place, line, "")
-                continue
-            name = _text(one, place)
-            path = Path(name) if name is not None else None
-            if path is None or not path.is_file() or path.stat().st_size > LARGEST:
-                self.file.problem(line, f"the parameter file {name or 'of a node'} is not known here")
-                continue
-            yield Setting("~", path, yaml=path.read_text("utf-8", errors="replace"))
-
-    def _stated(self, values: Mapping[Any, Any], place: _Place, line: int, above: str) -> Iterator[Setting]:
-        for key, value in values.items():
-            name = _text(key, place)
-            if name is None:
-                continue
-            if isinstance(value, dict):
-                yield from self._stated(value, place, line, f"{above}{name}.")
-                continue
-            plain = _plain(value, place)
-            if plain is None:
-                self.file.problem(line, f"the parameter {above}{name} is not constant")
-            elif isinstance(plain, str) and not isinstance(value, str):
-                yield Setting(
-                    f"~{above}{name}", self.path, yaml=plain
-                )  # ROS 2 reads what arguments say as YAML
-            elif isinstance(plain, list):
-                yield Setting(f"~{above}{name}", self.path, yaml=repr(plain))
-            else:
-                yield Setting(f"~{above}{name}", self.path, plain)
-
-
-def _argument(name: Any, *_: Any, default: Any = None, **__: Any) -> Any:
-    return _Argument(name, default) if isinstance(name, str) else Unknown(0, "a launch argument")
-
-
-def _text(value: Any, place: _Place) -> str | None:
-    """Return the text of a value with its substitutions, None where it is not constant."""
-    if isinstance(value, str):
-        return value
-    if isinstance(value, _Argument):
-        inner = place.arguments.get(value.name, value.default)
-        others = {
-            key: one for key, one in place.arguments.items() if key != value.name
-        }  # one may name itself
-        return _text(inner if inner != value else value.default, replace(place, arguments=others))
-    if isinstance(value, _Joined | list | tuple):
-        parts = value.parts if isinstance(value, _Joined) else tuple(value)
-        texts = [_text(part, place) for part in parts]
-        known = [one for one in texts if one is not None]
-        if len(known) < len(texts):
-            return None
         return (
-            posixpath.join(*known)
-            if isinstance(value, _Joined) and value.between and known
-            else "".join(known)
+            str(known.folder) if known is not None else Unknown(self.file.line, f"find-pkg-share {package}")
         )
-    return None
 
 
-def _plain(value: Any, place: _Place) -> Any:
-    """Return a constant parameter value, None where it is none."""
-    if isinstance(value, bool | int | float | str):
-        return value
-    if isinstance(value, list | tuple) and all(isinstance(one, bool | int | float) for one in value):
-        return list(value)
-    if isinstance(value, list) and len(value) > 1 and all(isinstance(one, str) for one in value):
-        return list(value)
-    return None if isinstance(value, Unknown | Library) else _text(value, place)
+def _substitutions() -> dict[str, Any]:
+    module = "launch.substitutions"
+    sources = ("PythonLaunchDescriptionSource", "AnyLaunchDescriptionSource", "FrontendLaunchDescriptionSource",
+               "XMLLaunchDescriptionSource", "YAMLLaunchDescriptionSource")  # fmt: skip
+    homes = ("launch.launch_description_sources", "launch_xml.launch_description_sources",
+             "launch_yaml.launch_description_sources")  # fmt: skip
+    return {
+        f"{module}.LaunchConfiguration": _configuration,
+        f"{module}.TextSubstitution": lambda text="": text,
+        f"{module}.PathJoinSubstitution": lambda parts: Joined(_parts(parts), "/"),
+        f"{module}.PathSubstitution": lambda path: Joined(_parts(path), "/"),
+        f"{module}.PythonExpression": lambda expression, *_, **__: Expression(_parts(expression)),
+        f"{module}.ThisLaunchFileDir": Here,
+        f"{module}.ThisLaunchFile": lambda: Here(whole=True),
+        f"{module}.EnvironmentVariable": _environment,
+        f"{module}.Command": lambda *_, **__: OnRobot("command"),
+        f"{module}.FindExecutable": lambda *_, **__: OnRobot("find-exec"),
+        f"{module}.AnonName": lambda name: Joined(_parts(name)),
+        f"{module}.EqualsSubstitution": Comparison,
+        f"{module}.NotEqualsSubstitution": lambda left, right: Comparison(left, right, equal=False),
+        f"{module}.NotSubstitution": lambda value: Logic("not", (value,)),
+        f"{module}.AndSubstitution": lambda *values: Logic("and", values),
+        f"{module}.OrSubstitution": lambda *values: Logic("or", values),
+        f"{module}.IfElseSubstitution": _choice,
+        "launch_ros.parameter_descriptions.ParameterValue": _value,
+        "launch_ros.descriptions.ParameterValue": _value,
+        **{f"{home}.{name}": lambda location, **_: location for home in homes for name in sources},
+    }
 
 
-def _pairs(remaps: Any, place: _Place) -> Iterator[tuple[str, str]]:
-    for one in remaps if isinstance(remaps, list | tuple) else ():
-        if isinstance(one, tuple | list) and len(one) == 2:
-            old, new = _text(one[0], place), _text(one[1], place)
-            if old is not None and new is not None:
-                yield old, new
+def _configuration(variable_name: Any, *, default: Any = None, **_: Any) -> Configuration:
+    return Configuration(_hashed(variable_name), _hashed(default))
 
 
-def _joined(namespace: str, name: str) -> str:
-    whole = name if name.startswith("/") else f"{namespace}/{name}"
-    return "/" + "/".join(part for part in whole.split("/") if part)
+def _environment(name: Any, default_value: Any = None, **_: Any) -> OnRobot:
+    return OnRobot(f"env {name}" if isinstance(name, str) else "env", _hashed(default_value))
 
 
-def read_python(path: Path, workspace: Workspace) -> Launch:
-    """Return what a ROS 2 launch file in Python starts, with the defaults of its arguments."""
-    return _Reader(path, workspace).read()
+def _choice(condition: Any, if_value: Any = "", else_value: Any = "") -> Choice:
+    return Choice(_hashed(condition), _hashed(if_value), _hashed(else_value))
+
+
+def _value(value: Any, value_type: Any = None, **_: Any) -> Quoted:
+    return Quoted(value, "str" if value_type is str else "")
+
+
+def _parts(value: Any) -> tuple[Any, ...]:
+    return tuple(map(_hashed, value)) if isinstance(value, list | tuple) else (value,)
+
+
+def _hashed(value: Any) -> Any:
+    """Return a value of which dict keys can be made."""
+    return tuple(map(_hashed, value)) if isinstance(value, list | tuple) else value
+
+
+def actions_of_python(path: Path, workspace: Workspace, problems: list[Problem]) -> Any:
+    """Return the actions of a launch file in Python."""
+    return _File(path, workspace).actions(problems)

@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final
-from xml.etree.ElementTree import Element, TreeBuilder
-from xml.parsers import expat
+from typing import Final
+from xml.etree.ElementTree import Element
 
+from tarl_lint.workspace.bounded_files import UnreadableError, read_text
+from tarl_lint.workspace.launch_documents import LINE, xml_root
 from tarl_lint.workspace.launch_model import Launch, LaunchedNode, Setting
 from tarl_lint.workspace.model import Problem, Workspace
+from tarl_lint.workspace.ros_names import joined
 from tarl_lint.workspace.substitutions import Scope, SymbolicError, scalar
 
 DEEPEST: Final = 20  # files that include each other
 LARGEST: Final = 1_000_000  # bytes of a launch, text or YAML file
 MOST: Final = 5_000  # elements of a launch file with all that it includes
-_LINE: Final = "\0line"  # no attribute of XML has this name
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,7 @@ class _Place:
     remaps: tuple[tuple[str, str], ...] = ()
     private: tuple[Setting, ...] = ()  # of all nodes that follow
     depth: int = 0
+    condition: str = ""  # around this place, known on the robot only
 
 
 @dataclass
@@ -40,7 +42,7 @@ class _Reader:
 
     def file(self, path: Path, arguments: Mapping[str, str | None], place: _Place | None) -> None:
         """Read a launch file with the arguments that it is given."""
-        root = self._parsed(path)
+        root = xml_root(path, self.problems)
         if root is not None:
             scope = Scope(self.workspace, path, dict(arguments))
             here = _Place(scope) if place is None else replace(place, scope=scope, depth=place.depth + 1)
@@ -53,22 +55,22 @@ class _Reader:
             if self.seen > MOST:
                 return
             try:
-                if self._holds(element, place):
-                    place = self._element(element, place)
+                holds, unsure = self._holds(element, place)
+                if holds:
+                    inside = replace(place, condition=unsure) if unsure else place
+                    place = replace(self._element(element, inside), condition=place.condition)
             except SymbolicError as reason:
                 self._problem(element, place, f"<{element.tag}>: {reason}")
 
     def _element(self, element: Element, place: _Place) -> _Place:
         """Read one element; return the place of those that follow."""
-        text = place.scope.text
         if element.tag == "arg":
             return self._argument(element, place)
         if element.tag == "remap":
-            return replace(
-                place, remaps=(*place.remaps, (text(element.get("from", "")), text(element.get("to", ""))))
-            )
+            pair = self._name(element, "from", place), self._name(element, "to", place)
+            return replace(place, remaps=(*place.remaps, pair))
         if element.tag == "group":
-            namespace = _joined(place.namespace, text(element.get("ns", "")))
+            namespace = joined(place.namespace, self._name(element, "ns", place))
             self.elements(element, replace(place, namespace=namespace))
         elif element.tag == "include":
             self._include(element, place)
@@ -104,22 +106,21 @@ class _Reader:
         if element.get("pass_all_args", "").lower() in ("true", "1"):
             given = dict(place.scope.arguments)
         for one in element:
-            if one.tag == "arg" and self._holds(one, place):
+            if one.tag == "arg" and self._holds(one, place)[0]:
                 try:
                     given[one.get("name", "")] = place.scope.text(one.get("value", one.get("default", "")))
                 except SymbolicError as reason:
                     given[one.get("name", "")] = None
                     self._problem(one, place, f"<arg name={one.get('name')!r}>: {reason}")
-        namespace = _joined(place.namespace, place.scope.text(element.get("ns", "")))
+        namespace = joined(place.namespace, self._name(element, "ns", place))
         self.file(path, given, replace(place, namespace=namespace))
 
     def _node(self, element: Element, place: _Place) -> None:
-        text = place.scope.text
-        package, executable, name = (text(element.get(key, "")) for key in ("pkg", "type", "name"))
+        package, executable, name = (self._name(element, key, place) for key in ("pkg", "type", "name"))
         inner, settings = place, list(place.private)
         for one in element:
             try:
-                if not self._holds(one, place):
+                if not self._holds(one, place)[0]:
                     continue
                 if one.tag == "remap":
                     inner = self._element(one, inner)
@@ -128,13 +129,9 @@ class _Reader:
                     settings += [setting] if setting is not None else []
             except SymbolicError as reason:
                 self._problem(one, place, f"<{one.tag}> of {name}: {reason}")
-        namespace = _joined(place.namespace, text(element.get("ns", "")))
-        try:
-            arguments = text(element.get("args", ""))
-        except SymbolicError as reason:
-            arguments = ""
-            self._problem(element, place, f"args of {name}: {reason}")
-        line = int(element.get(_LINE, "0"))
+        namespace = joined(place.namespace, self._name(element, "ns", place))
+        arguments = self._name(element, "args", place)
+        line = int(element.get(LINE, "0"))
         self.nodes.append(
             LaunchedNode(
                 package,
@@ -146,6 +143,7 @@ class _Reader:
                 inner.remaps,
                 tuple(settings),
                 arguments,
+                condition=place.condition,
             )
         )
 
@@ -175,35 +173,32 @@ class _Reader:
             content = text(content)
         return Setting(_parameter(above, name.strip("/")), path, yaml=content)
 
-    def _holds(self, element: Element, place: _Place) -> bool:
-        """Tell whether `if` and `unless` let an element count; one whose condition is unknown counts."""
+    def _name(self, element: Element, key: str, place: _Place) -> str:
+        """Return an attribute in which stays what only the robot knows."""
+        text, reasons = place.scope.symbolic(element.get(key, ""))
+        for reason in reasons:
+            self._problem(element, place, f"{key} of <{element.tag}>: {reason}")
+        return text
+
+    def _holds(self, element: Element, place: _Place) -> tuple[bool, str]:
+        """Return whether `if` and `unless` let an element count, and a condition that is unknown: then it counts."""
         for key, wanted in (("if", True), ("unless", False)):
             if key in element.attrib:
                 try:
-                    return scalar(place.scope.text(element.attrib[key]), "bool") is wanted
+                    return scalar(place.scope.text(element.attrib[key]), "bool") is wanted, ""
                 except SymbolicError as reason:
                     self._problem(element, place, f"{key} of <{element.tag}>: {reason}")
-        return True
+                    return True, f"{key} {element.attrib[key]}"
+        return True, ""
 
     def _read(self, path: Path) -> str:
         try:
-            if path.stat().st_size > LARGEST:
-                raise SymbolicError(f"{path.name} has more than {LARGEST:,} bytes")
-            return path.read_text("utf-8", errors="replace")
-        except OSError as error:
-            raise SymbolicError(f"{path} cannot be read: {error.strerror}") from None
-
-    def _parsed(self, path: Path) -> Element | None:
-        try:
-            return _tree(self._read(path))
-        except SymbolicError as reason:
-            self.problems.append(Problem(path, 0, str(reason)))
-        except (expat.ExpatError, AssertionError) as error:
-            self.problems.append(Problem(path, getattr(error, "lineno", 0), f"it is not XML: {error}"))
-        return None
+            return read_text(path, LARGEST)
+        except UnreadableError as reason:
+            raise SymbolicError(f"{path.name}: {reason}") from None
 
     def _problem(self, element: Element, place: _Place, reason: str) -> None:
-        self.problems.append(Problem(place.scope.file, int(element.get(_LINE, "0")), reason))
+        self.problems.append(Problem(place.scope.file, int(element.get(LINE, "0")), reason))
 
 
 def read_xml(path: Path, workspace: Workspace, arguments: Mapping[str, str] | None = None) -> Launch:
@@ -213,30 +208,8 @@ def read_xml(path: Path, workspace: Workspace, arguments: Mapping[str, str] | No
     return Launch(path, tuple(reader.nodes), tuple(reader.settings), tuple(reader.problems))
 
 
-def _tree(text: str) -> Element:
-    """Return the root element; the line of each element is its attribute `_LINE`. Entities are refused."""
-    builder, parser = TreeBuilder(), expat.ParserCreate()
-
-    def start(tag: str, attributes: dict[str, str]) -> None:
-        builder.start(tag, {**attributes, _LINE: str(parser.CurrentLineNumber)})
-
-    def refuse(*_: Any) -> None:
-        raise SymbolicError("it declares entities")
-
-    parser.StartElementHandler, parser.EndElementHandler = start, builder.end
-    parser.CharacterDataHandler, parser.EntityDeclHandler = builder.data, refuse
-    parser.Parse(text.encode(), True)
-    return builder.close()
-
-
-def _joined(namespace: str, name: str) -> str:
-    """Return a namespace within another one; an absolute name stands for itself."""
-    whole = name if name.startswith("/") else f"{namespace}/{name}"
-    return "/" + "/".join(part for part in whole.split("/") if part)
-
-
 def _parameter(above: str, name: str) -> str:
     """Return the name of a parameter: private within a node, or with `~`; else absolute."""
     if name.startswith("~") or (above == "~" and not name.startswith("/")):
         return "~" + name.lstrip("~").strip("/")
-    return _joined(above if above != "~" else "/", name)
+    return joined(above if above != "~" else "/", name)

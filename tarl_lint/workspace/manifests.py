@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 from xml.etree import ElementTree
 
+from tarl_lint.workspace.bounded_files import UnreadableError, read_bytes
 from tarl_lint.workspace.model import Kind, Problem
 
 LARGEST: Final = 200_000  # bytes
@@ -40,11 +41,11 @@ def manifest(folder: Path) -> tuple[Manifest, list[Problem]]:
 
 def _root(path: Path) -> tuple[ElementTree.Element | None, str]:
     try:
-        text = path.read_bytes()
-    except OSError as error:
-        return None, f"it cannot be read: {error.strerror}"
-    if len(text) > LARGEST or re.search(rb"<!(DOCTYPE|ENTITY)", text):
-        return None, "it is too large, or declares entities"
+        text = read_bytes(path, LARGEST)
+    except UnreadableError as reason:
+        return None, str(reason)
+    if re.search(rb"<!(DOCTYPE|ENTITY)", text):
+        return None, "it declares entities"
     try:
         return ElementTree.fromstring(text), ""  # noqa: S314 - without entities, nothing expands
     except (ElementTree.ParseError, ValueError, LookupError) as error:

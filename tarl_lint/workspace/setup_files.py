@@ -9,10 +9,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
+from tarl_lint.workspace.bounded_files import UnreadableError, read_text
 from tarl_lint.workspace.expressions import Library, Unknown
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.statements import Interpreter
 
+LARGEST: Final = 200_000  # bytes of setup.cfg
 _CONSOLE: Final = re.compile(r"^\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*(?:\[.*\])?\s*$")
 _SCANNED: Final = frozenset({"setuptools.find_packages", "setuptools.find_namespace_packages"})
 
@@ -73,8 +75,11 @@ def _from_cfg(path: Path, problems: list[Problem]) -> dict[str, Any]:
     """Return what `setup.cfg` says, in the form of the arguments of `setup`."""
     parser = configparser.ConfigParser(interpolation=None, strict=False)
     try:
-        parser.read_string(path.read_text("utf-8", errors="replace"))
-    except (OSError, configparser.Error) as error:
+        parser.read_string(read_text(path, LARGEST))
+    except UnreadableError as reason:
+        problems.append(Problem(path, 0, str(reason)))
+        return {}
+    except configparser.Error as error:
         problems.append(Problem(path, 0, f"it cannot be read: {str(error).splitlines()[0]}"))
         return {}
     given: dict[str, Any] = {}

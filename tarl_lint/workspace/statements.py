@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from tarl_lint.workspace.bounded_files import UnreadableError, read_bytes
 from tarl_lint.workspace.expressions import Evaluator, Library, Unknown, unknown
 from tarl_lint.workspace.model import Problem
 
@@ -75,9 +76,21 @@ class Interpreter(Evaluator):
         finally:
             self.line = before
 
+    def entered(self, function: Function, args: list[Any], keywords: dict[str, Any]) -> Any:
+        """Return what a function of the file returns, `Unknown` where it cannot be followed."""
+        try:
+            return self._enter(function, args, keywords)
+        except (_Left, RecursionError):
+            return Unknown(function.node.lineno, function.node.name)
+
     def problem(self, line: int, reason: str) -> None:
         """Take note of something that cannot be read."""
         self.problems.append(Problem(self.file, line, reason))
+
+    def _lambda(self, node: ast.Lambda, names: Mapping[str, Any]) -> Any:
+        body: list[ast.stmt] = [ast.copy_location(ast.Return(node.body), node.body)]
+        made = ast.FunctionDef(name="lambda", args=node.args, body=body, decorator_list=[])
+        return Function(ast.copy_location(made, node), dict(names))
 
     def _enter(self, function: Function, args: list[Any], keywords: dict[str, Any]) -> Any:
         parameters = function.node.args
@@ -208,13 +221,9 @@ class Interpreter(Evaluator):
 def parsed(file: Path, problems: list[Problem]) -> ast.Module | None:
     """Return the syntax tree of a file, None with a problem where it cannot be read or parsed."""
     try:
-        text = file.read_bytes()
-        if len(text) > LARGEST:
-            problems.append(Problem(file, 0, f"it has more than {LARGEST:,} bytes"))
-            return None
-        return ast.parse(text)
-    except OSError as error:
-        problems.append(Problem(file, 0, f"it cannot be read: {error.strerror}"))
+        return ast.parse(read_bytes(file, LARGEST))
+    except UnreadableError as reason:
+        problems.append(Problem(file, 0, str(reason)))
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = getattr(error, "lineno", 0) or 0
         problems.append(Problem(file, line, f"it is not Python 3: {getattr(error, 'msg', error)}"))

@@ -37,6 +37,19 @@ class Scope:
             return str(self._evaluated(text[len("$(eval ") : -1]))
         return _ARGUMENT.sub(lambda found: self._replaced(found[1].split()), text)
 
+    def symbolic(self, text: str) -> tuple[str, list[str]]:
+        """Return a text in which stays what only the robot knows, as `$(arg robot)`, and the reasons."""
+        reasons: list[str] = []
+
+        def replaced(found: re.Match[str]) -> str:
+            try:
+                return self.text(found[0])
+            except SymbolicError as reason:
+                reasons.append(str(reason))
+                return found[0]
+
+        return _ARGUMENT.sub(replaced, text), reasons
+
     def _replaced(self, words: list[str]) -> str:
         command, *rest = words or [""]
         if command == "find" and len(rest) == 1:

@@ -1,0 +1,125 @@
+"""Parse launch files in XML and YAML into elements with lines. XML entities and YAML tags are refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final
+from xml.etree.ElementTree import Element, TreeBuilder
+from xml.parsers import expat
+
+from tarl_lint.workspace.bounded_files import UnreadableError, read_text
+from tarl_lint.workspace.launch_entities import Entity
+from tarl_lint.workspace.model import Problem
+
+LARGEST: Final = 1_000_000  # bytes
+MOST: Final = 5_000  # elements
+LINE: Final = "\0line"  # no attribute of XML has this name
+_LISTS: Final = ("launch", "group", "timer")  # of YAML: their elements are named by the key of a mapping
+
+
+def xml_tree(text: str) -> Element:
+    """Return the root element; the line of each element is its attribute `LINE`.
+
+    Raises UnreadableError for entities, ExpatError for what is not XML.
+    """
+    builder, parser = TreeBuilder(), expat.ParserCreate()
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        builder.start(tag, {**attributes, LINE: str(parser.CurrentLineNumber)})
+
+    def refuse(*_: Any) -> None:
+        raise UnreadableError("it declares entities")
+
+    parser.StartElementHandler, parser.EndElementHandler = start, builder.end
+    parser.CharacterDataHandler, parser.EntityDeclHandler = builder.data, refuse
+    parser.Parse(text.encode(), True)
+    return builder.close()
+
+
+def xml_root(path: Path, problems: list[Problem]) -> Element | None:
+    """Return the root element of a file, None with a problem where it cannot be read."""
+    try:
+        return xml_tree(read_text(path, LARGEST))
+    except UnreadableError as reason:
+        problems.append(Problem(path, 0, str(reason)))
+    except (expat.ExpatError, AssertionError) as error:
+        problems.append(Problem(path, getattr(error, "lineno", 0), f"it is not XML: {error}"))
+    return None
+
+
+def of_xml(element: Element) -> list[Entity]:
+    """Return the elements below an XML element."""
+    return [
+        Entity(
+            one.tag.replace("-", "_"),
+            int(one.get(LINE, "0")),
+            {key: value for key, value in one.attrib.items() if key != LINE},
+            of_xml(one),
+        )
+        for one in element
+    ]
+
+
+def of_yaml(path: Path, problems: list[Problem]) -> list[Entity]:
+    """Return the elements of a YAML launch file."""
+    try:
+        import yaml
+    except ModuleNotFoundError:
+        problems.append(Problem(path, 0, "reading YAML needs PyYAML: run pip install PyYAML"))
+        return []
+    try:
+        root = yaml.compose(read_text(path, LARGEST), Loader=yaml.SafeLoader)
+    except UnreadableError as reason:
+        problems.append(Problem(path, 0, str(reason)))
+        return []
+    except (yaml.YAMLError, RecursionError) as error:
+        problems.append(Problem(path, 0, f"it is not YAML: {' '.join(str(error).split())[:200]}"))
+        return []
+    pairs = getattr(root, "value", ())
+    launch = next((value for key, value in pairs if key.value == "launch"), None) if pairs else None
+    left = [MOST]
+    return _named(launch, left) if launch is not None else []
+
+
+def _named(node: Any, left: list[int]) -> list[Entity]:
+    """Return the elements of a list of mappings with one key each: the key is the tag."""
+    found: list[Entity] = []
+    for one in node.value if isinstance(node.value, list) else ():
+        for key, value in one.value if not isinstance(one, tuple) and isinstance(one.value, list) else ():
+            left[0] -= 1
+            if left[0] >= 0 and hasattr(key, "value"):
+                found.append(_entity(str(key.value), value, key.start_mark.line + 1, left))
+    return found
+
+
+def _entity(tag: str, node: Any, line: int, left: list[int]) -> Entity:
+    entity = Entity(tag.replace("-", "_"), line)
+    if isinstance(node.value, str):
+        return entity
+    if node.id == "sequence":
+        entity.children = _named(node, left)
+        return entity
+    for key, value in node.value:
+        name = str(key.value)
+        if isinstance(value.value, str):
+            entity.attributes[name.replace("-", "_") if name not in ("if",) else name] = value.value
+        elif name == "children" or (value.id == "sequence" and entity.tag in _LISTS):
+            entity.children += _named(value, left)
+        elif name == "value":
+            entity.attributes[name] = _flow(value, left)
+        elif value.id == "sequence":
+            for item in value.value:
+                left[0] -= 1
+                if left[0] >= 0 and item.id == "mapping":
+                    entity.children.append(_entity(name, item, item.start_mark.line + 1, left))
+    return entity
+
+
+def _flow(node: Any, left: list[int]) -> str:
+    """Return a list of a parameter value as text of YAML."""
+    left[0] -= 1
+    if left[0] < 0:
+        return ""
+    if isinstance(node.value, str):
+        return node.value
+    return f"[{', '.join(_flow(one, left) for one in node.value if hasattr(one, 'value'))}]"

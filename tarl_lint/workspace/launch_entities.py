@@ -1,0 +1,195 @@
+"""Read ROS 2 launch files in XML and YAML: their elements become the same actions that Python files make."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from tarl_lint.workspace.launch_run import Action, Condition, Quoted
+from tarl_lint.workspace.launch_values import (
+    Comparison,
+    Configuration,
+    Expression,
+    Here,
+    Joined,
+    Logic,
+    OnRobot,
+    Package,
+)
+
+_IGNORED: Final = frozenset(["executable", "set_env", "unset_env", "append_env", "reset_env", "log", "log_info",
+                             "shutdown", "keep", "env", "param", "remap", "ros_timer"])  # fmt: skip
+
+
+@dataclass
+class Entity:
+    """An element of XML, or a mapping of YAML with its name. Names have `_` where files may also have `-`."""
+
+    tag: str
+    line: int
+    attributes: dict[str, str] = field(default_factory=dict)
+    children: list[Entity] = field(default_factory=list)
+
+    def get(self, name: str) -> Any:
+        """Return an attribute with its substitutions, None if it is absent."""
+        text = self.attributes.get(name)
+        return None if text is None else substitutions(text)
+
+    def all(self, *tags: str) -> Iterator[Entity]:
+        """Yield the children with one of the tags."""
+        return (one for one in self.children if one.tag in tags)
+
+
+def actions(entities: list[Entity]) -> list[Action]:
+    """Return the actions of elements, in order."""
+    return [made for entity in entities for made in _made(entity)]
+
+
+def _made(entity: Entity) -> Iterator[Action]:
+    tag = entity.tag
+    if tag in _MAKERS:
+        kind, values = _MAKERS[tag]
+        yield Action(kind, entity.line, {**values(entity), **_condition(entity)})
+    elif tag not in _IGNORED:
+        yield Action("unread", entity.line, {"reason": f"<{tag}> is not followed"})
+
+
+def _group(entity: Entity) -> dict[str, Any]:
+    scoped = entity.tag == "group" and entity.attributes.get("scoped", "true").lower() != "false"
+    return {"actions": actions(entity.children), "scoped": scoped}
+
+
+def _include(entity: Entity) -> dict[str, Any]:
+    pairs = [(one.get("name"), one.get("value")) for one in entity.all("arg", "let")]
+    return {"source": entity.get("file"), "arguments": pairs}
+
+
+def _node(entity: Entity) -> dict[str, Any]:
+    get = entity.get
+    return {
+        "package": get("pkg"),
+        "executable": get("exec"),
+        "plugin": get("plugin"),
+        "name": get("name"),
+        "namespace": get("namespace"),
+        "arguments": get("args"),
+        "remappings": [(one.get("from"), one.get("to")) for one in entity.all("remap")],
+        "parameters": [_parameter(one) for one in entity.all("param")],
+        "components": [
+            Action("component", one.line, {**_node(one), **_condition(one)})
+            for one in entity.all("composable_node")
+        ],
+    }
+
+
+_NODE: Final = ("node", _node)
+_NAMESPACE: Final = ("namespace", lambda e: {"namespace": e.get("namespace")})
+_MAKERS: Final[Mapping[str, tuple[str, Callable[[Entity], dict[str, Any]]]]] = {
+    "arg": ("argument", lambda e: {"name": e.get("name"), "default_value": e.get("default")}),
+    "let": ("set", lambda e: {"name": e.get("name"), "value": e.get("value")}),
+    "group": ("group", _group),
+    "timer": ("group", _group),
+    "include": ("include", _include),
+    "push_ros_namespace": _NAMESPACE,
+    "push_namespace": _NAMESPACE,
+    "set_remap": ("remap", lambda e: {"src": e.get("from"), "dst": e.get("to")}),
+    "set_parameter": ("parameter", lambda e: {"name": e.get("name"), "value": _value(e)}),
+    "set_parameters_from_file": ("parameter file", lambda e: {"filename": e.get("filename")}),
+    "set_use_sim_time": ("parameter", lambda e: {"name": "use_sim_time", "value": _value(e)}),
+    "node": _NODE,
+    "lifecycle_node": _NODE,
+    "node_container": ("container", _node),
+    "load_composable_node": ("load", _node),
+}
+
+
+def _parameter(entity: Entity) -> Any:
+    if "from" in entity.attributes:
+        return entity.get("from")
+    return {entity.get("name"): _stated(entity)}
+
+
+def _stated(entity: Entity) -> Any:
+    inner = list(entity.all("param"))
+    return {one.get("name"): _stated(one) for one in inner} if inner else _value(entity)
+
+
+def _value(entity: Entity) -> Quoted:
+    return Quoted(entity.get("value"), "str" if entity.attributes.get("type") == "str" else "")
+
+
+def _condition(entity: Entity) -> dict[str, Condition]:
+    for name, wanted in (("if", True), ("unless", False)):
+        if name in entity.attributes:
+            return {"condition": Condition(entity.get(name), wanted=wanted)}
+    return {}
+
+
+def substitutions(text: str) -> Any:
+    """Return a text of XML or YAML with its `$(…)` as substitutions; a text without any as it is."""
+    parts: list[Any] = []
+    place = 0
+    while (start := text.find("$(", place)) >= 0:
+        end = _end(text, start)
+        if end < 0:
+            break
+        parts += [text[place:start]] if start > place else []
+        parts.append(_substitution(text[start + 2 : end]))
+        place = end + 1
+    parts += [text[place:]] if place < len(text) or not parts else []
+    return parts[0] if len(parts) == 1 else Joined(tuple(parts))
+
+
+def _end(text: str, start: int) -> int:
+    """Return the index of the parenthesis that closes the one after `start`, -1 without one."""
+    depth = 0
+    for index in range(start + 1, len(text)):
+        depth += {"(": 1, ")": -1}.get(text[index], 0)
+        if not depth:
+            return index
+    return -1
+
+
+def _substitution(inside: str) -> Any:
+    name, _, rest = inside.strip().partition(" ")
+    rest = rest.strip()
+    if name == "eval":
+        plain = rest[1:-1] if len(rest) > 1 and rest[0] == rest[-1] and rest[0] in "'\"" else rest
+        return Expression((substitutions(plain),))
+    words = [substitutions(word) for word in _words(rest)]
+    first = words[0] if words else ""
+    if name == "var":
+        return Configuration(first, words[1] if len(words) > 1 else None)
+    if name == "find-pkg-share":
+        return Package(first)
+    if name in ("dirname", "filename"):
+        return Here(whole=name == "filename")
+    if name == "anon":
+        return first
+    if name in ("env", "optenv"):
+        default = words[1] if len(words) > 1 else "" if name == "optenv" else None
+        return OnRobot(inside, default)
+    if name in ("equals", "not-equals") and len(words) == 2:
+        return Comparison(first, words[1], equal=name == "equals")
+    if name in ("not", "and", "or"):
+        return Logic(name, tuple(words))
+    return OnRobot(inside)
+
+
+def _words(text: str) -> Iterator[str]:
+    """Split at spaces, except within quotes and parentheses."""
+    place = 0
+    while place < len(text):
+        if text[place].isspace():
+            place += 1
+            continue
+        start = place
+        if text[place] in "'\"" and (closing := text.find(text[place], place + 1)) > 0:
+            yield text[place + 1 : closing]
+            place = closing + 1
+            continue
+        while place < len(text) and not text[place].isspace():
+            end = _end(text, place) if text.startswith("$(", place) else place
+            place = max(end, place) + 1
+        yield text[start:place]

@@ -1,0 +1,63 @@
+"""Read any launch file: ROS 1 XML, and ROS 2 Python, XML and YAML."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+from xml.etree.ElementTree import Element
+
+from tarl_lint.workspace.bounded_files import UnreadableError, read_text
+from tarl_lint.workspace.launch_documents import LARGEST, of_xml, of_yaml, xml_root
+from tarl_lint.workspace.launch_entities import actions
+from tarl_lint.workspace.launch_model import Launch
+from tarl_lint.workspace.launch_py import actions_of_python
+from tarl_lint.workspace.launch_run import Runner
+from tarl_lint.workspace.launch_values import Context
+from tarl_lint.workspace.launch_xml import read_xml
+from tarl_lint.workspace.model import Problem, Workspace
+
+_YAML: Final = (".yaml", ".yml")
+_OF_ROS2: Final = re.compile(
+    r"<(?:node|executable)\b[^>]*\s(?:exec|cmd)\s*=|\$\((?:var|find-pkg-share|find-pkg-prefix)\s|"
+    r"<(?:push[-_]ros[-_]namespace|node_container|let|set_remap|set_parameter)\b"
+)
+_OF_ROS1: Final = re.compile(
+    r"<node\b[^>]*\stype\s*=|\$\((?:arg|find)\s|<(?:rosparam|machine|test)\b|<include\b[^>]*\sns="
+)
+
+
+def read_launch(path: Path, workspace: Workspace, arguments: Mapping[str, str] | None = None) -> Launch:
+    """Return what a launch file starts, with the defaults of the arguments that are not given. Nothing is executed."""
+    if path.suffix not in (".py", *_YAML) and not is_ros2_xml(path, workspace):
+        return read_xml(path, workspace, arguments)
+    context = Context(workspace, path, dict(arguments or {}))
+    runner = Runner(_opened)
+    runner.run(_opened(path, context, runner.problems), context)
+    return Launch(path, tuple(runner.nodes), (), tuple(dict.fromkeys(runner.problems)))
+
+
+def is_ros2_xml(path: Path, workspace: Workspace) -> bool:
+    """Return whether a launch file in XML is one of ROS 2: by its elements, else by how its package is built."""
+    try:
+        text = read_text(path, LARGEST)
+    except UnreadableError:
+        return False
+    if _OF_ROS2.search(text):
+        return True
+    package = workspace.package_of(path)
+    return not _OF_ROS1.search(text) and package is not None and package.kind.startswith("ament")
+
+
+def _opened(path: Path, context: Context, problems: list[Problem]) -> Any:
+    """Return the actions of a ROS 2 launch file."""
+    if not path.is_file():
+        problems.append(Problem(path, 0, "there is no such launch file"))
+        return ()
+    if path.suffix == ".py":
+        return actions_of_python(path, context.workspace, problems)
+    if path.suffix in _YAML:
+        return actions(of_yaml(path, problems))
+    root: Element | None = xml_root(path, problems)
+    return actions(of_xml(root)) if root is not None else ()

@@ -1,0 +1,291 @@
+"""Go through the actions of a ROS 2 launch file: what they start, with names, remappings and parameters.
+
+The actions come from Python, XML or YAML. None of them is executed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, ItemsView, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Final
+
+from tarl_lint.workspace.bounded_files import UnreadableError, read_text
+from tarl_lint.workspace.expressions import Library, Unknown
+from tarl_lint.workspace.launch_model import Kind, LaunchedNode, Setting
+from tarl_lint.workspace.launch_values import Context, Substitution, performed, symbolic, truth
+from tarl_lint.workspace.model import Problem
+from tarl_lint.workspace.ros_names import joined
+
+LARGEST: Final = 1_000_000  # bytes of a YAML file
+DEEPEST: Final = 20  # files that include each other
+MOST: Final = 5_000  # actions of a launch file with all that it includes
+
+
+@dataclass(frozen=True)
+class Action:
+    """A node, group, declaration or include; `line` is that of its call or element."""
+
+    kind: str
+    line: int
+    values: dict[str, Any] = field(default_factory=dict)
+    readable: frozenset[str] = frozenset({"add_action"})
+
+    def add_action(self, action: Any) -> None:
+        """Add to a launch description or group."""
+        self.values.setdefault("actions", []).append(action)
+
+
+@dataclass(frozen=True)
+class Condition:
+    """`IfCondition` and `UnlessCondition`; with `name`, a comparison of a launch configuration."""
+
+    value: Any
+    wanted: bool = True
+    name: Any = None
+
+
+@dataclass(frozen=True)
+class Quoted:
+    """A parameter value with its type: `str` keeps a text as it is, else it is read as YAML."""
+
+    value: Any
+    kind: str = ""
+
+
+Opener = Callable[[Path, Context, list[Problem]], Any]  # actions of a launch file
+
+
+@dataclass
+class Runner:
+    """Goes through actions and collects what is started. `opened` reads an included launch file."""
+
+    opened: Opener
+    nodes: list[LaunchedNode] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
+    depth: int = 0
+    seen: int = 0
+
+    def run(self, actions: Any, context: Context, condition: str = "") -> None:
+        """Go through actions in order; `condition` is one around them that only the robot knows."""
+        for action in actions if isinstance(actions, list | tuple) else (actions,):
+            self.seen += 1
+            if self.seen > MOST:
+                return
+            if isinstance(action, list | tuple):
+                self.run(action, context, condition)
+            elif isinstance(action, Action):
+                holds, unsure = self._holds(action, context)
+                if holds:
+                    self._one(action, context, unsure or condition)
+            elif isinstance(action, Unknown):
+                self._problem(context, action.line, f"`{action.text}` is not followed")
+
+    def _holds(self, action: Action, context: Context) -> tuple[bool, str]:
+        """Return whether an action counts, and its condition if only the robot knows whether it holds."""
+        condition = action.values.get("condition")
+        if condition is None:
+            return True, ""
+        if not isinstance(condition, Condition):
+            text = performed(condition, context)
+        elif condition.name is not None:
+            left = context.configurations.get(performed(condition.name, context), "")
+            right = performed(condition.value, context)
+            if not symbolic(left) and not symbolic(right):
+                return (left == right) is condition.wanted, ""
+            text = f"{left} == {right}"
+        else:
+            text = performed(condition.value, context)
+            holds = truth(text)
+            if holds is not None:
+                return holds is condition.wanted, ""
+        self._problem(context, action.line, f"the condition `{text}` is known on the robot only")
+        return True, text
+
+    def _one(self, action: Action, context: Context, condition: str) -> None:
+        values = action.values
+        if action.kind == "group":
+            scoped = values.get("scoped", False) is not False
+            inner = context.inside() if scoped else context
+            for name, value in _items(values.get("launch_configurations")):
+                inner.configurations[performed(name, context)] = performed(value, context)
+            self.run(values.get("actions"), inner, condition)
+        elif action.kind in ("node", "container"):
+            self._node(action, context, condition)
+        elif action.kind == "load":
+            self._components(values.get("components"), context, condition)
+        elif action.kind == "include":
+            self._include(action, context, condition)
+        elif action.kind == "opaque":
+            made = values["made"](context)
+            self.run(made if made is not None else [], context, condition)
+        elif action.kind == "unread":
+            self._problem(context, action.line, str(values.get("reason")))
+        else:
+            self._set(action, context)
+
+    def _set(self, action: Action, context: Context) -> None:
+        """Do what changes the context of the actions that follow."""
+        values, kind = action.values, action.kind
+        name = performed(values.get("name"), context)
+        if kind == "argument":
+            if name not in context.configurations:
+                default = values.get("default_value")
+                text = f"$(var {name})" if default is None else performed(default, context)
+                context.configurations[name] = text
+        elif kind == "set":
+            context.configurations[name] = performed(values.get("value"), context)
+        elif kind == "unset":
+            context.configurations.pop(name, None)
+        elif kind == "namespace":
+            context.namespace = joined(context.namespace, performed(values.get("namespace"), context))
+        elif kind == "remap":
+            context.remaps = (*context.remaps, *_pairs([(values.get("src"), values.get("dst"))], context))
+        elif kind == "parameter":
+            stated = {values.get("name"): values.get("value")}
+            context.settings = (*context.settings, *self._stated(stated, context, action.line, ""))
+        elif kind == "parameter file":
+            given = self._settings([values.get("filename")], context, action.line)
+            context.settings = (*context.settings, *given)
+
+    def _include(self, action: Action, context: Context, condition: str) -> None:
+        name = performed(action.values.get("source"), context)
+        if symbolic(name) or not name:
+            self._problem(context, action.line, f"the included file {name or '?'} is not in the workspace")
+            return
+        if self.depth >= DEEPEST:
+            self._problem(context, action.line, f"{Path(name).name}: files include each other")
+            return
+        for key, value in _items(action.values.get("arguments")):
+            context.configurations[performed(key, context)] = performed(value, context)
+        before, context.file = context.file, Path(name)
+        self.depth += 1
+        try:
+            actions = self.opened(context.file, context, self.problems)
+            self.run(actions, context, condition)
+        finally:
+            self.depth -= 1
+            context.file = before
+
+    def _node(self, action: Action, context: Context, condition: str) -> None:
+        values = action.values
+        kind: Kind = "container" if action.kind == "container" else "node"
+        if not values.get("package") and kind == "node" and not values.get("executable"):
+            self._problem(context, action.line, "a node has neither package nor executable")
+            return
+        self._started(values, context, action.line, kind, condition)
+        self._components(values.get("components"), context, condition)
+
+    def _components(self, components: Any, context: Context, condition: str) -> None:
+        """Add the composable nodes of a container."""
+        for one in components if isinstance(components, list | tuple) else ():
+            if isinstance(one, Action) and one.kind == "component":
+                holds, unsure = self._holds(one, context)
+                if holds:
+                    values = {**one.values, "executable": one.values.get("plugin")}
+                    self._started(values, context, one.line, "component", unsure or condition)
+            elif isinstance(one, Unknown):
+                self._problem(context, one.line, f"`{one.text}` is not followed")
+
+    def _started(
+        self, values: Mapping[str, Any], context: Context, line: int, kind: Kind, condition: str
+    ) -> None:
+        found = {key: performed(values.get(key), context) for key in ("package", "executable", "name")}
+        for key in ("package", "executable"):
+            if symbolic(found[key]):
+                reason = f"the {key} of a node is known on the robot only: {found[key]}"
+                self._problem(context, line, reason)
+        settings = (*context.settings, *self._settings(values.get("parameters"), context, line))
+        self.nodes.append(
+            LaunchedNode(
+                found["package"],
+                found["executable"],
+                found["name"],
+                joined(context.namespace, performed(values.get("namespace"), context)),
+                context.file,
+                line,
+                (*context.remaps, *_pairs(values.get("remappings"), context)),
+                settings,
+                " ".join(performed(one, context) for one in _listed(values.get("arguments"))),
+                kind,
+                condition,
+            )
+        )
+
+    def _settings(self, parameters: Any, context: Context, line: int) -> Iterator[Setting]:
+        for one in parameters if isinstance(parameters, list | tuple) else ():
+            if isinstance(one, dict):
+                yield from self._stated(one, context, line, "")
+                continue
+            source = one.values if isinstance(one, Action) else {"param_file": one}
+            name = performed(source.get("param_file"), context)
+            if symbolic(name):
+                self._problem(context, line, f"the parameter file {name} is not known here")
+                continue
+            try:
+                content = read_text(Path(name), LARGEST)
+            except UnreadableError as reason:
+                self._problem(context, line, f"the parameter file {Path(name).name}: {reason}")
+                continue
+            yield Setting("~", Path(name), yaml=content)
+
+    def _stated(
+        self, values: Mapping[Any, Any], context: Context, line: int, above: str
+    ) -> Iterator[Setting]:
+        for key, value in values.items():
+            name = f"{above}{performed(key, context)}"
+            if isinstance(value, dict):
+                yield from self._stated(value, context, line, f"{name}.")
+                continue
+            setting = _setting(f"~{name}", value, context)
+            if setting is None:
+                self._problem(context, line, f"the parameter {name} is not constant")
+            else:
+                yield setting
+
+    def _problem(self, context: Context, line: int, reason: str) -> None:
+        problem = Problem(context.file, line, reason)
+        if problem not in self.problems:
+            self.problems.append(problem)
+
+
+def _setting(name: str, value: Any, context: Context) -> Setting | None:
+    """Return a parameter with a constant value, None where it is none."""
+    if isinstance(value, Quoted):
+        inner, kind = value.value, value.kind
+        if kind not in ("", "str") or not isinstance(inner, Substitution | list | tuple | str):
+            return _setting(name, inner, context)
+        text = performed(inner, context)
+        if symbolic(text):
+            return None
+        stated = Setting(name, context.file, text)
+        return stated if kind == "str" else replace(stated, value=None, yaml=text)
+    if isinstance(value, bool | int | float | str):
+        return Setting(name, context.file, value)
+    if isinstance(value, list | tuple):
+        plain = all(isinstance(one, bool | int | float) for one in value)
+        words = len(value) > 1 and all(isinstance(one, str) for one in value)
+        if plain or words:
+            return Setting(name, context.file, yaml=repr(list(value)))
+    if isinstance(value, Unknown | Library):
+        return None
+    text = performed(value, context)  # ROS 2 reads what substitutions give as YAML
+    return None if symbolic(text) else Setting(name, context.file, yaml=text)
+
+
+def _pairs(remaps: Any, context: Context) -> Iterator[tuple[str, str]]:
+    for one in remaps if isinstance(remaps, list | tuple) else ():
+        if isinstance(one, tuple | list) and len(one) == 2:
+            yield performed(one[0], context), performed(one[1], context)
+
+
+def _items(pairs: Any) -> Iterator[tuple[Any, Any]]:
+    """Yield the pairs of a dict, or of a list of pairs."""
+    whole = pairs.items() if isinstance(pairs, dict) else pairs
+    for one in whole if isinstance(whole, list | tuple | ItemsView) else ():
+        if isinstance(one, tuple | list) and len(one) == 2:
+            yield one[0], one[1]
+
+
+def _listed(value: Any) -> tuple[Any, ...]:
+    return tuple(value) if isinstance(value, list | tuple) else () if value is None else (value,)

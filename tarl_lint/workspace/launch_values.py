@@ -1,0 +1,231 @@
+"""Substitutions of ROS 2 launch files as values, and the text that they stand for.
+
+A text that only the robot knows stays symbolic: it contains `$(…)` with what it depends on, as in `/$(var robot)/odom`.
+"""
+
+from __future__ import annotations
+
+import ast
+import posixpath
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+from tarl_lint.workspace.expressions import Evaluator, Library, Unknown
+from tarl_lint.workspace.launch_model import Setting
+from tarl_lint.workspace.model import Workspace
+
+TRUE: Final = frozenset({"true", "1"})
+FALSE: Final = frozenset({"false", "0"})
+DEEPEST: Final = 50  # values within each other
+LONGEST: Final = 100_000  # characters of a text
+
+
+@dataclass
+class Context:
+    """Where an action stands: its file, and what the actions before it set. Groups get copies."""
+
+    workspace: Workspace
+    file: Path
+    configurations: dict[str, str] = field(default_factory=dict)
+    namespace: str = "/"
+    remaps: tuple[tuple[str, str], ...] = ()
+    settings: tuple[Setting, ...] = ()  # of all nodes that follow
+    readable: frozenset[str] = frozenset({"launch_configurations", "perform_substitution"})
+
+    @property
+    def launch_configurations(self) -> dict[str, Any]:
+        """Return the launch configurations for the function of an OpaqueFunction."""
+        return {name: known(text) for name, text in self.configurations.items()}
+
+    def perform_substitution(self, value: Any) -> Any:
+        """Return the text of a substitution for the function of an OpaqueFunction, Unknown where it is symbolic."""
+        return known(performed(value, self))
+
+    def inside(self) -> Context:
+        """Return the context of a group: what is set there does not leave it."""
+        return Context(
+            self.workspace,
+            self.file,
+            dict(self.configurations),
+            self.namespace,
+            self.remaps,
+            self.settings,
+        )
+
+
+class Substitution:
+    """A text that is known when its context is. `perform` is what launch files call on it in an OpaqueFunction."""
+
+    readable: frozenset[str] = frozenset({"perform"})
+
+    def text(self, context: Context, depth: int) -> str:
+        """Return the text in a context."""
+        raise NotImplementedError
+
+    def perform(self, context: Any) -> Any:
+        """Return the text, or Unknown where it is symbolic."""
+        return known(performed(self, context)) if isinstance(context, Context) else Unknown(0, "perform")
+
+
+@dataclass(frozen=True)
+class Configuration(Substitution):
+    """`LaunchConfiguration(name, default=…)`, `$(var name)`."""
+
+    name: Any
+    default: Any = None
+
+    def text(self, context: Context, depth: int) -> str:
+        """Return the value of the launch argument."""
+        name = performed(self.name, context, depth)
+        if name in context.configurations:
+            return context.configurations[name]
+        return f"$(var {name})" if self.default is None else performed(self.default, context, depth)
+
+
+@dataclass(frozen=True)
+class Joined(Substitution):
+    """A list of substitutions, or the parts of a path (`between` is a slash)."""
+
+    parts: tuple[Any, ...]
+    between: str = ""
+
+    def text(self, context: Context, depth: int) -> str:
+        """Return the texts of the parts, one after the other."""
+        texts = [performed(part, context, depth) for part in self.parts]
+        return posixpath.join(*texts) if self.between and texts else "".join(texts)
+
+
+@dataclass(frozen=True)
+class Expression(Substitution):
+    """`PythonExpression([…])`, `$(eval …)`: evaluated where its value is constant."""
+
+    parts: tuple[Any, ...]
+
+    def text(self, context: Context, depth: int) -> str:
+        """Return the value as text."""
+        whole = "".join(performed(part, context, depth) for part in self.parts)
+        try:
+            tree = ast.parse(whole.strip(), mode="eval")
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            return f"$(eval {whole})"
+        value = Evaluator({}).value(tree.body, {})
+        return f"$(eval {whole})" if isinstance(value, Unknown | Library) else str(value)
+
+
+@dataclass(frozen=True)
+class Comparison(Substitution):
+    """`EqualsSubstitution` and `NotEqualsSubstitution`."""
+
+    left: Any
+    right: Any
+    equal: bool = True
+
+    def text(self, context: Context, depth: int) -> str:
+        """Return `true` or `false`."""
+        one, other = (performed(side, context, depth) for side in (self.left, self.right))
+        if symbolic(one) or symbolic(other):
+            return f"$({'equals' if self.equal else 'not-equals'} {one} {other})"
+        truths = truth(one), truth(other)
+        same = one == other if None in truths else truths[0] == truths[1]
+        return str(same is self.equal).lower()
+
+
+@dataclass(frozen=True)
+class Logic(Substitution):
+    """`not`, `and`, `or` of truth values."""
+
+    kind: str
+    operands: tuple[Any, ...]
+
+    def text(self, context: Context, depth: int) -> str:
+        """Return `true` or `false`."""
+        texts = [performed(one, context, depth) for one in self.operands]
+        values = [truth(one) for one in texts]
+        if None in values:
+            return f"$({self.kind} {' '.join(texts)})"
+        found = not values[0] if self.kind == "not" else all(values) if self.kind == "and" else any(values)
+        return str(found).lower()
+
+
+@dataclass(frozen=True)
+class Choice(Substitution):
+    """`IfElseSubstitution`."""
+
+    condition: Any
+    then: Any = ""
+    otherwise: Any = ""
+
+    def text(self, context: Context, depth: int) -> str:
+        """Return the text of the branch that holds."""
+        holds = truth(performed(self.condition, context, depth))
+        if holds is None:
+            return f"$(if {performed(self.condition, context, depth)})"
+        return performed(self.then if holds else self.otherwise, context, depth)
+
+
+@dataclass(frozen=True)
+class Package(Substitution):
+    """`FindPackageShare`: the source folder of a package of the workspace stands for its installed one."""
+
+    name: Any
+
+    def text(self, context: Context, depth: int) -> str:
+        """Return the folder."""
+        name = performed(self.name, context, depth)
+        found = context.workspace.package(name)
+        return f"$(find-pkg-share {name})" if found is None else str(found.folder)
+
+
+@dataclass(frozen=True)
+class Here(Substitution):
+    """`ThisLaunchFileDir` and `ThisLaunchFile`."""
+
+    whole: bool = False
+
+    def text(self, context: Context, depth: int) -> str:  # noqa: ARG002 - one signature for all
+        """Return the path of the launch file, or of its folder."""
+        return str(context.file if self.whole else context.file.parent)
+
+
+@dataclass(frozen=True)
+class OnRobot(Substitution):
+    """What only the robot knows: the output of a command, an environment variable without a default."""
+
+    what: str
+    default: Any = None
+
+    def text(self, context: Context, depth: int) -> str:
+        """Return the default, or what it depends on."""
+        return f"$({self.what})" if self.default is None else performed(self.default, context, depth)
+
+
+def performed(value: Any, context: Context, depth: int = 0) -> str:
+    """Return the text of a value: itself, with its substitutions replaced, or symbolic."""
+    if depth > DEEPEST:
+        return "$(too deep)"
+    if isinstance(value, Substitution):
+        return value.text(context, depth + 1)[:LONGEST]
+    if isinstance(value, list | tuple):
+        return "".join(performed(one, context, depth + 1) for one in value)[:LONGEST]
+    if isinstance(value, Unknown):
+        return f"$({value.text})"
+    if isinstance(value, str | int | float | bool):
+        return str(value)
+    return "$(unknown)" if value is not None else ""
+
+
+def symbolic(text: str) -> bool:
+    """Return whether a text depends on what only the robot knows."""
+    return "$(" in text
+
+
+def known(text: str) -> Any:
+    """Return a text, or Unknown where it is symbolic."""
+    return Unknown(0, text.removeprefix("$(").removesuffix(")")) if symbolic(text) else text
+
+
+def truth(text: str) -> bool | None:
+    """Return the truth value that a text stands for, None if it is none or symbolic."""
+    plain = text.strip().lower()
+    return True if plain in TRUE else False if plain in FALSE else None
