@@ -1,1 +1,1 @@
-"""Repairs as source: constants changed at their use, guards, subscriptions, the diff."""
+"""Write repairs into source code: changed constants, guards, new subscriptions, diffs."""

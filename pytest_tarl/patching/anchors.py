@@ -1,4 +1,4 @@
-"""Where a node makes its subscriptions: the place beside which a repair adds another."""
+"""Find where a node creates its subscriptions, so that a repair can add another one beside them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _NODE_METHODS = {
 
 @dataclass(frozen=True)
 class Anchor:
-    """A statement beside which the node can subscribe; `node` is the rclpy node there, empty for rospy."""
+    """A statement beside which the node can subscribe; `node` is the rclpy node expression, "" for rospy."""
 
     source: Document
     statement: ast.stmt
@@ -43,12 +43,12 @@ class Anchor:
 
     @property
     def annotated(self) -> bool:
-        """Tell whether the code around annotates its functions."""
+        """Tell whether the surrounding function has a return annotation."""
         function = self.source.function(self.statement)
         return function is not None and function.returns is not None
 
     def edit(self, line: str) -> Edit:
-        """Return the edit that adds a line of code here."""
+        """Return the edit that inserts a line of code here."""
         indent = self.source.indentation(self.statement)
         if self.after:
             end = self.source.line_end(self.statement)
@@ -58,21 +58,21 @@ class Anchor:
 
 
 def anchors(analysis: Analysis, site: SiteId, path: str) -> Iterator[Anchor]:
-    """Yield the places where the node subscribes: for this site before others, in its file before others.
+    """Yield the places where the node subscribes: those of the site's flows first, then those in its file.
 
-    Last come the places where nodes start, for nodes whose subscriptions say nothing.
+    The last ones are places where nodes start, for nodes without usable subscriptions.
     """
     own = {flow.source for flow in analysis.flows if any(step.site == site for step in flow.steps)}
     sources = dict.fromkeys(flow.source for flow in analysis.flows)
     for each in sorted(sources, key=lambda each: (each not in own, each.span.path != path)):
         yield from _registered(analysis, each)
     for name in sorted(analysis.sources, key=lambda name: (name != path, name)):
-        with suppress(RepairError):  # a file that cannot be read starts no node
+        with suppress(RepairError):  # a file that cannot be parsed starts no node
             yield from _started(document(name, analysis.sources[name]))
 
 
 def beside(source: Document, call: ast.expr, node: str) -> Anchor | None:
-    """Return the place for another registration beside one: behind it, but not inside a loop."""
+    """Return the place for another registration: after `call`, but outside any loop; None if there is none."""
     statement = source.statement(call)
     within = [statement, *_until_function(source, statement)]
     loops = [each for each in within if isinstance(each, Loop)]
@@ -88,7 +88,7 @@ def beside(source: Document, call: ast.expr, node: str) -> Anchor | None:
 
 
 def is_ros2(source: Document, api: str = "") -> bool:
-    """Tell whether code talks to rclpy rather than to rospy."""
+    """Tell whether code uses rclpy rather than rospy."""
     if api.startswith(("rclpy", "rospy")):
         return api.startswith("rclpy")
     modules = {
@@ -99,7 +99,7 @@ def is_ros2(source: Document, api: str = "") -> bool:
 
 
 def _registered(analysis: Analysis, origin: Source) -> Iterator[Anchor]:
-    """Yield the place beside a subscription call that the analysis knows."""
+    """Yield the place beside a subscription call found by the analysis."""
     text = analysis.sources.get(origin.span.path)
     if text is None or origin.api.endswith("wait_for_message"):
         return
@@ -116,7 +116,7 @@ def _registered(analysis: Analysis, origin: Source) -> Iterator[Anchor]:
 
 
 def _started(source: Document) -> Iterator[Anchor]:
-    """Yield the places behind the calls that start a node, or else those that use it."""
+    """Yield the places after calls that start a node, then places after calls that use it."""
     ros2 = is_ros2(source)
     calls = [node for node in ast.walk(source.tree) if isinstance(node, ast.Call)]
     ranked = [(_start_rank(source, call, ros2), call) for call in calls]
@@ -128,7 +128,7 @@ def _started(source: Document) -> Iterator[Anchor]:
 
 
 def _start_rank(source: Document, call: ast.Call, ros2: bool) -> int:
-    """Return how surely a call runs once, when its node starts; `_NO_START` for calls that tell nothing."""
+    """Return 0 for calls that certainly run once at node start, 1 and 2 for less certain ones, else `_NO_START`."""
     name = _called(call)
     if not ros2:
         return 0 if name == "init_node" else _NO_START
@@ -140,7 +140,7 @@ def _start_rank(source: Document, call: ast.Call, ros2: bool) -> int:
 
 
 def _node(source: Document, call: ast.expr) -> str | None:
-    """Return the expression of the rclpy node at a call, or None."""
+    """Return the expression for the rclpy node at a call, or None."""
     if isinstance(call, ast.Call) and _receiver(call):
         return _receiver(call)
     statement = source.statement(call)
@@ -158,7 +158,7 @@ def _node(source: Document, call: ast.expr) -> str | None:
 
 
 def _receiver(call: ast.Call) -> str:
-    """Return the node of a call `node.create_…(…)`, or an empty text."""
+    """Return the receiver of a call `node.create_…(…)`, or ""."""
     named = isinstance(call.func, ast.Attribute) and call.func.attr in _NODE_METHODS
     return ast.unparse(call.func.value) if named and isinstance(call.func, ast.Attribute) else ""
 
@@ -181,6 +181,6 @@ def _until_function(source: Document, statement: ast.stmt) -> Iterator[ast.stmt]
 
 
 def _leader(source: Document, statement: ast.stmt) -> ast.stmt | None:
-    """Return the first statement of a line that several share; None when that is a definition."""
+    """Return the first of several statements on one line; None if it is a definition."""
     around = [*reversed(source.block(statement)), *_until_function(source, statement)]
     return next((each for each in around if each.lineno == statement.lineno and source.leads(each)), None)

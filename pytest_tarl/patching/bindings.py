@@ -1,4 +1,4 @@
-"""What a module itself stores in its variables: where a name is bound, and what it holds before the first message."""
+"""Bindings of a module: where it assigns a name and the value before the first message."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Scope = Function | ast.Lambda
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """A place that gives `target` a value: constants, if it is one, or a new object with its defaults."""
+    """A place that assigns `target`; `constants` if the value is a constant, `fresh` if it is a new default object."""
 
     node: ast.AST
     target: str
@@ -26,12 +26,12 @@ class Binding:
 
 @cache
 def bindings(source: Document) -> tuple[Binding, ...]:
-    """Return every binding of a name or an attribute in the module."""
+    """Return all bindings of names and attributes in the module."""
     return tuple(found for node in ast.walk(source.tree) for found in _bindings(node))
 
 
 def scope(source: Document, place: ast.AST, name: str) -> Scope | None:
-    """Return the function or lambda around a place in which a name is local, or None for a global name."""
+    """Return the function or lambda around a place to which a name is local, or None for a global name."""
     for around in source.ancestors(place):
         if isinstance(around, Scope) and name in local_names(source, around):
             return around
@@ -40,7 +40,7 @@ def scope(source: Document, place: ast.AST, name: str) -> Scope | None:
 
 @cache
 def local_names(source: Document, function: Scope) -> frozenset[str]:
-    """Return the names that are local to a function, its parameters among them."""
+    """Return the names local to a function, including its parameters."""
     arguments = function.args
     every = [
         *arguments.posonlyargs,
@@ -63,7 +63,7 @@ def local_names(source: Document, function: Scope) -> frozenset[str]:
 
 
 def is_bound(source: Document, place: ast.AST, code: str) -> bool:
-    """Tell whether asking for `a.b.c` at a place cannot fail where the code around it would not."""
+    """Tell whether evaluating `a.b.c` at a place cannot raise unless the surrounding code raises as well."""
     chain = prefixes(code)
     read = {ast.unparse(node) for node in _read_at(place)}
     if code in read:
@@ -74,7 +74,7 @@ def is_bound(source: Document, place: ast.AST, code: str) -> bool:
 
 
 def initial(source: Document, place: ast.AST, code: str) -> tuple[set[Constant], bool]:
-    """Return the constants that the module stores in `a.b.c`, and whether it also stores new objects there."""
+    """Return the constants that the module assigns to `a.b.c`, and whether it also assigns new default objects."""
     local = scope(source, place, code) if code.isidentifier() else None
     constants: set[Constant] = set()
     fresh = False
@@ -90,7 +90,7 @@ def initial(source: Document, place: ast.AST, code: str) -> tuple[set[Constant],
 
 
 def _read_at(place: ast.AST) -> Iterator[ast.expr]:
-    """Yield what a statement reads, of a compound statement only its header."""
+    """Yield the names, attributes and items that a statement reads; for a compound statement only its header."""
     waiting = [place]
     while waiting:
         node = waiting.pop()
@@ -100,14 +100,14 @@ def _read_at(place: ast.AST) -> Iterator[ast.expr]:
 
 
 def _has_name(source: Document, place: ast.AST, name: str) -> bool:
-    """Tell whether a name is local at a place, or given a value when the module is loaded."""
+    """Tell whether a name is local at a place, or assigned when the module is imported."""
     if scope(source, place, name) is not None:
         return True
     return any(each.target == name and source.function(each.node) is None for each in bindings(source))
 
 
 def _has_attribute(source: Document, place: ast.AST, chain: tuple[str, ...]) -> bool:
-    """Tell whether an attribute of the instance is there from the beginning; other objects are trusted."""
+    """Tell whether an attribute of `self` exists from the start; attributes of other objects are assumed to exist."""
     method = source.method(place)
     if method is None or len(chain) < 2 or chain[0] != method[2]:
         return True
@@ -140,7 +140,7 @@ def _bindings(node: ast.AST) -> Iterator[Binding]:
 
 
 def _pairs(node: ast.stmt, target: ast.expr, value: ast.expr) -> Iterator[Binding]:
-    """Pair targets with what they are given, through tuples of equal length."""
+    """Pair targets with their values, also in assignments between tuples of equal length."""
     if isinstance(target, ast.Tuple | ast.List) and isinstance(value, ast.Tuple | ast.List):
         if len(target.elts) == len(value.elts):
             for left, right in zip(target.elts, value.elts, strict=True):

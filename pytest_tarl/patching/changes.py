@@ -1,4 +1,4 @@
-"""What a patch does to files: hunks of lines, and what they make of a file's bytes."""
+"""Apply patches to files: hunks of lines and their effect on a file's bytes."""
 
 from __future__ import annotations
 
@@ -11,30 +11,30 @@ Lines = tuple[bytes, ...]
 
 
 class MisfitError(Exception):
-    """A hunk fits nowhere; the argument is the line (from 1) at which it was made."""
+    """A hunk fits nowhere in the file; the argument is its original line number, from 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class Hunk:
-    """Lines with their endings, by sign; `start` counts lines of the original before it."""
+    """Lines with their line endings and signs ("+", "-" or " "); `start` is the 0-based line of the original."""
 
     start: int
     lines: tuple[tuple[str, bytes], ...]
 
     @property
     def old(self) -> Lines:
-        """Return what it takes."""
+        """Return the lines that the hunk replaces."""
         return tuple(line for sign, line in self.lines if sign != "+")
 
     @property
     def new(self) -> Lines:
-        """Return what it puts there."""
+        """Return the lines that the hunk inserts."""
         return tuple(line for sign, line in self.lines if sign != "-")
 
 
 @dataclass(frozen=True, slots=True)
 class Replacement:
-    """The lines from `start` (from 0) on that are `old` become `new`; either may be empty."""
+    """Replace the lines `old`, starting at line `start` (from 0), by `new`; either may be empty."""
 
     start: int
     old: Lines
@@ -42,13 +42,13 @@ class Replacement:
 
     @property
     def end(self) -> int:
-        """Return the first line behind it."""
+        """Return the first line after the replaced ones."""
         return self.start + len(self.old)
 
 
 @dataclass(frozen=True, slots=True)
 class FilePatch:
-    """What a patch does to one file; `before` and `after` are git's names of its contents."""
+    """The part of a patch for one file; `before` and `after` are git's blob ids of its contents."""
 
     name: str
     before: str
@@ -57,12 +57,12 @@ class FilePatch:
 
     @property
     def replacements(self) -> tuple[Replacement, ...]:
-        """Return the lines that change, without those around them."""
+        """Return the changed lines without context lines."""
         return tuple(one for hunk in self.hunks for one in _replacements(hunk))
 
     @property
     def reverse(self) -> FilePatch:
-        """Return the patch that undoes it."""
+        """Return the patch that undoes this one."""
         turned, shift = [], 0
         for hunk in self.hunks:
             lines = tuple(({"+": "-", "-": "+"}.get(sign, sign), line) for sign, line in hunk.lines)
@@ -71,7 +71,7 @@ class FilePatch:
         return FilePatch(self.name, self.after, self.before, tuple(turned))
 
     def exact(self, content: bytes) -> bytes | None:
-        """Return what it makes of the very text that it was made for; None where git would call it otherwise."""
+        """Return the patched content; None if the blob ids of the content or of the result do not match."""
         if not identical(content, self.before):
             return None
         lines, result, at = split_lines(content), list[bytes](), 0
@@ -85,7 +85,7 @@ class FilePatch:
         return made if identical(made, self.after) else None
 
     def applied(self, content: bytes) -> bytes:
-        """Return a file with the change in it, wherever its lines stand now. Raises MisfitError."""
+        """Return the patched content even if lines have moved. Raises MisfitError."""
         lines, result, at, shift = split_lines(content), list[bytes](), 0, 0
         for hunk in self.hunks:
             found = _place(hunk, lines, at, hunk.start + shift)
@@ -97,7 +97,7 @@ class FilePatch:
 
 
 def identical(content: bytes, name: str) -> bool:
-    """Tell whether a content is the one that git calls `name`."""
+    """Tell whether `name` is git's blob id of the content."""
     return blob_id(content) == name
 
 
@@ -115,7 +115,7 @@ def _replacements(hunk: Hunk) -> Iterator[Replacement]:
 
 
 def _place(hunk: Hunk, lines: Sequence[bytes], least: int, likely: int) -> int | None:
-    """Return the line nearest to `likely`, from `least` on, at which all lines of the original stand."""
+    """Return the line nearest to `likely`, not before `least`, where all original lines of the hunk match."""
     old = list(hunk.old)
     fits = [at for at in range(least, len(lines) - len(old) + 1) if lines[at : at + len(old)] == old]
     return min(fits, key=lambda at: abs(at - likely), default=None)

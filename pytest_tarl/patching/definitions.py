@@ -1,4 +1,4 @@
-"""Where a constant is defined: its literal, a parameter's default, the value in a YAML, launch or .cfg file."""
+"""Find the definition of a constant: a literal, a parameter's default, or a value in a YAML, launch or .cfg file."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
 PARAMETER_CALLS = ("declare_parameter", "get_param", "get_parameter_or", "cached_param")
-SEVERAL = "declare_parameters"  # takes a namespace and a list of names with their defaults
+SEVERAL = "declare_parameters"  # takes a namespace and a list of names with defaults
 _FOREIGN = {".git", ".tarl", ".venv", "venv", "build", "install", "log", "node_modules", "__pycache__"}
-_MOST_FILES = 400  # configuration files of a package that are looked at
+_MOST_FILES = 400  # configuration files of a package to read at most
 _NUMBER = r"(?P<number>[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|true|false|True|False)"
 _PLAIN = re.compile(r"[-+]?\d+")
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A number where it is defined: the characters from `start` to `end` of a file, and what it is called there."""
+    """A number at its definition: the characters `start` to `end` of a file, its name there and its value."""
 
     path: str
     start: int
@@ -38,7 +38,7 @@ class Place:
 
 
 def defined(analysis: Analysis, operand: Operand) -> Place | None:
-    """Return where the operand's constant is written, away from its use; None where that is no single number."""
+    """Return the definition of the operand's constant, away from its use; None unless it is a single number."""
     span = operand.definition
     if span is None or operand.literal or span.path not in analysis.sources:
         return None
@@ -52,9 +52,9 @@ def defined(analysis: Analysis, operand: Operand) -> Place | None:
 
 
 def parameter(analysis: Analysis, operand: Operand) -> str:
-    """Return the ROS parameter that an operand's value is a default of or is read from, or its key in a loaded file.
+    """Return the ROS parameter or configuration key from which an operand's value comes, "" if there is none.
 
-    Empty where it is neither.
+    The value may be the default of the parameter.
     """
     span = operand.definition
     if operand.setting or span is None or span.path not in analysis.sources:
@@ -76,7 +76,7 @@ def parameter(analysis: Analysis, operand: Operand) -> str:
 
 
 def package_files(root: Path, node: Path) -> Mapping[str, str]:
-    """Return the configuration files of the package that a node belongs to: path below `root` → text."""
+    """Return the configuration files of the package that contains a node: path relative to `root` → text."""
     top = next((folder for folder in node.parents if (folder / "package.xml").is_file()), root)
     top = top if top.is_relative_to(root) else root
     found: dict[str, str] = {}
@@ -92,7 +92,7 @@ def package_files(root: Path, node: Path) -> Mapping[str, str]:
 
 
 def configured(name: str, files: Mapping[str, str]) -> Iterator[Place]:
-    """Yield the places in configuration files where a parameter of that name has a number."""
+    """Yield the numbers that configuration files assign to the parameter `name`."""
     key = re.split(r"[/.~]", name)[-1]
     for path, text in files.items():
         for match in _matches(_kind(Path(path)), key, text):
@@ -104,7 +104,7 @@ def configured(name: str, files: Mapping[str, str]) -> Iterator[Place]:
 
 
 def redefined(place: Place, value: bool | int | float) -> str:
-    """Write a new value as the old one is written: `true`, `3`, `0.75`."""
+    """Format a new value in the style of the old one: `true`, `3`, `0.75`."""
     if isinstance(value, bool):
         return str(value)
     whole = isinstance(place.value, int) and float(value).is_integer()
@@ -112,20 +112,22 @@ def redefined(place: Place, value: bool | int | float) -> str:
 
 
 def edits(places: Mapping[Place, bool | int | float], text: str) -> list[Edit]:
-    """Return the edits of one file. Raises RepairError where a place no longer holds its number."""
+    """Return the edits of one file. Raises RepairError if a place no longer contains its number."""
     found = []
     for place, value in places.items():
         new = redefined(place, value)
         old = text[place.start : place.end]
         lower = old in ("true", "false")
         if old.capitalize() != str(place.value) and not _same(old, place.value):
-            raise RepairError(f"{place.path}:{place.line} no longer holds {place.value}: run again.")
+            raise RepairError(
+                f"{place.path}:{place.line}: expected {place.value}, but the file changed: run again."
+            )
         found.append(Edit(place.start, place.end, new.lower() if lower else new))
     return found
 
 
 def _number(node: ast.expr | None) -> bool | int | float | None:
-    """Return the number that an expression writes, a sign included; None where it is none."""
+    """Return the number, with its sign, that an expression spells out; None for other expressions."""
     sign = 1
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         node, sign = node.operand, -1
@@ -142,7 +144,7 @@ def _same(old: str, value: float) -> bool:
 
 
 def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
-    """Return the other places that use the same constant as these operands: `path:line`, in order."""
+    """Return the other places that use the constant of these operands: `path:line`, in order."""
     mine = {(operand.span.path, operand.span.line) for operand in used}
     spans = {operand.definition for operand in used}
     names = {parameter(analysis, operand) for operand in used} - {""}
@@ -156,7 +158,7 @@ def users(analysis: Analysis, used: Sequence[Operand]) -> list[str]:
 
 
 def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:
-    """Return the parameter that an entry of `declare_parameters` declares, with its namespace."""
+    """Return the parameter, with its namespace, that an entry of `declare_parameters` declares."""
     elements = entry.elts if isinstance(entry, ast.Tuple | ast.List) else []
     namespace = [*call.args[:1], *(one.value for one in call.keywords if one.arg == "namespace")]
     texts = [
@@ -168,7 +170,7 @@ def _entry_name(call: ast.Call, entry: ast.AST | None) -> str:
 
 
 def _name(source: Document, node: ast.expr) -> str:
-    """Return what a literal is called: the target of its assignment, or the argument it is the default of."""
+    """Return the name of a literal: the target of its assignment or the parameter whose default it is; else ""."""
     key, inner = "", node
     for each in source.ancestors(node):
         if isinstance(each, ast.Dict | ast.List | ast.Tuple):
@@ -189,7 +191,7 @@ def _name(source: Document, node: ast.expr) -> str:
 
 
 def _key(source: Document, table: ast.Dict | ast.List | ast.Tuple, entry: ast.expr) -> str:
-    """Return how an entry of a table is asked for: `["hold"]`, `[2]`."""
+    """Return the subscript of an entry in a table: `["hold"]`, `[2]`."""
     if isinstance(table, ast.Dict):
         keys = [key for key, value in zip(table.keys, table.values, strict=True) if value is entry and key]
         return f"[{source.source(keys[0])}]" if keys else ""
@@ -204,12 +206,12 @@ def _kind(path: Path) -> str:
     if path.suffix in (".launch", ".xml") and (path.suffix == ".launch" or path.name.endswith(".launch.xml")):
         return "launch"
     if path.name.endswith((".launch.py", "_launch.py")):
-        return "yaml"  # parameters of a node are a dictionary there
+        return "yaml"  # node parameters are a dictionary in such a file
     return "cfg" if path.suffix == ".cfg" else ""
 
 
 def _matches(kind: str, key: str, text: str) -> Iterator[tuple[int, int]]:
-    """Yield where the numbers of a key stand."""
+    """Yield the offsets (start, end) of the numbers assigned to a key."""
     if kind == "cfg":
         yield from _added(key, text)
         return
@@ -228,7 +230,7 @@ def _matches(kind: str, key: str, text: str) -> Iterator[tuple[int, int]]:
 
 
 def _added(key: str, text: str) -> Iterator[tuple[int, int]]:
-    """Yield the defaults of a dynamic_reconfigure file, the fifth argument of `gen.add(name, type, level, text, …)`."""
+    """Yield the offsets of defaults in a dynamic_reconfigure file: `gen.add(name, type, level, text, default, …)`."""
     try:
         source = Document("", text, parse(text))
     except (SyntaxError, ValueError):

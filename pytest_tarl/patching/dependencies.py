@@ -1,4 +1,4 @@
-"""Packages that a patch imports messages from and that the ROS package of the file does not depend on yet."""
+"""Find packages from which a patch imports messages and on which the file's ROS package does not depend yet."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _PARTS = ("msg", "srv", "action")
 
 
 def undeclared(changed: Mapping[Path, str], root: Path) -> list[str]:
-    """Return a sentence for every package whose messages a patch imports and no package.xml names.
+    """Return a sentence for every package whose messages a patch imports and package.xml does not list.
 
-    `changed` maps files to their new text. What the file imported before is its author's business.
+    `changed` maps files to their new text. Packages that the file imported before the patch are not reported.
     """
     told: dict[str, None] = {}
     for path, text in changed.items():
@@ -41,7 +41,7 @@ def undeclared(changed: Mapping[Path, str], root: Path) -> list[str]:
 
 
 def _imported(text: str | bytes) -> set[str]:
-    """Return the packages that a file imports messages, services or actions of."""
+    """Return the packages from which a file imports messages, services or actions."""
     modules: list[str] = []
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.ImportFrom) and not node.level and node.module:

@@ -1,4 +1,4 @@
-"""A source text with its tree: where everything stands, and exact edits that leave all else as it is."""
+"""A source text with its syntax tree: positions of nodes, and edits that change nothing else."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _COMMENT = re.compile(r"[ \t\f]*(#[^\r\n]*)?")
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """Replace the characters from `start` to `end` by `text`, whose lines end in a bare line feed."""
+    """Replace the characters from `start` to `end` by `text`, whose lines end with a bare line feed."""
 
     start: int
     end: int
@@ -30,7 +30,7 @@ class Edit:
 
 @dataclass(frozen=True, eq=False)
 class Document:
-    """A module's text and tree. Offsets count characters of the text."""
+    """Text and syntax tree of a module. Offsets count characters of the text."""
 
     path: str
     text: str
@@ -38,7 +38,7 @@ class Document:
 
     @cached_property
     def newline(self) -> str:
-        """Return the line ending that most lines have."""
+        """Return the line ending of most lines."""
         windows = self.text.count("\r\n")
         return "\r\n" if windows * 2 > self.text.count("\n") else "\n"
 
@@ -49,18 +49,18 @@ class Document:
 
     @cached_property
     def parents(self) -> dict[ast.AST, ast.AST]:
-        """Map every node to the one that holds it."""
+        """Map every node to its parent."""
         return {child: node for node in ast.walk(self.tree) for child in ast.iter_child_nodes(node)}
 
     @cached_property
     def expressions(self) -> dict[tuple[int, int], ast.expr]:
-        """Map the offsets of every expression to its node, the innermost where several share them."""
+        """Map (start, end) offsets to expressions; the innermost one if several share them."""
         nodes = (node for node in ast.walk(self.tree) if isinstance(node, ast.expr))
         return {(self.start(node), self.end(node)): node for node in nodes}
 
     @cached_property
     def unit(self) -> str:
-        """Return one level of indentation as this file has it; four spaces where nothing is indented."""
+        """Return one level of indentation as used in this file; four spaces if nothing is indented."""
         for node in ast.walk(self.tree):
             body = getattr(node, "body", None)
             if isinstance(node, ast.stmt) and isinstance(body, list) and self.alone(body[0]):
@@ -97,7 +97,7 @@ class Document:
         return line[: len(line) - len(line.lstrip(" \t\f"))]
 
     def comment(self, node: ast.stmt) -> str:
-        """Return the comment behind a statement, or an empty text."""
+        """Return the comment after a statement, or ""."""
         match = _COMMENT.match(self.text, self.end(node))
         return (match and match.group(1)) or ""
 
@@ -111,22 +111,22 @@ class Document:
         return not self.text[self.line_starts[node.lineno - 1] : self.start(node)].strip(" \t\f")
 
     def at(self, span: Span) -> ast.expr | None:
-        """Return the expression at a span, if there is one."""
+        """Return the expression at a span, None if there is none."""
         first, last = (span.line, span.column), (span.end_line, span.end_column)
         return self.expressions.get((self._characters(*first), self._characters(*last)))
 
     def find(self, span: Span) -> ast.expr:
-        """Return the expression at a span. Raises RepairError when there is none."""
+        """Return the expression at a span. Raises RepairError if there is none."""
         node = self.at(span)
         if node is None:
             raise RepairError(
-                f"{span.path}:{span.line}:{span.column} holds no expression that can be replaced: analyse the file "
-                "again if it was edited meanwhile."
+                f"{span.path}:{span.line}:{span.column} holds no expression that can be replaced: if the file was "
+                "edited during the run, run again."
             )
         return node
 
     def ancestors(self, node: ast.AST) -> Iterator[ast.AST]:
-        """Yield the nodes around a node, from the inside out."""
+        """Yield the nodes around a node, innermost first."""
         while node in self.parents:
             node = self.parents[node]
             yield node
@@ -140,19 +140,19 @@ class Document:
         return next((each for each in self.ancestors(node) if isinstance(each, Function)), None)
 
     def method(self, node: ast.AST) -> tuple[ast.ClassDef, Function, str] | None:
-        """Return class, method and name of the instance for code that runs with an instance at hand."""
+        """Return class, method and name of `self` for code inside a method; None without an instance."""
         for method, owner in pairwise([node, *self.ancestors(node)]):
             if isinstance(method, Function) and isinstance(owner, ast.ClassDef):
                 return _bound(owner, method)
         return None
 
     def top_level(self, node: ast.AST) -> ast.stmt:
-        """Return the module's own statement that holds a node."""
+        """Return the top-level statement that contains a node."""
         inside = [node, *self.ancestors(node)]
         return next(each for each in reversed(inside[:-1]) if isinstance(each, ast.stmt))
 
     def block(self, statement: ast.stmt) -> list[ast.stmt]:
-        """Return the sequence of statements that a statement belongs to."""
+        """Return the list of statements to which a statement belongs."""
         holder = self.parents[statement]
         for _, value in ast.iter_fields(holder):
             if isinstance(value, list) and any(each is statement for each in value):
@@ -163,7 +163,7 @@ class Document:
         return self.line_starts[line - 1] + column - 1 if 0 < line <= len(self.line_starts) else -1
 
     def offset(self, line: int, byte: int) -> int:
-        """Return the offset of a line and a column in UTF-8 bytes, as trees count them."""
+        """Return the offset of a line and a column, which syntax trees count in UTF-8 bytes."""
         start = self.line_starts[line - 1]
         if self.text.isascii():
             return start + byte
@@ -173,7 +173,7 @@ class Document:
 
 @cache
 def document(path: str, text: str) -> Document:
-    """Parse a text once. Raises RepairError where it is not Python."""
+    """Parse a text once. Raises RepairError if it is not Python."""
     try:
         return Document(path, text, parse(text))
     except SyntaxError as error:
@@ -181,23 +181,23 @@ def document(path: str, text: str) -> Document:
 
 
 def parse(text: str) -> ast.Module:
-    """Parse a text without the warnings that its author sees elsewhere."""
+    """Parse a text without issuing the warnings of the compiler. Raises SyntaxError."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return ast.parse(text)
 
 
 def parse_expression(code: str) -> ast.expr:
-    """Parse an expression, which may go over several lines and end in a comment."""
+    """Parse an expression, which may span several lines and end in a comment. Raises SyntaxError."""
     statement = parse(f"({code}\n)").body[0]
     assert isinstance(statement, ast.Expr)  # noqa: S101  (parentheses hold nothing else)
     return statement.value
 
 
 def apply_edits(source: Document, edits: Iterable[Edit]) -> str:
-    """Return the text with all edits made; insertions at one place keep their order.
+    """Return the text with all edits applied; insertions at the same offset keep their order.
 
-    Raises RepairError where two edits overlap, or when the result is not a program.
+    Raises RepairError if two edits overlap or the result is not valid Python.
     """
     changed = apply_plain_edits(source.path, source.text, edits, source.newline)
     _check(source.path, changed)
@@ -205,12 +205,14 @@ def apply_edits(source: Document, edits: Iterable[Edit]) -> str:
 
 
 def apply_plain_edits(path: str, text: str, edits: Iterable[Edit], newline: str = "\n") -> str:
-    """Return a text, which need not be a program, with all edits made. Raises RepairError where two overlap."""
+    """Return a text, not necessarily Python, with all edits applied. Raises RepairError if two overlap."""
     pieces, position = [], 0
     for edit in sorted(edits, key=lambda each: (each.start, each.end)):
         if edit.start < position:
             line = text.count("\n", 0, edit.start) + 1
-            raise RepairError(f"{path}:{line}: two changes of the same code exclude each other: choose one.")
+            raise RepairError(
+                f"{path}:{line}: two changes of this code exclude each other: choose one of them."
+            )
         written = edit.text.replace("\r\n", "\n").replace("\n", newline)
         pieces += [text[position : edit.start], written]
         position = edit.end

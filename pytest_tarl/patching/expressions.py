@@ -1,4 +1,4 @@
-"""Expressions as a maintainer writes them: numbers rounded for reading, no needless parentheses."""
+"""Write expressions as a maintainer would: rounded numbers and no needless parentheses."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import ast
 
 from pytest_tarl.patching.document import Document, parse_expression
 
-DIGITS = 4  # significant digits of a number that a repair writes
+DIGITS = 4  # significant digits of numbers in a repair
 
-# Binding strength, loosest first, as in the language reference.
+# Operator precedence, loosest first, as in the language reference.
 (
     TEST,
     OR,
@@ -65,17 +65,17 @@ _IDENTITIES = (ast.Eq, ast.NotEq, ast.In, ast.NotIn, ast.Is, ast.IsNot)
 
 
 def rounded(value: float) -> float:
-    """Round to the significant digits that a repair writes."""
+    """Round to `DIGITS` significant digits."""
     return float(f"{value:.{DIGITS}g}")
 
 
 def number(value: float | int | bool) -> str:
-    """Write a number: `12.0`, `0.75`, `3`, `True`."""
+    """Format a number: `12.0`, `0.75`, `3`, `True`."""
     return repr(rounded(value)) if isinstance(value, float) else repr(value)
 
 
 def strength(code: str) -> int:
-    """Return how strongly the outermost operator of an expression binds."""
+    """Return the precedence of an expression's outermost operator."""
     node = parse_expression(code)
     if isinstance(node, ast.BinOp | ast.UnaryOp | ast.BoolOp):
         return _OPERATORS[type(node.op)]
@@ -88,12 +88,12 @@ def strength(code: str) -> int:
 
 
 def enclosed(code: str, needed: int) -> str:
-    """Return an expression in parentheses where it binds less strongly than its place needs."""
+    """Return an expression, in parentheses if its precedence is below `needed`."""
     return code if strength(code) >= needed else f"({code})"
 
 
 def fitted(source: Document, node: ast.expr, code: str) -> str:
-    """Return an expression in the parentheses that it needs to stand where `node` stands."""
+    """Return an expression with the parentheses that it needs in place of `node`."""
     before = source.text[: source.start(node)].rstrip(" \t")[-1:]
     after = source.text[source.end(node) :].lstrip(" \t")[:1]
     if before == "(" and after == ")":
@@ -105,28 +105,28 @@ def fitted(source: Document, node: ast.expr, code: str) -> str:
 
 
 def scaled(code: str, factor: float) -> str:
-    """Write `factor * code`."""
+    """Return `factor * code`."""
     return f"{number(factor)} * {enclosed(code, FACTOR)}"
 
 
 def shifted(code: str, step: float) -> str:
-    """Write `code + step`, or `code - step` for a negative one."""
+    """Return `code + step`, or `code - |step|` for a negative step."""
     sign = "-" if step < 0 else "+"
     return f"{enclosed(code, ARITHMETIC)} {sign} {number(abs(step))}"
 
 
 def negated(code: str) -> str:
-    """Write `not code`."""
+    """Return `not code`."""
     return f"not {enclosed(code, NOT)}"
 
 
 def choice(condition: str, then: str, otherwise: str) -> str:
-    """Write a conditional expression."""
+    """Return a conditional expression."""
     return f"{enclosed(then, OR)} if {enclosed(condition, OR)} else {enclosed(otherwise, TEST)}"
 
 
 def counting(source: Document, node: ast.expr) -> bool:
-    """Tell whether only an integer makes sense at a place: an index, a length, a code that is compared."""
+    """Tell whether a place needs an integer: an index, a length, or a code that is compared for equality."""
     child: ast.AST = node
     for parent in source.ancestors(node):
         if isinstance(parent, ast.BinOp) and not isinstance(parent.op, ast.Div | ast.Pow | ast.Mod):
@@ -158,7 +158,7 @@ def _counts(parent: ast.AST, child: ast.AST) -> bool:
 
 
 def _is_integer_vector(node: ast.AST) -> bool:
-    """Tell whether a list of at least two integers is written out: a colour, a pixel, a shape."""
+    """Tell whether a node is a literal list of at least two integers: a colour, a pixel, a shape."""
     elements = node.elts if isinstance(node, ast.List | ast.Tuple) else []
     numbers = [each.operand if isinstance(each, ast.UnaryOp) else each for each in elements]
     return len(numbers) > 1 and all(
@@ -167,7 +167,7 @@ def _is_integer_vector(node: ast.AST) -> bool:
 
 
 def _needed(parent: ast.AST, child: ast.expr) -> int:
-    """Return how strongly an expression must bind to stand below `parent` without parentheses."""
+    """Return the precedence that an expression needs to stand below `parent` without parentheses."""
     if isinstance(parent, ast.BinOp):
         return _beside(parent, child)
     if isinstance(parent, ast.UnaryOp):

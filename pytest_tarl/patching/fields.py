@@ -1,4 +1,4 @@
-"""Integer fields of messages: a constant that ends up in one has to stay an integer, or the message is refused."""
+"""Integer fields of messages: a constant stored in one must stay an integer, or ROS rejects the message."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SHAPING = ast.BinOp | ast.UnaryOp | ast.IfExp | ast.List | ast.Tuple
 
 
 def in_integer_field(source: Document, node: ast.expr) -> bool:
-    """Tell whether an expression is, or decides the size of, what is put into an integer field of a message."""
+    """Tell whether an expression becomes (part of) the value of an integer field of a message."""
     child: ast.AST = node
     for parent in source.ancestors(node):
         if isinstance(parent, ast.keyword) and parent.arg is not None:
@@ -33,14 +33,14 @@ def in_integer_field(source: Document, node: ast.expr) -> bool:
 
 
 def _takes_positional(source: Document, call: ast.Call, argument: ast.AST) -> bool:
-    """Tell whether a positional argument of a message's constructor is an integer field."""
+    """Tell whether a positional argument of a message constructor is an integer field."""
     name = _type_name(source, call.func)
     at = next(at for at, each in enumerate(call.args) if each is argument)
     return _INTEGER.match([*_fields(name).values(), *[""] * (at + 1)][at]) is not None
 
 
 def _takes_integer(source: Document, target: ast.expr) -> bool:
-    """Tell whether a target such as `self.out.status.code` is an integer field of a message made in this file."""
+    """Tell whether a target such as `self.out.status.code` is an integer field of a message created in this file."""
     fields: list[str] = []
     while isinstance(target, ast.Attribute | ast.Subscript):
         if isinstance(target, ast.Attribute):
@@ -54,7 +54,7 @@ def _takes_integer(source: Document, target: ast.expr) -> bool:
 
 @cache
 def _constructors(source: Document) -> dict[str, ast.expr]:
-    """Map what is assigned a call to what is called: `out` to `Int32`."""
+    """Map targets of assigned calls to the called expression: `out` to `Int32`."""
     return {
         ast.unparse(target): node.value.func
         for node in ast.walk(source.tree)
@@ -64,7 +64,7 @@ def _constructors(source: Document) -> dict[str, ast.expr]:
 
 
 def _is_integer(source: Document, kind: ast.expr, fields: tuple[str, ...]) -> bool:
-    """Tell whether a field of a message type, as it is named in a file, holds integers."""
+    """Tell whether a field of a message type, named as in this file, holds integers."""
     found = _type_name(source, kind)
     for field in fields:
         found = _fields(found).get(field, "")
@@ -74,14 +74,14 @@ def _is_integer(source: Document, kind: ast.expr, fields: tuple[str, ...]) -> bo
 
 
 def _type_name(source: Document, kind: ast.expr) -> str:
-    """Return the ROS name of what a file calls; empty where it was not imported."""
+    """Return the ROS name of a message type as called in this file; "" if it was not imported."""
     package, _, short = _packages(source).get(ast.unparse(kind).partition(".")[0], "").partition("/")
     return f"{package}/msg/{short or ast.unparse(kind).rpartition('.')[2]}" if package else ""
 
 
 @cache
 def _fields(name: str) -> dict[str, str]:
-    """Return the types of a message's fields, in order; none where the message is not known."""
+    """Return the types of a message's fields, in order; empty for an unknown message."""
     try:
         return dict(message_type(name).get_fields_and_field_types()) if name else {}
     except (TarlError, AttributeError):
@@ -90,7 +90,7 @@ def _fields(name: str) -> dict[str, str]:
 
 @cache
 def _packages(source: Document) -> dict[str, str]:
-    """Map names to what they were imported as: `Int32` to `std_msgs/Int32`, `std_msgs` to `std_msgs/`."""
+    """Map imported names to ROS names: `Int32` to `std_msgs/Int32`, `std_msgs` to `std_msgs/`."""
     found: dict[str, str] = {}
     for node in ast.walk(source.tree):
         if isinstance(node, ast.ImportFrom) and node.module:

@@ -1,4 +1,4 @@
-"""A guard as Python: which expression holds a sensor's value, and the condition on it that is safe to ask."""
+"""Write guards as Python: the expression for a sensor's value, and a condition that cannot raise."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from pytest_tarl.variables import prefixes
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """An expression that holds a sensor's value; `absent` is the part of it that is None before the first message."""
+    """An expression for a sensor's value; `absent` is the part of it that is None before the first message."""
 
     code: str
     absent: str = ""
 
 
 def condition(guard: Guard, readings: Mapping[str, Reading], topics: Mapping[str, str]) -> str:
-    """Return a guard as Python, given what holds each of its sensors; empty when it always holds."""
+    """Return a guard as Python, given the readings of its sensors by name; "" if the guard always holds."""
     parts: list[str] = []
     for conjunct in guard.conjuncts:
         if not always(conjunct):
@@ -43,7 +43,7 @@ def always(conjunct: Conjunct) -> bool:
 
 
 def boolean(sensor: Sensor, topics: Mapping[str, str]) -> bool:
-    """Tell whether a sensor reads true or false."""
+    """Tell whether a sensor is boolean."""
     plain = not sensor.numeric and not sensor.categories
     return (
         plain and sensor.field == "data" and topics.get(sensor.topic or "", "").rpartition("/")[2] == "Bool"
@@ -51,10 +51,10 @@ def boolean(sensor: Sensor, topics: Mapping[str, str]) -> bool:
 
 
 def held(source: Document, place: ast.AST, expressions: Iterable[str], conjunct: Conjunct) -> Reading | None:
-    """Return the first expression that can be asked at `place`, or None.
+    """Return the first expression that can be evaluated at `place`, or None.
 
-    An expression is left aside when it may not be bound there, or when it starts out with a value that makes
-    the condition true: before the first message the original code has to stay in force.
+    An expression is skipped if it may be unbound there, or if its initial value makes the condition true: before the
+    first message the original code must stay in force.
     """
     for code in expressions:
         chain = prefixes(code)
@@ -65,7 +65,7 @@ def held(source: Document, place: ast.AST, expressions: Iterable[str], conjunct:
 
 
 def bound(sensor: Sensor, value: float) -> str:
-    """Write a limit, rounded to about a hundredth of a bin."""
+    """Format a bound, rounded to about a hundredth of a bin."""
     if sensor.bins is None or sensor.low is None or sensor.high is None:
         return repr(int(value) if float(value).is_integer() else rounded(value))
     width = sensor.resolution
@@ -73,7 +73,7 @@ def bound(sensor: Sensor, value: float) -> str:
 
 
 def _starts_true(source: Document, place: ast.AST, chain: tuple[str, ...], conjunct: Conjunct) -> bool:
-    """Tell whether a condition can hold before the first message; new messages are all zeros."""
+    """Tell whether a condition can hold before the first message; the fields of new messages are zero."""
     constants = initial(source, place, chain[-1])[0]
     if any(initial(source, place, each)[1] for each in chain):
         constants.add(0.0)
@@ -86,7 +86,7 @@ def _satisfied(conjunct: Conjunct, value: Constant) -> bool:
     if value is None:
         return False
     number = float(value)
-    if conjunct.low > conjunct.high:  # an angle, across the ends of its range
+    if conjunct.low > conjunct.high:  # an angle whose interval crosses the end of the range
         return number >= conjunct.low or number <= conjunct.high
     return conjunct.low <= number <= conjunct.high
 
@@ -104,9 +104,9 @@ def _test(conjunct: Conjunct, code: str, is_boolean: bool) -> str:
 
 
 def _interval(sensor: Sensor, low: float, high: float, code: str) -> str:
-    """Write the bins from low to high: closed below, open above, except for the last bin, which holds its end.
+    """Return the condition for the bins from low to high: half-open, except that the last bin includes its end.
 
-    Of an angle that runs across the ends of its range: how far it is turned from where the interval begins.
+    For an angle whose interval crosses the end of the range, the condition bounds the rotation from `low`.
     """
     if low > high:
         period = (sensor.high or 0.0) - (sensor.low or 0.0)
@@ -122,7 +122,7 @@ def _interval(sensor: Sensor, low: float, high: float, code: str) -> str:
 
 
 def _is_top(sensor: Sensor, value: float) -> bool:
-    """Tell whether a limit is the upper end of a sensor's range, up to rounding."""
+    """Tell whether a bound is the upper end of a sensor's range, up to rounding."""
     return sensor.numeric and math.isclose(value, sensor.high or 0.0, rel_tol=1e-9, abs_tol=1e-9)
 
 
@@ -139,6 +139,6 @@ def _quoted(text: str) -> str:
 
 
 def _rejects_none(conjunct: Conjunct, is_boolean: bool) -> bool:
-    """Tell whether a test is false for None, and no error."""
+    """Tell whether a test is False for None instead of raising."""
     equality = bool(conjunct.sensor.categories) or conjunct.low == conjunct.high
     return equality and not (is_boolean and not conjunct.low)

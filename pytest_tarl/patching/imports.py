@@ -1,4 +1,4 @@
-"""Names that a module imports, and the edits that import more of them where a maintainer would."""
+"""Names that a module imports, and edits that add imports where a maintainer would."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pytest_tarl.patching.document import Document, Edit, Function
 
 @dataclass(frozen=True, slots=True)
 class Import:
-    """`from module import name as alias`, or `import module` when `name` is empty."""
+    """`from module import name as alias`, or `import module` if `name` is empty."""
 
     module: str
     name: str = ""
@@ -19,13 +19,13 @@ class Import:
 
     @property
     def written(self) -> str:
-        """Write what follows `import`."""
+        """Return the text that follows `import`."""
         name = self.name or self.module
         return f"{name} as {self.alias}" if self.alias and self.alias != name else name
 
 
 def imported(source: Document, module: str, name: str) -> str:
-    """Return the expression by which a module knows `module.name`, or an empty text."""
+    """Return the expression for `module.name` in this file, "" if it is not imported."""
     for node in top_imports(source):
         if isinstance(node, ast.ImportFrom) and node.module == module and not node.level:
             for alias in node.names:
@@ -39,10 +39,10 @@ def imported(source: Document, module: str, name: str) -> str:
 
 
 def reference(source: Document, module: str, name: str) -> tuple[str, Import | None] | None:
-    """Return how a module that imports from `module` refers to a new name in it, and what it has to import for that.
+    """Return the expression for a new name of `module`, and the import that it needs (None if it needs none).
 
-    None when it imports nothing from there. Modules are compared by the end of their dotted names, so that
-    relative imports and files run as scripts are recognised.
+    Return None if the file imports nothing from `module`. Modules are compared by the end of their dotted names, so
+    that relative imports and files run as scripts match.
     """
     leaf = module.rpartition(".")[2]
     for node in top_imports(source):
@@ -61,7 +61,7 @@ def reference(source: Document, module: str, name: str) -> tuple[str, Import | N
 
 
 def import_edits(source: Document, wanted: Iterable[Import]) -> list[Edit]:
-    """Return the edits that add imports: to a line that imports from the same module already, else on a new one."""
+    """Return edits that add imports, to a line that imports from the same module if there is one."""
     by_module: dict[str, list[Import]] = {}
     for each in dict.fromkeys(wanted):
         by_module.setdefault(each.module, []).append(each)
@@ -69,7 +69,7 @@ def import_edits(source: Document, wanted: Iterable[Import]) -> list[Edit]:
 
 
 def top_imports(source: Document) -> Iterator[ast.Import | ast.ImportFrom]:
-    """Yield the imports that a module makes when it is loaded, in order."""
+    """Yield the imports outside functions, in order."""
     for node in ast.walk(source.tree):
         if isinstance(node, ast.Import | ast.ImportFrom) and source.function(node) is None:
             yield node
@@ -81,7 +81,7 @@ def _same(imported_as: str, module: str) -> bool:
 
 
 def _added(source: Document, module: str, group: Sequence[Import]) -> Iterator[Edit]:
-    """Yield the edits that import more of one module."""
+    """Yield the edits that import more names of one module."""
     for node in _import_block(source):
         same = isinstance(node, ast.ImportFrom) and "." * node.level + (node.module or "") == module
         if same and group[0].name:
@@ -92,7 +92,7 @@ def _added(source: Document, module: str, group: Sequence[Import]) -> Iterator[E
 
 
 def _extended(source: Document, node: ast.Import | ast.ImportFrom, wanted: Import) -> Edit:
-    """Add a name to an import, in alphabetical order where the others are, each on a line of its own likewise."""
+    """Add a name to an import: alphabetically if the names are sorted, on its own line if the names are."""
     names = [alias.name for alias in node.names]
     later = [alias for alias in node.names if alias.name > wanted.name and names == sorted(names)]
     neighbour = later[0] if later else node.names[-1]
@@ -106,7 +106,7 @@ def _extended(source: Document, node: ast.Import | ast.ImportFrom, wanted: Impor
 
 
 def _new_line(source: Document, module: str, line: str) -> Edit:
-    """Place an import in the block at the top of the module, beside its like."""
+    """Place an import in the block at the top of the module, next to similar imports."""
     block = [node for node in _import_block(source) if source.alone(node)]
     kind = f".{module.rpartition('.')[2]}"
     alike = [

@@ -1,4 +1,4 @@
-"""Several patches of one file, all made for the same text: one patch, or the lines that they disagree on."""
+"""Merge several patches of the same text into one, or report the lines on which they conflict."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pytest_tarl.patching.same_lines import agreed
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """Two patches that want different things of the same lines; `line` counts from 1."""
+    """Two patches that conflict on one line; `line` counts from 1."""
 
     file: str
     line: int
@@ -22,13 +22,13 @@ class Conflict:
     second: Patch
 
     def __str__(self) -> str:
-        """Say which lines of which patches."""
+        """Name the line and the two patches."""
         return (
             f"{self.file}:{self.line} is changed in two ways, by {self.first.name} and by {self.second.name}"
         )
 
 
-CONSTANT = "constant"  # the fact of the header that names what a repair changes, where that is defined
+CONSTANT = "constant"  # key of the header line that names a changed constant at its definition
 
 
 def constants(patch: Patch) -> list[str]:
@@ -37,7 +37,7 @@ def constants(patch: Patch) -> list[str]:
 
 
 def conflicts(patches: Sequence[Patch]) -> list[Conflict]:
-    """Return where patches that were made for the same text do not go together."""
+    """Return the conflicts between patches made for the same text."""
     found: list[Conflict] = []
     for at, first in enumerate(patches):
         for second in patches[at + 1 :]:
@@ -55,18 +55,18 @@ def conflicts(patches: Sequence[Patch]) -> list[Conflict]:
 
 
 def combined(content: bytes, wanted: Sequence[Replacement]) -> bytes:
-    """Return a text with all replacements in it; what is put at the same place stands in the given order."""
+    """Return a text with all replacements applied; insertions at the same line keep their order. Raises RepairError."""
     lines, result, at = split_lines(content), list[bytes](), 0
     for one in _in_order(wanted):
         if tuple(lines[one.start : one.end]) != one.old or one.start < at:
-            raise RepairError(f"Line {one.start + 1} has changed, so the patches cannot be combined.")
+            raise RepairError(f"Line {one.start + 1} has changed, so the patches cannot be merged.")
         result += [*lines[at : one.start], *one.new]
         at = one.end
     return b"".join((*result, *lines[at:]))
 
 
 def separated(content: bytes, wanted: Sequence[Replacement]) -> bytes | None:
-    """Return the text that `combined` made a content of; None where it does not hold all replacements."""
+    """Undo `combined`: return the original text, None if the content lacks one of the replacements."""
     lines, result, at, shift = split_lines(content), list[bytes](), 0, 0
     for one in _in_order(wanted):
         start = one.start + shift
@@ -79,12 +79,14 @@ def separated(content: bytes, wanted: Sequence[Replacement]) -> bytes | None:
 
 
 def combined_diff(patches: Sequence[Patch], originals: Mapping[str, bytes]) -> str:
-    """Return one diff in place of several; `originals` are the texts that they were made for, by name."""
+    """Return one diff for several patches; `originals` maps file names to the texts that they were made for."""
     texts = {}
     for name, original in originals.items():
         files = [file for patch in patches for file in patch.files if file.name == name]
         texts[name] = (original, combined(original, [one for file in files for one in file.replacements]))
-    header = [f"{patches[0].title.partition(':')[0]}: {len(patches)} repairs in one, each accepted by itself"]
+    header = [
+        f"{patches[0].title.partition(':')[0]}: {len(patches)} repairs, each accepted on its own, merged"
+    ]
     for patch in patches:
         header.append(f"part {patch.name}")
         header += [f"  {key}: {value}" for key, value in patch.facts if key not in (BASE, SEAL)]
@@ -92,12 +94,12 @@ def combined_diff(patches: Sequence[Patch], originals: Mapping[str, bytes]) -> s
 
 
 def same_change(first: Patch, second: Patch) -> bool:
-    """Tell whether two patches do the same."""
+    """Tell whether two patches make the same changes."""
     return first.files == second.files
 
 
 def _of_one_constant(first: Patch, second: Patch) -> Iterator[Conflict]:
-    """Yield the constants that both change, one at its use under a condition and one where it is defined, say."""
+    """Yield the constants that both patches change, for example one at its use and one at its definition."""
     for told in constants(first):
         file, _, line = told.partition(" ")[0].rpartition(":")
         if told in constants(second) and line.isdecimal() and first.base == second.base:
@@ -105,7 +107,7 @@ def _of_one_constant(first: Patch, second: Patch) -> Iterator[Conflict]:
 
 
 def _in_order(wanted: Sequence[Replacement]) -> list[Replacement]:
-    """Return each replacement once, from the top of the file down; those that agree are one."""
+    """Return the distinct replacements from the top of the file down, with equivalent ones merged."""
     ordered: list[Replacement] = []
     for one in sorted(dict.fromkeys(wanted), key=lambda one: (one.start, one.end)):
         joined = agreed(ordered[-1], one) if ordered else None
@@ -117,7 +119,7 @@ def _in_order(wanted: Sequence[Replacement]) -> list[Replacement]:
 
 
 def _clash(one: Replacement, other: Replacement) -> bool:
-    """Tell whether two replacements overlap; what is only put in does not take the place of anything."""
+    """Tell whether two replacements overlap; pure insertions overlap nothing."""
     if one == other or agreed(one, other) is not None:
         return False
     return one.start < other.end and other.start < one.end

@@ -1,4 +1,4 @@
-"""Mutations: another value for a constant at its use, written into the source as the patch will have it."""
+"""Mutations: a new value for a constant at its use, written into the source exactly as the patch will have it."""
 
 from __future__ import annotations
 
@@ -30,25 +30,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Mutation:
-    """Another value for an operand at its use.
+    """A new value for an operand at its use.
 
-    `value` is the new value of a literal; otherwise the factor that the use is multiplied by, or what is added
-    where the constant is zero. A boolean operand is flipped. With a `place` the change is written there, where the
-    constant is defined.
+    `value` is the new value of a literal. For other operands it is the factor that multiplies the use, or the summand
+    if the constant is zero. A boolean operand is flipped. With a `place`, the change is made at the constant's
+    definition instead.
     """
 
     operand: Operand
     value: float | int | bool
     place: Place | None = None
     form: Form | None = (
-        None  # of a structural repair: then the operand is an expression, and the value a factor
+        None  # of a structural repair, whose operand is an expression and whose value is a factor
     )
 
 
 def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutation | None:
-    """Return the mutation of one sweep step, or None when it would change nothing.
+    """Return the mutation of one sweep step, or None if it would change nothing.
 
-    Zero moves by `factor - 1`, and by `1 - 1/factor` below one, so that steps stay symmetric on a log scale.
+    Zero moves by `factor - 1`, or by `1 - 1/factor` for factors below 1, so that steps are symmetric on a log scale.
     With `integral` (see `is_integral`) an integer stays one and moves by at least one.
     """
     value = operand.value
@@ -68,13 +68,13 @@ def mutations(operand: Operand, factor: float, integral: bool = False) -> Mutati
 
 
 def is_integral(analysis: Analysis, operand: Operand) -> bool:
-    """Tell whether only an integer makes sense at the operand's place: an index, a length, a compared code, a field."""
+    """Tell whether the operand's place needs an integer: an index, a length, a compared code or an integer field."""
     source = _document(analysis, operand.span.path)
     return isinstance(operand.value, int) and _whole(source, source.find(operand.span))
 
 
 def redefinition(mutation: Mutation) -> float | int | bool:
-    """Return what a mutation makes of the number at its place."""
+    """Return the new number at the mutation's place."""
     value = mutation.operand.value
     if isinstance(value, bool) or mutation.operand.literal:
         return not value if isinstance(value, bool) else mutation.value
@@ -91,10 +91,10 @@ def rewrite(
     topics: Mapping[str, str],
     texts: Mapping[str, str] = MappingProxyType({}),
 ) -> dict[str, str]:
-    """Return the new text of every file that changes when the mutations hold under the guard.
+    """Return the new text of every file that changes if the mutations are applied under the guard.
 
-    `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that have to be added; `texts`
-    are files beside the analysed ones that constants are defined in. Raises RepairError when it cannot be written.
+    `topics` maps topic names to message types (`std_msgs/msg/Bool`), for subscriptions that must be added. `texts` are
+    further files with definitions of constants. Raises RepairError if a change cannot be written.
     """
     conditions = Conditions(analysis, guard, topics)
     edits: dict[str, list[Edit]] = {}
@@ -120,7 +120,7 @@ def rewrite(
 
 
 def form_values(mutation: Mutation) -> dict[str, float]:
-    """Return the parameters of a structural mutation, the searched one as it is moved."""
+    """Return the parameters of a structural mutation; the searched one is scaled by the mutation's value."""
     if mutation.form is None:
         return {}
     values = dict(mutation.form.defaults)
@@ -132,7 +132,7 @@ def form_values(mutation: Mutation) -> dict[str, float]:
 def _formed(
     analysis: Analysis, mutations: Sequence[Mutation]
 ) -> Iterator[tuple[Document, ast.expr, Form, dict[str, float], SiteId]]:
-    """Yield each form once, with the parameters that all mutations of it give it."""
+    """Yield each form once, with the parameters from all its mutations."""
     found: dict[tuple[Span, Template], tuple[Mutation, dict[str, float]]] = {}
     for mutation in mutations:
         if mutation.form is not None:
@@ -147,7 +147,7 @@ def _formed(
 
 
 def _redefined(mutations: Sequence[Mutation]) -> dict[str, dict[Place, float | int | bool]]:
-    """Return what becomes of the numbers at places, by file."""
+    """Return the new numbers of redefined places, by file."""
     found: dict[str, dict[Place, float | int | bool]] = {}
     for mutation in mutations:
         if mutation.place is not None:
@@ -158,7 +158,7 @@ def _redefined(mutations: Sequence[Mutation]) -> dict[str, dict[Place, float | i
 def guard_text(
     guard: Guard, analysis: Analysis, mutations: Sequence[Mutation], topics: Mapping[str, str]
 ) -> str:
-    """Return the guard as Python, as `rewrite` writes it at the first mutation; empty when it always holds."""
+    """Return the guard as Python, as `rewrite` writes it at the first mutation; "" if it always holds."""
     conditions = Conditions(analysis, guard, topics)
     for source, node, _, _, site in _formed(analysis, mutations[:1]):
         return conditions.at(source, site, source.statement(node))
@@ -170,14 +170,14 @@ def guard_text(
 
 @dataclass(frozen=True)
 class Use:
-    """A mutation where it stands in a file."""
+    """A change with its site."""
 
     site: SiteId
     change: Change
 
 
 class Conditions:
-    """One guard, as Python at every place that asks for it, and the subscriptions that this takes."""
+    """One guard, as Python at every place that checks it, and the subscriptions that the guard needs."""
 
     def __init__(self, analysis: Analysis, guard: Guard, topics: Mapping[str, str]) -> None:
         self._analysis = analysis
@@ -186,17 +186,17 @@ class Conditions:
         self.subscriptions = Subscriptions(analysis, topics)
 
     def at(self, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return the guard as Python at a place. Raises RepairError when a sensor's value cannot be brought there."""
+        """Return the guard as Python at a place. Raises RepairError if a sensor's value is not available there."""
         wanted = [each for each in self._guard.conjuncts if not always(each)]
         readings = {each.sensor.name: self._reading(each, source, site, place) for each in wanted}
         return condition(self._guard, readings, self._topics)
 
     def value(self, sensor: Sensor, source: Document, site: SiteId, place: ast.AST) -> str:
-        """Return a sensor's value as Python at a place, 0 before it is known. Raises RepairError."""
+        """Return a sensor's value as Python at a place, 0 before its first message. Raises RepairError."""
         reading = self._reading(Conjunct(sensor, math.inf, math.inf), source, site, place)
         if reading.absent and reading.absent != reading.code:
             raise RepairError(
-                f"Sensor {sensor.name!r} cannot be asked for at {site.text!r} before its first message."
+                f"Sensor {sensor.name!r} cannot be read at {site.text!r} before its first message."
             )
         return f"({reading.code} or 0.0)" if reading.absent else reading.code
 
@@ -204,9 +204,9 @@ class Conditions:
         sensor = conjunct.sensor
         if not sensor.guardable:
             raise RepairError(
-                f"Sensor {sensor.name!r} is only observed by the test, or read by a function of it, so that the node "
-                "cannot read it: give it topic and dotted field, or the variable of the node that holds it (expr=…), "
-                "or leave it out of the guard."
+                f"Sensor {sensor.name!r} is computed or observed by the test only, so the node cannot read it: give "
+                "the sensor a topic and a dotted field, or the node's variable that holds its value (expr=…), or leave "
+                "it out of the guard."
             )
         known = (
             self._analysis.holders(sensor.topic, sensor.path, site) if sensor.topic and sensor.path else ()
@@ -214,8 +214,8 @@ class Conditions:
         reading = held(source, place, (sensor.expr, *known) if sensor.expr else known, conjunct)
         if reading is None and not sensor.path:
             raise RepairError(
-                f"Sensor {sensor.name!r} is held by {sensor.expr}, which cannot be asked for at {site.text!r}, or "
-                "starts with a value that makes the guard true before anything is known."
+                f"Sensor {sensor.name!r} (expr={sensor.expr!r}) cannot be read at {site.text!r}, or its initial value "
+                "makes the guard true before anything is known."
             )
         return reading or self.subscriptions.reading(sensor, site, source, place)
 
@@ -223,7 +223,7 @@ class Conditions:
 def _file_edits(
     source: Document, statements: Sequence[tuple[ast.stmt, list[Use]]], conditions: Conditions
 ) -> Iterator[Edit]:
-    """Yield the edits of one file: plain ones, choices inside expressions, and branches around statements."""
+    """Yield the edits of one file: plain ones, conditional expressions, and branches around statements."""
     twice: list[tuple[ast.stmt, list[Change], str]] = []
     for statement, uses in statements:
         changes = [use.change for use in uses]
@@ -242,7 +242,7 @@ def _file_edits(
 def _by_file(
     analysis: Analysis, mutations: Sequence[Mutation]
 ) -> list[tuple[Document, list[tuple[ast.stmt, list[Use]]]]]:
-    """Return the mutated uses, by file and statement, in the order of the text."""
+    """Return the mutated uses by file and statement, in the order of the text."""
     files: dict[str, dict[ast.stmt, list[Use]]] = {}
     for mutation in sorted(mutations, key=lambda each: each.operand.span):
         source = _document(analysis, mutation.operand.span.path)
@@ -252,14 +252,14 @@ def _by_file(
 
 
 def _place(source: Document, statement: ast.stmt, uses: Sequence[Use]) -> Callable[[Use], ast.AST]:
-    """Return where the condition of each use is asked: at the statement, or inside a function written in it."""
+    """Return where each use checks the condition: at the statement, or inside its lambda or generator."""
     if doubled(source, statement, [use.change for use in uses]):
         return lambda _: statement
     return lambda use: lazy(source, use.change.node) or statement
 
 
 def _change(source: Document, mutation: Mutation) -> Change:
-    """Return what takes the place of an operand."""
+    """Return the replacement of an operand."""
     operand, value = mutation.operand, mutation.value
     node = source.find(operand.span)
     integral = isinstance(operand.value, int) and _whole(source, node)
@@ -280,7 +280,7 @@ def _change(source: Document, mutation: Mutation) -> Change:
 
 
 def _whole(source: Document, node: ast.expr) -> bool:
-    """Tell whether only an integer makes sense at a place."""
+    """Tell whether a place needs an integer."""
     return counting(source, node) or in_integer_field(source, node)
 
 
@@ -291,13 +291,13 @@ def _check_literal(node: ast.expr, operand: Operand) -> None:
         written = None
     if written != operand.value:
         raise RepairError(
-            f"{operand.span.path}:{operand.span.line} holds {ast.unparse(node)} where the analysis saw "
-            f"{operand.code}: analyse the file again."
+            f"{operand.span.path}:{operand.span.line} holds {ast.unparse(node)}, but the analysis found "
+            f"{operand.code}: if the file was edited during the run, run again."
         )
 
 
 def _literal(operand: Operand, value: float, wanted: float, integral: bool) -> Mutation | None:
-    """Return the mutation of a literal; integers stay integers where they can."""
+    """Return the mutation of a literal; an integer stays one where possible."""
     new: float | int = rounded(wanted)
     if isinstance(value, int) and integral:
         new = round(new) if round(new) != value else value + (1 if wanted > value else -1)
@@ -313,7 +313,7 @@ def _moved(operand: Operand, wanted: float, unchanged: float) -> Mutation | None
 
 
 def _step(factor: float) -> float:
-    """Return by how much zero moves for a factor: symmetric on a log scale, no step for 1."""
+    """Return the step by which zero moves for a factor: symmetric on a log scale, 0 for factor 1."""
     size = abs(factor)
     if size < 1e-9:
         return 0.0
@@ -322,5 +322,5 @@ def _step(factor: float) -> float:
 
 def _document(analysis: Analysis, path: str) -> Document:
     if path not in analysis.sources:
-        raise RepairError(f"{path} is not among the analysed files: name it among the nodes of the test.")
+        raise RepairError(f"{path} is not among the analysed files: add it to the nodes of the test.")
     return document(path, analysis.sources[path])

@@ -1,4 +1,4 @@
-"""Patches: a unified diff that `git apply` and `patch -p1` take, on any line ending and encoding."""
+"""Patches: unified diffs for `git apply` and `patch -p1`, with any line ending and encoding."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from pytest_tarl.files import advice_on, slug, write_atomically
 
 Opcode = tuple[str, int, int, int, int]
 CONTEXT = 3  # unchanged lines around a change
-BASE = "paths are relative to"  # the fact of the header that says so
-SEAL = "digest of all other lines"  # the fact of the header by which an edited or damaged patch is known
+BASE = "paths are relative to"  # header key of the folder to which the patch's paths are relative
+SEAL = "digest of all other lines"  # header key of the digest that reveals edited or damaged patches
 TITLE = "Repair by tarl "
-PARTIAL = ".partial"  # the ending of a file that holds what is no repair ...
-QUOTE = b"| "  # ... and what stands before each of its lines
+PARTIAL = ".partial"  # suffix of a file whose change was not accepted as a repair ...
+QUOTE = b"| "  # ... and the prefix of each of its lines, so that no tool applies it
 _NO_NEWLINE = "\\ No newline at end of file\n"
 
 
 def unified_diff(
     originals: Mapping[Path, bytes], changed: Mapping[Path, str], root: Path, header: Sequence[str]
 ) -> str:
-    """Return the diff from the files' bytes to their new text, with comment lines in front.
+    """Return the diff from the files' bytes to their new text, preceded by comment lines.
 
-    Paths are relative to the top of the git repository that holds the files, else to `root`: git passes over
-    others in silence. Bytes that are not UTF-8 are kept as surrogates; `readable` shows them.
-    Raises RepairError when the files have no common base, or cannot hold the new text in their encoding.
+    Paths are relative to the top of the git repository that contains the files, else to `root`, because `git apply`
+    silently skips other paths. Bytes that are not UTF-8 become surrogates; `readable` replaces them. Raises RepairError
+    if the files are in several repositories or their encoding cannot represent the new text.
     """
     base = _base([path.resolve() for path in changed], root.resolve())
     texts = {
@@ -44,7 +44,7 @@ def unified_diff(
 
 
 def bytes_diff(texts: Mapping[str, tuple[bytes, bytes]], base: str, header: Sequence[str]) -> str:
-    """Return the diff of files whose old and new bytes are known; `base` is what their names are relative to."""
+    """Return the diff between old and new bytes; `texts` maps names relative to `base` to (old, new)."""
     comments = [f"# {line}".rstrip() + "\n" for text in header for line in text.splitlines() or [""]]
     head = "".join((*comments, f"# {BASE}: {base}\n"))
     diffs = "".join(_file_diff(name, before, after) for name, (before, after) in texts.items())
@@ -52,17 +52,17 @@ def bytes_diff(texts: Mapping[str, tuple[bytes, bytes]], base: str, header: Sequ
 
 
 def seal(content: bytes) -> str:
-    """Return the digest of a patch without the line that tells it."""
+    """Return the digest of a patch whose digest line is left out."""
     return hashlib.sha256(content).hexdigest()
 
 
 def readable(diff: str) -> str:
-    """Return a diff that can be printed: bytes of other encodings than UTF-8 become replacement characters."""
+    """Return a printable diff: bytes that are not UTF-8 become replacement characters."""
     return diff.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 
 def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
-    """Write a patch as `<test>-<drift>-<hash of its content>.patch`, whole or not at all, in place of older ones."""
+    """Write a patch atomically as `<test>-<drift>-<digest>.patch` and delete older ones. Raises RepairError."""
     content = diff.encode("utf-8", "surrogateescape")
     digest = hashlib.sha256(content).hexdigest()[:8]
     name = f"{slug(test)}-{slug(drift or 'online')}"
@@ -82,7 +82,7 @@ def write(diff: str, folder: Path, test: str, drift: str | None) -> Path:
 
 
 def write_partial(diff: str, folder: Path, test: str, drift: str | None) -> Path:
-    """Write what is no repair so that neither git nor patch takes it: every line behind a mark. Raises RepairError."""
+    """Write a change that is not a repair, each line quoted so that no tool applies it. Raises RepairError."""
     content = b"".join(QUOTE + line for line in split_lines(diff.encode("utf-8", "surrogateescape")))
     path = folder / f"{slug(test)}-{slug(drift or 'online')}{PARTIAL}"
     try:
@@ -93,39 +93,39 @@ def write_partial(diff: str, folder: Path, test: str, drift: str | None) -> Path
 
 
 def unquoted(content: bytes) -> bytes:
-    """Return a patch as it is without the marks that keep it from being applied."""
+    """Return a patch without the quotes of `write_partial`."""
     if not content.startswith(QUOTE):
         return content
     return b"".join(line.removeprefix(QUOTE) for line in split_lines(content))
 
 
 def apply_command(patch: Path, cwd: Path) -> str:
-    """Return the shell command that applies a patch of `<root>/.tarl/patches` when it is run in `cwd`.
+    """Return the shell command that applies a patch of `<root>/.tarl/patches` when run in `cwd`.
 
-    Run in another folder, it does not find the patch and says so.
+    In another folder the command fails with a message that it cannot find the patch.
     """
     here = cwd.resolve()
     text = patch.read_bytes().decode("utf-8", "surrogateescape")
     base = (patch.resolve().parents[2] / _stated_base(text)).resolve()
     if shutil.which("git") is None:
         return shlex.join(["patch", "-p1", "-d", _shown(base, here), "-i", str(patch.resolve())])
-    if base == here:  # in a subfolder, git passes over the files beside it and exits with 0
+    if base == here:  # in a subfolder, git silently skips files outside it and exits with 0
         return shlex.join(["git", "apply", _shown(patch.resolve(), here)])
     return shlex.join(["git", "-C", _shown(base, here), "apply", _shown(patch.resolve(), base)])
 
 
 def blob_id(content: bytes) -> str:
-    """Return git's name of a content: which text a patch was made for, and which one it makes."""
+    """Return git's blob id of a content."""
     return hashlib.sha1(b"blob %d\0" % len(content) + content, usedforsecurity=False).hexdigest()
 
 
 def split_lines(content: bytes) -> list[bytes]:
-    """Split where git does: behind line feeds only."""
+    """Split lines as git does: after line feeds only."""
     return re.findall(rb"[^\n]*\n|[^\n]+", content)
 
 
 def _base(files: Sequence[Path], root: Path) -> Path:
-    """Return the folder that the paths of a patch are relative to."""
+    """Return the folder to which the paths of a patch are relative. Raises RepairError."""
     tops = {_git_top(file) for file in files}
     if len(tops) > 1:
         names = ", ".join(str(file) for file in files)
@@ -145,19 +145,19 @@ def _git_top(file: Path) -> Path | None:
 
 
 def _shown(path: Path, start: Path) -> str:
-    """Return a path as one types it in `start`."""
+    """Return a path relative to `start`."""
     return Path(os.path.relpath(path, start)).as_posix()
 
 
 def _stated_base(text: str) -> str:
-    """Return what the header says that the paths are relative to."""
+    """Return the base folder stated in a patch's header, "." by default."""
     start = f"# {BASE}: "
     stated = (line.removeprefix(start) for line in text.split("\n") if line.startswith(start))
     return next(stated, ".")
 
 
 def _encoded(path: Path, original: bytes, text: str) -> bytes:
-    """Return the bytes of a file's new text, in the encoding and with the line endings that the file has."""
+    """Return the new text in the file's encoding, with its line endings. Raises RepairError."""
     encoding, _ = tokenize.detect_encoding(io.BytesIO(original).readline)
     text = text.removeprefix("\ufeff")
     if b"\r\n" in original and "\r\n" not in text:
@@ -172,7 +172,7 @@ def _encoded(path: Path, original: bytes, text: str) -> bytes:
 
 
 def _with_endings(original: str, text: str) -> str:
-    """Give lines their old endings back; new ones take the ending that most lines have."""
+    """Restore the endings of unchanged lines; new lines take the ending of most lines."""
     before, after = _lines(original), _lines(text)
     usual = "\r\n" if original.count("\r\n") * 2 > original.count("\n") else "\n"
     bare = [line.replace("\r\n", "\n") for line in before]
@@ -186,7 +186,7 @@ def _with_endings(original: str, text: str) -> str:
 
 
 def _file_diff(name: str, before: bytes, after: bytes) -> str:
-    """Return the diff of one file; with the line `index`, git can merge it into another state of the file."""
+    """Return the diff of one file; its `index` line lets git do three-way merges."""
     old, new = (_lines(content.decode("utf-8", "surrogateescape")) for content in (before, after))
     end = "\t" if " " in name else ""
     lines = [
@@ -225,5 +225,5 @@ def _line(sign: str, line: str) -> str:
 
 
 def _lines(text: str) -> list[str]:
-    """Split where git does: behind line feeds only."""
+    """Split lines as git does: after line feeds only."""
     return re.findall(r"[^\n]*\n|[^\n]+", text)

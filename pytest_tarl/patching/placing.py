@@ -1,4 +1,4 @@
-"""Where the files of a patch are: inside the project, whatever its header says and wherever links lead."""
+"""Locate the files of a patch, which must be inside the project whatever its header and links say."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from pytest_tarl.patching.reading import Patch
 
 
 def located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
-    """Return the project's folder and the files of a patch, in its order, all without links and inside of it.
+    """Return the project's folder and the patched files in order, with links resolved.
 
-    The project is what the user names, else the git repository around `.tarl`, else the folder that holds `.tarl`.
-    Raises RepairError when the files are nowhere, RefusedError where they are outside.
+    The project is `directory`, else the git repository around `.tarl`, else the folder that contains `.tarl`.
+    Raises RepairError if the files do not exist, RefusedError if one lies outside the project.
     """
     try:
         return _located(patch, directory)
@@ -37,8 +37,8 @@ def _located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
     base = next((folder for folder in likely if not _missing(patch, folder)), None)
     if base is None:
         raise RepairError(
-            f"{patch.name} changes {_missing(patch, likely[0])[0]}, and there is no such file in {likely[0]}: say with "
-            "--directory where its paths begin."
+            f"{patch.name} changes {_missing(patch, likely[0])[0]}, but {likely[0]} has no such file: name the folder "
+            "to which the patch's paths are relative with --directory."
         )
     files = [(base / file.name).resolve() for file in patch.files]
     for file, path in zip(patch.files, files, strict=True):
@@ -49,8 +49,8 @@ def _located(patch: Patch, directory: Path | None) -> tuple[Path, list[Path]]:
 def _keep_inside(patch: Patch, named: str, path: Path, project: Path) -> None:
     if not path.is_relative_to(project) or ".git" in path.relative_to(project).parts:
         raise RefusedError(
-            f"{patch.name} leads out of {project}: {named} is {path}. Nothing was changed; if it is meant, name the "
-            "folder with --directory."
+            f"{patch.name} leads out of {project}: {named} is {path}. Nothing was changed; if this is intended, name "
+            "the folder with --directory."
         )
 
 

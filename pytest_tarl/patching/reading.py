@@ -1,4 +1,4 @@
-"""Patches as they are read back: what the header tells, and the changes of each file."""
+"""Read patches back: the facts of the header and the changes of each file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pytest_tarl.patching.patch import BASE, SEAL, TITLE, seal, split_lines, unq
 
 _FACT = re.compile(r"# +([a-z][a-z -]*): (.*)")
 _HUNK = re.compile(rb"@@ -(\d{1,9})(?:,(\d{1,9}))? \+(\d{1,9})(?:,(\d{1,9}))? @@.*\n")
-_HEADER = (  # the lines of a file behind `diff --git`; git puts a tab behind names with spaces
+_HEADER = (  # lines of a file after `diff --git`; git appends a tab to names with spaces
     re.compile(rb"a/(.+) b/(\1)\n"),
     re.compile(rb"index ([0-9a-f]{40})\.\.([0-9a-f]{40})\n"),
     re.compile(rb"--- a/([^\t\n]+)\t?\n"),
@@ -25,7 +25,7 @@ _HEADER = (  # the lines of a file behind `diff --git`; git puts a tab behind na
 
 @dataclass(frozen=True)
 class Patch:
-    """A patch of TARL: `facts` are what its header tells, in order, `base` is what its paths are relative to."""
+    """A patch of TARL: `facts` are its header's keys and values, in order."""
 
     path: Path
     title: str
@@ -34,38 +34,38 @@ class Patch:
 
     @property
     def name(self) -> str:
-        """Return the name that messages use."""
+        """Return the name for messages."""
         return self.path.name
 
     @property
     def sealed(self) -> bool:
-        """Tell whether it carries its digest, which was right when it was read."""
+        """Tell whether the patch contains its digest; `read` has checked it."""
         return bool(self.told(SEAL))
 
     @property
     def root(self) -> Path | None:
-        """Return the folder that holds `.tarl`, None where the patch was carried elsewhere."""
-        home = Path(os.path.normpath(self.path.absolute())).parent  # as it is seen: `.tarl` may be a link
+        """Return the folder that contains `.tarl`, None if the patch is elsewhere."""
+        home = Path(os.path.normpath(self.path.absolute())).parent  # links unresolved, as `.tarl` may be one
         inside = (home.name, home.parent.name) == ("patches", ".tarl")
         return home.parent.parent if inside else None
 
     @property
     def base(self) -> str:
-        """Return what the paths are relative to, as seen from the folder that holds `.tarl`."""
+        """Return the folder to which the patch's paths are relative, itself relative to `root`."""
         return self.told(BASE)[-1]
 
     def told(self, key: str) -> list[str]:
-        """Return all that the header says under a key; a combined patch says it for each of its parts."""
+        """Return all header values of a key; a merged patch has one for each of its parts."""
         return [value for name, value in self.facts if name == key]
 
 
 def read(path: Path) -> Patch:
-    """Read a patch. Raises RepairError where there is none, it is not one of TARL's, or it was cut or edited."""
+    """Read a patch. Raises RepairError if it is missing, not written by TARL, truncated or edited."""
     try:
         content = unquoted(path.read_bytes())
     except OSError as problem:
         raise RepairError(
-            f"{path} cannot be read ({problem.strerror}): patches of repairs are below .tarl/patches."
+            f"{path} cannot be read ({problem.strerror}): TARL writes patches to .tarl/patches."
         ) from problem
     head, *bodies = re.split(rb"^diff --git ", content, flags=re.MULTILINE)
     header = head.decode("utf-8", "replace").split("\n")
@@ -74,7 +74,7 @@ def read(path: Path) -> Patch:
         raise RepairError(
             f"{path} is not a patch of TARL, so TARL cannot check it: apply it with `git apply`."
         )
-    damaged = RepairError(f"{path} is damaged: it was cut or edited. Make it again.")
+    damaged = RepairError(f"{path} is damaged: it was cut or edited. Run the repair again.")
     told = all(line.startswith("#") for line in header[:-1]) and dict(facts)[BASE].isprintable()
     if not told or not _whole(content, [value for key, value in facts if key == SEAL]):
         raise damaged
@@ -91,7 +91,7 @@ def read(path: Path) -> Patch:
 
 
 def _whole(content: bytes, seals: Sequence[str]) -> bool:
-    """Tell whether a patch is what was written, as far as it carries its digest."""
+    """Tell whether the digest matches; True for a patch without one."""
     if not seals:
         return True
     line = f"# {SEAL}: {seals[0]}\n".encode("utf-8", "surrogateescape")
@@ -99,14 +99,14 @@ def _whole(content: bytes, seals: Sequence[str]) -> bool:
 
 
 def _inside(name: str) -> bool:
-    """Tell whether a name stays below the folder that it is relative to, and out of what git keeps there."""
+    """Tell whether a relative name stays below its base folder and outside `.git`."""
     parts = name.split("/")
     odd = PurePosixPath(name).is_absolute() or "\\" in name or not name.isprintable()
     return not odd and not {"", ".", ".."} & set(parts) and ".git" not in map(str.lower, parts)
 
 
 def _file(body: bytes) -> FilePatch:
-    """Read what stands behind `diff --git`. Raises ValueError."""
+    """Parse the section after `diff --git`. Raises ValueError."""
     lines = split_lines(body)
     first = next((at for at, line in enumerate(lines) if line.startswith(b"@@ ")), 0)
     if first != len(_HEADER):
@@ -120,7 +120,7 @@ def _file(body: bytes) -> FilePatch:
 
 
 def _hunks(lines: Sequence[bytes]) -> Iterator[Hunk]:
-    """Yield the hunks; a line that is followed by a backslash has no ending. Raises ValueError."""
+    """Yield the hunks; a backslash line marks the line before it as unterminated. Raises ValueError."""
     starts = [at for at, line in enumerate(lines) if line.startswith(b"@@ ")]
     for at, end in pairwise((*starts, len(lines))):
         found = _HUNK.fullmatch(lines[at])

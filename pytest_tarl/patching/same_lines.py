@@ -1,4 +1,4 @@
-"""Two changes of the same lines that want no different things: names added to one import, one text within another."""
+"""Reconcile two changes of the same lines: names added to one import, or one insertion within another."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from collections.abc import Sequence
 
 from pytest_tarl.patching.changes import Lines, Replacement
 
-Imports = dict[tuple[str, int] | None, dict[str, None]]  # names as they are written, by module and level
+Imports = dict[
+    tuple[str, int] | None, dict[str, None]
+]  # (module, level), None for `import …` → names as written
 
 
 def agreed(one: Replacement, other: Replacement) -> Replacement | None:
-    """Return one replacement that does what both do; None where they differ in more than that."""
+    """Return one replacement that has the effect of both, None if they conflict."""
     if one.start != other.start or one.old != other.old:
         return None
     for wide, narrow in ((one, other), (other, one)):
@@ -33,7 +35,7 @@ def _within(narrow: Lines, wide: Lines) -> bool:
 
 
 def _imported(texts: Sequence[Lines]) -> list[Imports] | None:
-    """Return what lines import, each of the texts; None where they hold anything else, a comment for instance."""
+    """Return the imports of each text; None if one contains anything else, such as a comment."""
     found = []
     for lines in texts:
         imports: Imports = {}
@@ -56,12 +58,12 @@ def _imported(texts: Sequence[Lines]) -> list[Imports] | None:
 
 
 def _added(before: Imports, after: Imports) -> bool:
-    """Tell whether nothing that was imported is missing."""
+    """Tell whether all earlier imports remain."""
     return all(names.keys() <= after.get(where, {}).keys() for where, names in before.items())
 
 
 def _written(first: Imports, second: Imports, ending: bytes) -> list[bytes]:
-    """Write the imports of both; names are in alphabetical order where both have them so."""
+    """Write the imports of both; names are sorted if they are sorted in both."""
     lines = []
     for where in {**first, **second}:
         mine, theirs = list(first.get(where, ())), list(second.get(where, ()))

@@ -1,4 +1,4 @@
-"""How a statement takes another value under a condition: an `if` around it, or a choice inside it."""
+"""Make a change conditional: an `if` around the statement, or a conditional expression inside it."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from pytest_tarl.patching.document import Document, Edit, parse_expression
 from pytest_tarl.patching.expressions import choice, fitted
 from pytest_tarl.patching.vocabulary import free, names
 
-LONGEST_COPY = 3  # lines of a statement that still reads well when written twice
-LONGEST_CONDITION = 48  # characters of a condition that still reads well inside an expression
+LONGEST_COPY = 3  # lines; longer statements are not written twice, for readability
+LONGEST_CONDITION = 48  # characters; longer conditions get a name instead of standing inside an expression
 _ARITHMETIC = {
     "abs",
     "bool",
@@ -34,9 +34,9 @@ _DIRECTIVES = ("# noqa", "# type:", "# pragma", "# pylint", "# tarl:", "# pyrigh
 
 @dataclass(frozen=True)
 class Change:
-    """A use of a constant and what takes its place where the condition holds.
+    """A use of a constant and the code that replaces it while the condition holds.
 
-    Where the change is a mere factor, `factor` and `rest` are its parts: `2.4` and ` * self.kp`.
+    If the change is just a factor, `factor` and `rest` are the parts of `then`: `2.4` and ` * self.kp`.
     """
 
     node: ast.expr
@@ -46,7 +46,7 @@ class Change:
 
 
 def lazy(source: Document, node: ast.expr) -> ast.expr | None:
-    """Return the body of the lambda or generator in which a use runs later than its statement, or None."""
+    """Return the body of the lambda or generator that evaluates a use later than its statement, or None."""
     for around in source.ancestors(node):
         if isinstance(around, ast.stmt):
             return None
@@ -58,7 +58,7 @@ def lazy(source: Document, node: ast.expr) -> ast.expr | None:
 
 
 def doubled(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> bool:
-    """Tell whether a statement may be written twice, once for either case."""
+    """Tell whether a statement may be written twice, once for each case."""
     short = (statement.end_lineno or 0) - statement.lineno < LONGEST_COPY
     late = any(lazy(source, change.node) for change in changes)
     plain = isinstance(statement, _SIMPLE) and source.alone(statement)
@@ -66,14 +66,14 @@ def doubled(source: Document, statement: ast.stmt, changes: Sequence[Change]) ->
 
 
 def replaced(source: Document, changes: Sequence[Change]) -> list[Edit]:
-    """Return the edits that make changes hold always."""
+    """Return the edits that apply changes unconditionally."""
     return [
         Edit(*_place(source, change.node), fitted(source, change.node, change.then)) for change in changes
     ]
 
 
 def inlined(source: Document, change: Change, condition: str) -> Edit:
-    """Return the edit that chooses inside the expression."""
+    """Return the edit that replaces a use by a conditional expression."""
     if change.factor:
         code = f"({choice(condition, change.factor, '1')}){change.rest}"
     else:
@@ -82,7 +82,7 @@ def inlined(source: Document, change: Change, condition: str) -> Edit:
 
 
 def branched(source: Document, group: Sequence[tuple[ast.stmt, Sequence[Change]]], condition: str) -> Edit:
-    """Return the edit that writes consecutive statements twice, below `if` and `else`."""
+    """Return the edit that writes consecutive statements twice, under `if` and `else`."""
     first, last = group[0][0], group[-1][0]
     indent, unit = source.indentation(first), source.unit
     start, end = source.start(first), source.line_end(last)
@@ -95,13 +95,13 @@ def branched(source: Document, group: Sequence[tuple[ast.stmt, Sequence[Change]]
 
 
 def named(source: Document, statement: ast.stmt, name: str, condition: str) -> Edit:
-    """Return the edit that gives the condition a name before a statement."""
+    """Return the edit that assigns the condition to a name before a statement."""
     start = source.start(statement)
     return Edit(start, start, f"{name} = {condition}\n{source.indentation(statement)}")
 
 
 def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> bool:
-    """Tell whether a condition named just before a statement is still the condition when its expressions run."""
+    """Tell whether a condition computed just before a statement still applies when its expressions are evaluated."""
     once = isinstance(statement, (*_SIMPLE, ast.AnnAssign, ast.If, ast.For, ast.With))
     late = any(lazy(source, change.node) for change in changes)
     return once and not late and source.leads(statement) and not _is_elif(source, statement)
@@ -110,7 +110,7 @@ def nameable(source: Document, statement: ast.stmt, changes: Sequence[Change]) -
 def choices(
     source: Document, statement: ast.stmt, changes: Sequence[Change], tests: Sequence[str]
 ) -> Iterator[Edit]:
-    """Yield the edits that choose inside a statement; a condition long or asked twice gets a name before it."""
+    """Yield edits inside a statement; a condition that is long or needed twice gets a name before the statement."""
     test = tests[0]
     long = len(changes) > 1 or len(test) > LONGEST_CONDITION
     if long and nameable(source, statement, changes):
@@ -125,7 +125,7 @@ def choices(
 def neighbours(
     source: Document, twice: Sequence[tuple[ast.stmt, list[Change], str]]
 ) -> Iterator[list[tuple[ast.stmt, list[Change], str]]]:
-    """Group statements that follow each other under one condition that they do not change."""
+    """Group consecutive statements under one condition that none of them changes."""
     group: list[tuple[ast.stmt, list[Change], str]] = []
     for each in twice:
         if group and not _joins(source, group[-1][0], each[0], group[0][2], each[2]):
@@ -147,7 +147,7 @@ def _joins(source: Document, before: ast.stmt, after: ast.stmt, condition: str, 
 
 
 def _calls(statement: ast.stmt) -> bool:
-    """Tell whether a statement runs code that may change what a condition asks; arithmetic does not."""
+    """Tell whether a statement runs code that may change the value of a condition; arithmetic does not."""
     for node in ast.walk(statement):
         if isinstance(node, ast.Await | ast.Yield | ast.YieldFrom):
             return True
@@ -161,14 +161,14 @@ def _is_elif(source: Document, statement: ast.stmt) -> bool:
 
 
 def _consumed(source: Document, generator: ast.GeneratorExp) -> bool:
-    """Tell whether a generator is handed to a builtin that runs it at once."""
+    """Tell whether a generator is an argument of a builtin that consumes it at once."""
     call = source.parents[generator]
     eager = {"sum", "min", "max", "any", "all", "list", "tuple", "set", "sorted", "dict"}
     return isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in eager
 
 
 def _has_long_text(statement: ast.stmt) -> bool:
-    """Tell whether a text inside goes over several lines, so that another indentation would change it."""
+    """Tell whether a string spans several lines, so that indenting the statement would change it."""
     texts = (node for node in ast.walk(statement) if isinstance(node, ast.Constant | ast.JoinedStr))
     return any(node.end_lineno != node.lineno for node in texts)
 
@@ -178,7 +178,7 @@ def _place(source: Document, node: ast.expr) -> tuple[int, int]:
 
 
 def _changed(source: Document, statement: ast.stmt, changes: Sequence[Change]) -> str:
-    """Return a statement with its changes, and of its comment only what tools read."""
+    """Return a statement with its changes; of its comment only directives for tools are kept."""
     start, end = source.start(statement), source.end(statement)
     text = source.text[start:end]
     for edit in sorted(replaced(source, changes), key=lambda each: -each.start):
@@ -188,6 +188,6 @@ def _changed(source: Document, statement: ast.stmt, changes: Sequence[Change]) -
 
 
 def _deeper(text: str, unit: str) -> str:
-    """Indent the lines after the first by one level more."""
+    """Indent the lines after the first by one more level."""
     first, *others = text.replace("\r\n", "\n").split("\n")
     return "\n".join([first, *(unit + line if line.strip() else line for line in others)])

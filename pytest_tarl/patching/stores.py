@@ -1,4 +1,4 @@
-"""Where the values of a subscription that a repair adds are kept: on the instance, or in the module."""
+"""Storage for the values of a subscription that a repair adds: on the instance, or in the module."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from pytest_tarl.patching.document import Document, Edit, Function
 
 @dataclass(frozen=True)
 class Store:
-    """Values are kept in attributes of `owner`'s instances, or in globals of the module where there is no owner.
+    """Values are stored in attributes of `owner`'s instances, or in globals of the module without an owner.
 
-    `places` are where they are read; `module` is what another module calls this one, if that one subscribes.
+    `places` are the nodes that read them. `module` is this module's name in the module that subscribes, if another.
     """
 
     source: Document
@@ -26,13 +26,13 @@ class Store:
     places: list[ast.AST] = field(default_factory=list)
 
     def variable(self, name: str) -> str:
-        """Return the expression under which a value is read."""
+        """Return the expression that reads a value."""
         return f"{self.instance}.{name}" if self.owner else name
 
 
 @dataclass(frozen=True)
 class Callback:
-    """A function to add: it keeps fields of a message (`names`: field → variable)."""
+    """A function to add, which stores fields of a message (`names`: field → variable)."""
 
     store: Store
     anchor: Anchor
@@ -41,7 +41,7 @@ class Callback:
     annotation: str = ""
 
     def lines(self, instance: str = "") -> list[str]:
-        """Write the function, as a method where there is an instance."""
+        """Return the lines of the function; a method if `instance` is given."""
         unit = self.store.source.unit
         argument = "message" if "message" not in self.names.values() else "received"
         typed = f"{argument}: {self.annotation}" if self.annotation else argument
@@ -54,7 +54,7 @@ class Callback:
 
 
 def store_edits(callbacks: Sequence[Callback]) -> list[tuple[str, Edit]]:
-    """Return the edits, with their paths, that keep what the callbacks receive."""
+    """Return the edits, with their paths, that add the callbacks and their variables."""
     edits: list[tuple[str, Edit]] = []
     modules: dict[str, list[Callback]] = {}
     for callback in callbacks:
@@ -69,16 +69,16 @@ def store_edits(callbacks: Sequence[Callback]) -> list[tuple[str, Edit]]:
 
 
 def first_statement(definition: Function | ast.ClassDef) -> ast.stmt:
-    """Return the first statement behind the docstring; the docstring where there is nothing else."""
+    """Return the first statement after the docstring, or the docstring if there is no other."""
     documented = ast.get_docstring(definition, clean=False) is not None and len(definition.body) > 1
     return definition.body[1 if documented else 0]
 
 
 def _instance_edits(callback: Callback, owner: ast.ClassDef) -> list[Edit]:
-    """Set attributes before anything can read them; place the method behind the one that subscribes."""
+    """Initialise attributes before anything can read them; put the callback after the method that subscribes."""
     source, method = callback.store.source, callback.anchor.source.method(callback.anchor.statement)
     if method is None:
-        raise RepairError(f"{source.path}: {owner.name} cannot subscribe outside of its methods.")
+        raise RepairError(f"{source.path}: {owner.name} cannot subscribe outside its methods.")
     end, indent = source.line_end(method[1]), source.indentation(method[1])
     text = "\n".join(indent + line for line in callback.lines(method[2]))
     crowded = re.match(r"\r?\n[ \t]*\S", source.text[end:])
@@ -100,7 +100,7 @@ def _attributes(callback: Callback, owner: ast.ClassDef, method: Function, insta
 def _first_reader(
     callback: Callback, owner: ast.ClassDef, constructor: Function, instance: str
 ) -> ast.stmt | None:
-    """Return the first statement of a constructor that may read an attribute: itself, in a method, in a callback."""
+    """Return the first statement of a constructor that may read an attribute, directly or through a call."""
     methods = {f"{instance}.{each.name}" for each in owner.body if isinstance(each, Function)}
     for statement in constructor.body:
         inside = list(ast.walk(statement))
@@ -113,9 +113,9 @@ def _first_reader(
 
 
 def _module_edits(callbacks: Sequence[Callback]) -> list[Edit]:
-    """Place variables and functions before the first definition, or before whatever needs them sooner.
+    """Put variables and functions before the first definition, or earlier if a statement needs them earlier.
 
-    Variables go behind the module's own where these stand just there.
+    If module variables precede that place, the new variables are appended to them.
     """
     source = callbacks[0].store.source
     start = _before_definitions(source, callbacks)
@@ -133,7 +133,7 @@ def _module_edits(callbacks: Sequence[Callback]) -> list[Edit]:
 
 
 def _before_definitions(source: Document, callbacks: Sequence[Callback]) -> int:
-    """Return the offset of the first definition, or of the first statement that needs the callbacks."""
+    """Return the offset of the first definition or the first statement that needs the callbacks."""
     needing = [place for each in callbacks for place in each.store.places if place in source.parents]
     needing += [each.anchor.statement for each in callbacks if each.anchor.source is source]
     definitions = [each for each in source.tree.body if isinstance(each, Function | ast.ClassDef)]
@@ -142,20 +142,20 @@ def _before_definitions(source: Document, callbacks: Sequence[Callback]) -> int:
 
 
 def _gap(source: Document, start: int) -> str:
-    """Return the empty lines that separate a definition from what stands before it."""
+    """Return the empty lines needed between a definition and the text before it."""
     before = source.text[:start].replace("\r\n", "\n")
     return "" if before.endswith("\n\n") or not before.strip() else "\n\n"
 
 
 def _state(source: Document, limit: int) -> ast.stmt | None:
-    """Return the variable of the module that stands just before an offset, or None."""
+    """Return the module variable directly before an offset, or None."""
     before = [each for each in source.tree.body if source.end(each) <= limit]
     last = before[-1] if before else None
     return last if isinstance(last, ast.Assign | ast.AnnAssign) and source.alone(last) else None
 
 
 def _above_comments(source: Document, start: int) -> int:
-    """Move up over the comment that belongs to a line, but not over the head of the file."""
+    """Move up over a comment that belongs to a line, but not into the first lines of the file."""
     index = source.line_starts.index(start)
     while index > 2 and source.text[source.line_starts[index - 1] :].lstrip(" \t").startswith("#"):
         index -= 1
@@ -163,7 +163,7 @@ def _above_comments(source: Document, start: int) -> int:
 
 
 def _field(message: str, field: str) -> str:
-    """Write the access to a dotted field; a number indexes a sequence, which may be too short."""
+    """Return the access to a dotted field; a number indexes a sequence, with a length check."""
     code, checks = message, list[str]()
     for part in field.split("."):
         if part.lstrip("-").isdigit():

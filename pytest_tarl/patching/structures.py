@@ -1,4 +1,4 @@
-"""A template where it is applied: around which expression, with which state, as edits of the source."""
+"""Apply a template of a structural repair to an expression: the edits for the expression and its state."""
 
 from __future__ import annotations
 
@@ -20,29 +20,29 @@ _CLOSED = {"<": "<=", "<=": "<", ">": ">=", ">=": ">"}
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """A template at an expression: the parameter that is searched, what all of them begin with, and what it needs."""
+    """A template at an expression: the parameter to search, all parameters' defaults, and what the template needs."""
 
     template: Template
     parameter: str = ""
     defaults: tuple[tuple[str, float], ...] = ()
-    partner: Span | None = None  # the other expression of a pair
+    partner: Span | None = None  # the other expression of a pair to swap
     sensor: Sensor | None = None
 
 
 @dataclass(frozen=True)
 class Keeper:
-    """Where a node keeps what must survive until the next call: how names are written, and the edits that add them."""
+    """Where a node can store state between calls: how names are written, and where the edits add them."""
 
     prefix: str
     place: int
     indent: str
-    behind: str = ""  # what follows the new lines
-    declare: int | None = None  # where a function declares globals
+    behind: str = ""  # text that follows the new lines
+    declare: int | None = None  # offset at which a function declares globals
     declare_indent: str = ""
 
 
 def described(form: Form, x: str, y: str, values: Mapping[str, float], sensor: str = "") -> str:
-    """Say what a form does."""
+    """Describe the effect of a form in a sentence."""
     texts = {name: number(float(value)) for name, value in values.items()}
     left, op, right = _compared(x)
     named = {"left": left, "op": op, "right": right, "closed": _CLOSED.get(op, "")}
@@ -52,7 +52,7 @@ def described(form: Form, x: str, y: str, values: Mapping[str, float], sensor: s
 def form_edits(
     source: Document, node: ast.expr, form: Form, values: Mapping[str, float], condition: str, sensor: str
 ) -> list[Edit]:
-    """Return the edits that write a form at an expression. Raises RepairError where it cannot be written there."""
+    """Return the edits that write a form at an expression. Raises RepairError if it cannot be written there."""
     made = form.template
     statement = source.statement(node)
     fill = {name: number(float(value)) for name, value in values.items()} | {"sensor": sensor}
@@ -94,7 +94,7 @@ def _written(
         return _ahead(source, statement, node, form, fill, condition)
     fill = {**fill, "x": code}
     if made.lines and not _can_stand_before(source, statement):
-        raise RepairError(f"{source.path}:{node.lineno}: no line can be written before this one.")
+        raise RepairError(f"{source.path}:{node.lineno}: no line can be inserted before this one.")
     start, indent = source.start(statement), source.indentation(statement)
     before = [Edit(start, start, f"{filled(line, fill)}\n{indent}") for line in made.lines]
     new = filled(made.expression, fill)
@@ -110,10 +110,10 @@ def _behind(
     fill: Mapping[str, str],
     condition: str,
 ) -> list[Edit]:
-    """Change a value behind its assignment, where it has a name."""
+    """Change a value after the statement that assigns it to a name."""
     target = _target(statement)
     if target is None or statement.value is not node or not source.alone(statement):  # type: ignore[attr-defined]
-        raise RepairError(f"{source.path}:{node.lineno}: the value has no name by which to read it.")
+        raise RepairError(f"{source.path}:{node.lineno}: the value is not assigned to a name.")
     name = source.source(target)
     fill = {**fill, "x": name}
     new = filled(form.template.expression, fill)
@@ -131,10 +131,10 @@ def _ahead(
     fill: Mapping[str, str],
     condition: str,
 ) -> list[Edit]:
-    """Give a value that has no name one in front of the statement that uses it, `return a * b`, and change it there."""
+    """Assign an unnamed value, as in `return a * b`, to a new name before the statement and change it there."""
     if not _can_stand_before(source, statement) or not _always_evaluated(source, statement, node):
         raise RepairError(
-            f"{source.path}:{node.lineno}: the value cannot be given a name in front of this line."
+            f"{source.path}:{node.lineno}: the value cannot be assigned to a name before this line."
         )
     code = source.source(node)
     name = free(_short(statement, node), set(names(source)))
@@ -152,7 +152,7 @@ def _ahead(
 
 
 def _always_evaluated(source: Document, statement: ast.stmt, node: ast.expr) -> bool:
-    """Tell whether a statement evaluates an expression once whenever it runs."""
+    """Tell whether a statement evaluates an expression exactly once each time it runs."""
     inner: ast.AST = node
     for around in source.ancestors(node):
         if around is statement:
@@ -195,7 +195,7 @@ def _state_edits(keeper: Keeper, states: Sequence[tuple[str, str]]) -> list[Edit
 
 
 def _keeper(source: Document, statement: ast.stmt) -> Keeper:
-    """Return where state is kept: an attribute of the instance, a variable before the loop, or a global."""
+    """Return where state is stored: an attribute of the instance, a variable before the loop, or a global."""
     method = source.method(statement)
     if method is not None and source.function(statement) is method[1]:
         owner, _, instance = method
@@ -220,21 +220,21 @@ def _keeper(source: Document, statement: ast.stmt) -> Keeper:
         return Keeper("", source.start(loop), source.indentation(loop))
     if function is None or source.parents[function] is not source.tree:
         raise RepairError(
-            f"{source.path}:{statement.lineno}: there is no place that keeps state between calls."
+            f"{source.path}:{statement.lineno}: there is no place to store state between calls."
         )
     first = _first(function.body)
     return Keeper("", source.line_start(function), "", "\n\n", source.start(first), source.indentation(first))
 
 
 def _first(body: Sequence[ast.stmt]) -> ast.stmt:
-    """Return the first statement behind a docstring and a call of the base class."""
+    """Return the first statement after the docstring and the call of the base class. Raises RepairError."""
     for statement in body:
         value = statement.value if isinstance(statement, ast.Expr) else None
         docstring = isinstance(value, ast.Constant) and isinstance(value.value, str)
         base = isinstance(value, ast.Call) and "__init__" in ast.unparse(value.func)
         if not docstring and not base:
             return statement
-    raise RepairError("a body that holds nothing but its docstring keeps no state.")
+    raise RepairError("A function or class without statements after its docstring cannot store state.")
 
 
 def _can_stand_before(source: Document, statement: ast.stmt) -> bool:
@@ -246,7 +246,7 @@ def _can_stand_before(source: Document, statement: ast.stmt) -> bool:
 
 
 def _target(statement: ast.stmt) -> ast.expr | None:
-    """Return the one name or attribute that a statement assigns to."""
+    """Return the single name or attribute that a statement assigns to, or None."""
     target = None
     if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
         target = statement.targets[0]
@@ -256,14 +256,14 @@ def _target(statement: ast.stmt) -> ast.expr | None:
 
 
 def _short(statement: ast.stmt, node: ast.expr) -> str:
-    """Return a word for a value: the last part of what it is assigned to, or of what is compared."""
+    """Return a name for a value: the last part of its target, or of the left side of a comparison."""
     named = _target(statement) or (node.left if isinstance(node, ast.Compare) else node)
     text = ast.unparse(named).rpartition(".")[2]
     return text if text.isidentifier() else "value"
 
 
 def _compared(code: str) -> tuple[str, str, str]:
-    """Return left side, operator and right side of a comparison; no operator where it is none of two sides."""
+    """Return left side, operator and right side of a comparison; the operator is "" unless it has two sides."""
     try:
         node = ast.parse(f"({code}\n)", mode="eval").body
     except SyntaxError:

@@ -1,4 +1,4 @@
-"""Subscriptions that a repair adds to a node, so that its guard can ask a sensor the node ignored."""
+"""Subscriptions that a repair adds to a node, so that its guard can read a sensor that the node ignored."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tarl_lint.model import SiteId
 if TYPE_CHECKING:
     from tarl_lint.api import Analysis
 
-# What rclpy.node.Node keeps under plain names; an attribute of the same name would break it.
+# Attributes of rclpy.node.Node without a leading underscore; overwriting one would break the node.
 _NODE_ATTRIBUTES = {
     "client", "clients", "context", "default_callback_group", "executor", "guards", "handle", "publishers", "services",
     "subscriptions", "timers", "waitables",
@@ -31,17 +31,17 @@ _NODE_ATTRIBUTES = {
 
 @dataclass
 class Subscription:
-    """One subscription to add: what is kept of its messages, where, and where it is made."""
+    """A subscription to add: its place, and the variables that store fields of its messages."""
 
     topic: str
     type: str
     anchor: Anchor
     store: Store
-    names: dict[str, str] = field(default_factory=dict)  # message field → name of what keeps it
+    names: dict[str, str] = field(default_factory=dict)  # message field → variable that stores it
 
 
 class Subscriptions:
-    """The subscriptions that one rewriting of a node adds, collected while its guards are written."""
+    """The subscriptions added by one rewrite of a node, collected while its guards are written."""
 
     def __init__(self, analysis: Analysis, topics: Mapping[str, str]) -> None:
         self._analysis = analysis
@@ -50,7 +50,7 @@ class Subscriptions:
         self._taken: dict[tuple[str, bool], set[str]] = {}
 
     def reading(self, sensor: Sensor, site: SiteId, source: Document, place: ast.AST) -> Reading:
-        """Return what will hold a sensor's value at a place. Raises RepairError when it cannot be brought there."""
+        """Return the expression for a sensor's value at a place. Raises RepairError if no subscription reaches it."""
         subscription = self._subscription(sensor.topic or "", site, source, place)
         wanted = sensor.path
         if wanted not in subscription.names:
@@ -60,9 +60,9 @@ class Subscriptions:
         return Reading(code, code)
 
     def edits(self) -> dict[str, list[Edit]]:
-        """Return the edits that make the subscriptions, per path.
+        """Return the edits that add the subscriptions, by path.
 
-        All registrations come first, since a callback may be added at the very end of the method that subscribes.
+        All registrations come first, because a callback may be added at the very end of the method that subscribes.
         """
         edits: dict[str, list[Edit]] = {}
         imports: dict[str, list[Import]] = {}
@@ -81,7 +81,7 @@ class Subscriptions:
         return edits
 
     def _subscription(self, topic: str, site: SiteId, source: Document, place: ast.AST) -> Subscription:
-        """Return the subscription that serves a place, a new one if need be."""
+        """Return the subscription that serves a place, a new one if necessary. Raises RepairError."""
         anchor, store = self._reach(topic, site, source, place)
         for each in self._added:
             same = each.store.source is source and each.store.owner is store.owner
@@ -89,14 +89,14 @@ class Subscriptions:
                 return each
         if "/" not in self._topics.get(topic, ""):
             raise RepairError(
-                f"The guard has to subscribe to {topic}, but the type of its messages did not show in the run: have "
-                "the test publish a ROS message there, or leave its sensor out."
+                f"The guard must subscribe to {topic}, but the run did not show the type of its messages: let the test "
+                "publish a ROS message there, or remove the sensor."
             )
         self._added.append(Subscription(topic, self._topics[topic], anchor, store))
         return self._added[-1]
 
     def _reach(self, topic: str, site: SiteId, source: Document, place: ast.AST) -> tuple[Anchor, Store]:
-        """Return where to subscribe and where to keep the values so that they can be read at a place."""
+        """Return where to subscribe and where to store values so that a place can read them. Raises RepairError."""
         seen: Anchor | None = None
         for anchor in anchors(self._analysis, site, source.path):
             seen = seen or anchor
@@ -112,7 +112,7 @@ class Subscriptions:
         raise RepairError(_unreachable(topic, source, place, seen))
 
     def _registration(self, each: Subscription, callback: str, imports: list[Import]) -> tuple[str, str]:
-        """Return the call that subscribes, and how the message type is called there; note what it has to import."""
+        """Return the call that subscribes and the name of the message type there; append the imports they need."""
         source = each.anchor.source
         package, *_, name = each.type.split("/")
         kind = imported(source, f"{package}.msg", name)
@@ -131,7 +131,7 @@ class Subscriptions:
         return f"{subscriber}({topic}, {kind}, {target})", kind
 
     def _target(self, each: Subscription, callback: str, imports: list[Import]) -> str:
-        """Return how the registration refers to the callback; note what it has to import."""
+        """Return how the registration refers to the callback; append the imports that this needs."""
         here = each.anchor.source.method(each.anchor.statement)
         if each.store.owner is not None and here is not None:
             return f"{here[2]}.{callback}"
@@ -148,7 +148,7 @@ class Subscriptions:
         return self._fresh(each.store, base, each.anchor.source)
 
     def _fresh(self, store: Store, base: str, *elsewhere: Document) -> str:
-        """Return a name that means nothing yet where it will be kept and imported, and take it there."""
+        """Return a name that is unused where it is stored and imported, and reserve it there."""
         attribute = store.owner is not None
         known = [self._names(store.source, attribute)]
         if not attribute:
@@ -159,17 +159,17 @@ class Subscriptions:
         return name
 
     def _names(self, source: Document, attribute: bool) -> set[str]:
-        """Return the names that are taken in a module, or the attributes that are taken in its classes."""
+        """Return the names used in a module, or the attributes used in its classes."""
         key = (source.path, attribute)
         if key not in self._taken:
             self._taken[key] = self._attributes(source) if attribute else set(names(source))
         return self._taken[key]
 
     def _attributes(self, source: Document) -> set[str]:
-        """Return every attribute that a class may have: its own, those of any analysed class, those of a node."""
+        """Return every attribute that a class may have: those of all analysed classes and of rclpy nodes."""
         names = set(_NODE_ATTRIBUTES)
         for path in self._analysis.sources:
-            with suppress(RepairError):  # a file that cannot be read keeps its names to itself
+            with suppress(RepairError):  # a file that cannot be parsed contributes no names
                 names |= class_attributes(self._document(path))
         return names | class_attributes(source)
 
@@ -178,7 +178,7 @@ class Subscriptions:
 
 
 def _store(anchor: Anchor, source: Document, place: ast.AST) -> Store:
-    """Keep values on the instance when subscription and use are in methods of one class, else in the module."""
+    """Store values on the instance if subscription and use are in methods of one class, else in the module."""
     there, here = source.method(anchor.statement), source.method(place)
     same = there is not None and here is not None and there[0] is here[0]
     return Store(source, here[0], here[2]) if same and here else Store(source)
@@ -193,11 +193,11 @@ def _unreachable(topic: str, source: Document, place: ast.AST, seen: Anchor | No
     line = getattr(place, "lineno", 1)
     if seen is None:
         return (
-            f"The guard at {source.path}:{line} has to subscribe to {topic}, but nothing shows where the node "
+            f"The guard at {source.path}:{line} must subscribe to {topic}, but no place was found where the node "
             "subscribes or starts: choose sensors that the node already reads."
         )
     return (
-        f"The guard at {source.path}:{line} has to subscribe to {topic}. The node subscribes at "
-        f"{seen.source.path}:{seen.statement.lineno}, which imports nothing from {source.path}, so that the value "
-        "cannot be brought there: choose sensors that are read where the repair is."
+        f"The guard at {source.path}:{line} must subscribe to {topic}. The node subscribes at "
+        f"{seen.source.path}:{seen.statement.lineno}, but that file imports nothing from {source.path}, so the "
+        "value cannot reach the guard: choose sensors that the node reads in the file of the repair."
     )

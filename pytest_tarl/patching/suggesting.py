@@ -1,4 +1,4 @@
-"""A patch as reviewers read it: a SARIF fix, `suggestion` blocks of GitHub, a review to be posted."""
+"""Export a patch for reviewers: a SARIF fix, GitHub `suggestion` blocks, or a review to post."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from pytest_tarl.patching.reading import Patch
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 RULE = "TARL301"
-ROOT = "%SRCROOT%"  # known to GitHub as the top of the repository
+ROOT = "%SRCROOT%"  # GitHub resolves it to the top of the repository
 _TOLD = ("designed", "drifted", "drifted and repaired", "designed and repaired")
 
 
 def sarif(patch: Patch) -> str:
-    """Return SARIF 2.1.0 with one result, whose fix is the patch; paths are those of the patch."""
+    """Return SARIF 2.1.0 with one result whose fix is the patch; paths are those of the patch."""
     rule = {
         "id": RULE,
         "name": "RepairFound",
@@ -55,7 +55,7 @@ def sarif(patch: Patch) -> str:
 
 
 def markdown(patch: Patch) -> str:
-    """Return the evidence and one `suggestion` block a change, each under the lines it is for."""
+    """Return the evidence and a `suggestion` block for each change, under a line that names its place."""
     parts = [_evidence(patch)]
     for path, first, last, text in _suggestions(patch):
         lines = f"line {last}" if first == last else f"lines {first} to {last}"
@@ -64,7 +64,7 @@ def markdown(patch: Patch) -> str:
 
 
 def review(patch: Patch) -> str:
-    """Return a review as GitHub's REST API takes it: one comment a change, with its `suggestion` block."""
+    """Return a review for GitHub's REST API: a comment with a `suggestion` block for each change."""
     comments = [
         {
             "path": path,
@@ -95,7 +95,7 @@ def _escaped(text: str) -> str:
 
 
 def _suggestions(patch: Patch) -> Iterator[tuple[str, int, int, str]]:
-    """Yield path, first and last line (from 1) and the text in their place; what is only put in takes a line along."""
+    """Yield path, first and last line (from 1) and replacement text; a pure insertion also replaces one line."""
     for file in patch.files:
         encoding = _encoding(patch, file)
         around = {hunk.start + at: line for hunk in file.hunks for at, line in enumerate(hunk.old)}
@@ -110,7 +110,7 @@ def _suggestions(patch: Patch) -> Iterator[tuple[str, int, int, str]]:
 
 
 def _block(text: str) -> str:
-    """Fence a suggestion; the fence is longer than any in the text."""
+    """Fence a suggestion with a fence longer than any in the text."""
     longest = max((len(found) for found in re.findall(r"`+", text)), default=0)
     fence = "`" * max(3, longest + 1)
     return f"{fence}suggestion\n{text}\n{fence}"
@@ -128,7 +128,7 @@ def _artifact_change(file: FilePatch, encoding: str) -> dict[str, Any]:
 
 
 def _region(one: Replacement) -> dict[str, int]:
-    """Return whole lines; of what is only put in, the empty place before the line."""
+    """Return the region of whole lines; for a pure insertion, the empty region before the line."""
     return {"startLine": one.start + 1, "startColumn": 1, "endLine": one.end + 1, "endColumn": 1}
 
 
@@ -137,7 +137,7 @@ def _artifact(file: FilePatch) -> dict[str, str]:
 
 
 def _main(patch: Patch) -> list[tuple[FilePatch, Replacement]]:
-    """Return the last change that takes lines away: imports and subscriptions, which come before it, only add."""
+    """Return the last change that removes lines; imports and subscriptions, which only add lines, come before it."""
     taking = [(file, one) for file in patch.files for one in file.replacements if one.old]
     return (taking or [(file, one) for file in patch.files for one in file.replacements])[-1:]
 
@@ -151,7 +151,7 @@ def _version(patch: Patch) -> str:
 
 
 def _encoding(patch: Patch, file: FilePatch) -> str:
-    """Return the encoding of the file where it is at hand, else UTF-8."""
+    """Return the encoding of the file if it is available, else UTF-8."""
     path = (patch.root or Path.cwd()) / (patch.base if patch.root else "") / file.name
     try:
         content = path.read_bytes() if path.is_file() else b""

@@ -1,4 +1,4 @@
-"""Templates of structural repairs: data in TOML files, each with an example that is its test and its page."""
+"""Templates of structural repairs: TOML files, each with an example that serves as its test and documentation."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ else:  # pragma: no cover
     import tomli as tomllib
 
 SHIPPED = Path(__file__).parent.parent / "templates"
-OWN = "tarl_templates"  # folder in pytest's root directory whose templates are tried, too
+OWN = "tarl_templates"  # folder below pytest's rootdir with the project's own templates
 KINDS = ("value", "input", "comparison", "pair", "sensor")
 SCALES = (
     "",
     "typical",
     "sensor",
-)  # a default as it is, times the usual size of the value, over that of the sensor
-OPERATORS = ("op", "closed", "back")  # of a comparison: its own, the other one of < and <=, the way back
+)  # a default as is, as a multiple of the value's usual size, or divided by the sensor's usual size
+OPERATORS = ("op", "closed", "back")  # of a comparison: its operator, with/without equality, and the way back
 _KEYS = {"summary", "on", "cost", "lines", "expression", "state", "parameters", "example"}
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A number that is searched for, and where the search begins."""
+    """A parameter to search, with the start value."""
 
     name: str
     default: float
@@ -41,7 +41,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """What is written in place of an expression, the lines before it, and the state that they keep between calls."""
+    """The replacement of an expression, the lines before it, and the state that they keep between calls."""
 
     name: str
     summary: str
@@ -53,19 +53,19 @@ class Template:
     parameters: tuple[Parameter, ...] = ()
 
     def uses(self, placeholder: str) -> int:
-        """Return how often a placeholder stands in what it writes."""
+        """Return how often a placeholder occurs in the lines and the expression."""
         return sum(_PLACEHOLDER.findall(text).count(placeholder) for text in (*self.lines, self.expression))
 
 
 def templates(root: Path) -> tuple[Template, ...]:
-    """Return the templates that come with TARL and those of the project, cheapest first. Raises SettingsError."""
+    """Return TARL's templates and those of the project, cheapest first. Raises SettingsError."""
     files = [*sorted(SHIPPED.glob("*.toml")), *sorted((root / OWN).glob("*.toml"))]
     found = {path.stem: template(path) for path in files}
     return tuple(sorted(found.values(), key=lambda one: one.cost))
 
 
 def template(path: Path) -> Template:
-    """Read one template. Raises SettingsError with a sentence where it is none."""
+    """Read a template. Raises SettingsError if the file is not one."""
     data = contents(path)
     unknown = sorted(data.keys() - _KEYS)
     if unknown:
@@ -105,7 +105,7 @@ def contents(path: Path) -> Mapping[str, Any]:
 
 
 def filled(text: str, values: Mapping[str, str]) -> str:
-    """Fill a text's placeholders, in parentheses where the expression around needs them."""
+    """Fill a text's placeholders, with parentheses where the surrounding expression needs them."""
 
     def put(match: re.Match[str]) -> str:
         code = values[match[1]]
@@ -119,7 +119,7 @@ def filled(text: str, values: Mapping[str, str]) -> str:
 
 
 def plainly(text: str, values: Mapping[str, str]) -> str:
-    """Fill a sentence's placeholders."""
+    """Fill a sentence's placeholders; unknown ones stay."""
     return _PLACEHOLDER.sub(lambda match: values.get(match[1], match[0]), text)
 
 
@@ -128,7 +128,9 @@ def _check_placeholders(path: Path, made: Template) -> None:
     known |= {name for name, _ in made.state} | {one.name for one in made.parameters}
     for name in _placeholders(made):
         if name not in known:
-            raise SettingsError(f"{path}: nothing fills {{{name}}}; known are {', '.join(sorted(known))}.")
+            raise SettingsError(
+                f"{path}: unknown placeholder {{{name}}}; known are {', '.join(sorted(known))}."
+            )
     for one in made.parameters:
         if one.of not in SCALES:
             raise SettingsError(f"{path}: of = {one.of!r} is unknown; use typical or sensor, or omit it.")

@@ -1,6 +1,7 @@
-"""The last look before a patch is written: on the concrete syntax tree, nothing of the file is lost but what changes.
+"""Check, before a patch is written, that the file loses nothing except the lines that the repair changes.
 
-Edits are made on spans of the text. This check knows nothing of spans: it parses both texts, comments and all.
+Edits replace spans of the text. This check is independent of spans: it parses both texts to concrete syntax trees,
+comments included.
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ if TYPE_CHECKING:
 
 
 def nothing_lost(path: str, original: str, patched: str, changed: Collection[int]) -> None:
-    """Check that every simple statement and comment of the original stands in the patched text, in the same order.
+    """Check that every simple statement and comment of the original occurs in the patched text, in the same order.
 
-    `changed` are the lines (from 1) of the statements that the repair rewrites; those may differ. Raises RepairError
-    when the patched text does not parse or loses something.
+    `changed` are the line numbers (from 1) of statements that the repair rewrites; these may differ. Raises RepairError
+    if the patched text does not parse or loses something.
     """
     import libcst as cst
     from libcst.metadata import MetadataWrapper, PositionProvider
@@ -37,7 +38,7 @@ def nothing_lost(path: str, original: str, patched: str, changed: Collection[int
     ]
     kept = (text for _, text in _pieces(after, after))
     for piece in wanted:
-        if piece not in kept:  # consumes up to the piece: a subsequence, in order
+        if piece not in kept:  # searching consumes the iterator, so pieces must occur in order
             raise RepairError(f"The repair of {path} would lose `{piece}`, so no patch is written.")
 
 

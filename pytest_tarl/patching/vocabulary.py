@@ -1,4 +1,4 @@
-"""Names that mean something in a module already, and how to find one that does not."""
+"""Names that a module already uses, and unused ones similar to a given name."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from pytest_tarl.patching.document import Document
 
 
 def free(base: str, taken: Set[str]) -> str:
-    """Return a name like `base` that is not taken."""
+    """Return an unused name similar to `base`."""
     candidates = (base, f"{base}_reading", *(f"{base}_{i}" for i in range(2, len(taken) + 3)))
     return next(each for each in candidates if each not in taken and not keyword.iskeyword(each))
 
 
 @cache
 def names(source: Document) -> frozenset[str]:
-    """Return every name that a module uses in any scope, and the builtins."""
+    """Return every name that a module uses in any scope, plus the builtins."""
     found = set(dir(builtins))
     for node in ast.walk(source.tree):
         if isinstance(node, ast.Name):
@@ -37,7 +37,7 @@ def names(source: Document) -> frozenset[str]:
 
 @cache
 def class_attributes(source: Document) -> frozenset[str]:
-    """Return the attributes that classes of a module define, or use on plain names such as the instance's."""
+    """Return the attributes that classes of a module define, or access on plain names such as `self`."""
     classes = [node for node in ast.walk(source.tree) if isinstance(node, ast.ClassDef)]
     inside = [each for owner in classes for each in ast.walk(owner)]
     used = [each for each in inside if isinstance(each, ast.Attribute) and isinstance(each.value, ast.Name)]

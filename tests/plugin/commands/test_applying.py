@@ -192,7 +192,7 @@ def test_a_patch_that_was_carried_away_finds_its_files_from_where_it_is_applied(
     assert main(["revert", str(carried), "--directory", str(robot)]) == 0
     monkeypatch.chdir(robot.parent)
     assert main(["apply", str(carried)]) == 2
-    assert "say with --directory" in capsys.readouterr().err
+    assert "are relative with --directory" in capsys.readouterr().err
 
 
 def test_all_files_or_none(robot: Path, monkeypatch: pytest.MonkeyPatch, capsys: Printed) -> None:

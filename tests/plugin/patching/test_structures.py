@@ -83,7 +83,7 @@ def test_a_project_adds_templates_of_its_own_and_replaces_ours(tmp_path: Path) -
         ("summary = ", "cannot be read as TOML"),
         ('summary = "s"\non = "value"\ncost = 1\n', "it needs summary, on, cost and expression"),
         ('summary = "s"\non = "values"\ncost = 1\nexpression = "{x}"\n', "on = 'values' is unknown"),
-        ('summary = "s"\non = "value"\ncost = 1\nexpression = "{z}"\n', "nothing fills {z}"),
+        ('summary = "s"\non = "value"\ncost = 1\nexpression = "{z}"\n', "unknown placeholder {z}"),
         ('summary = "s"\non = "value"\ncost = 1\nexpression = "{x}"\nlimes = 3\n', "has no 'limes'"),
         (
             'summary = "s"\non = "value"\ncost = 1\nexpression = "{x}"\n[parameters.a]\ndefault = 1\nof = "it"\n',

@@ -542,13 +542,13 @@ def test_a_value_that_cannot_be_brought_to_its_use_is_refused() -> None:
 
 
 def test_a_node_that_never_starts_is_refused() -> None:
-    with pytest.raises(RepairError, match="nothing shows where the node subscribes or starts"):
+    with pytest.raises(RepairError, match="no place was found where the node subscribes or starts"):
         repaired({"node.py": "def step(d):\n    return 5 * d\n"})
 
 
 @pytest.mark.parametrize("topics", [{}, {"/terrain": "Stub"}])
 def test_a_topic_of_unknown_type_is_refused(topics: dict[str, str]) -> None:
-    with pytest.raises(RepairError, match="the type of its messages did not show"):
+    with pytest.raises(RepairError, match="the run did not show the type of its messages"):
         repaired({"node.py": SCRIPT}, topics=topics)
 
 
