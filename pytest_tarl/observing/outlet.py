@@ -43,7 +43,7 @@ class Outlet:
 
     @property
     def full(self) -> bool:
-        """Return whether so much waits for the disk that nothing more should be put."""
+        """Return whether more than MOST_WAITING bytes are unsent; callers then put nothing more."""
         return self._put - self._sent > MOST_WAITING
 
     def put(self, *message: Any) -> None:

@@ -48,7 +48,7 @@ class RealBus(Bus):
         """Do nothing: a process that has ended takes nothing any more."""
 
     def collect(self) -> bool:
-        """Take in one message that is under way; tell whether there was one."""
+        """Take in one message that is under way; return whether there was one."""
         raise NotImplementedError
 
     def send(self, place: Topic, message: Any, latch: bool) -> None:

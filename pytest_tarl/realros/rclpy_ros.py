@@ -46,7 +46,7 @@ class RclpyBus(RealBus):
             world.create_subscription(message_class, topic, _nothing, own)
 
     def collect(self) -> bool:
-        """Take in one message for the world; tell whether there was one."""
+        """Take in one message for the world; return whether there was one."""
         taken = self._network.take_for_world()
         if taken is None:
             return False

@@ -49,7 +49,7 @@ class RospyBus(RealBus):
             publisher.impl.is_latch, publisher.impl.latch = kept is not None, kept
 
     def collect(self) -> bool:
-        """Take in one message that is under way; tell whether there was one."""
+        """Take in one message that is under way; return whether there was one."""
         taken = self._network.wire.take()
         if taken is None:
             return False

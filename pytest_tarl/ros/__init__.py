@@ -1,6 +1,6 @@
-"""In-process stand-in for rospy and rclpy: virtual clock, synchronous delivery, nothing left behind.
+"""In-process stand-in for rospy and rclpy: virtual clock, synchronous delivery, no state after an episode.
 
-Nothing heavy is imported until `Ros`, `Bus` or `message_type` is used.
+Heavy modules are imported when `Ros`, `Bus` or `message_type` is first used.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import what was asked for from where it lives."""
+    """Import a name of the public API from its module."""
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module

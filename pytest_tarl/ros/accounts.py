@@ -1,4 +1,4 @@
-"""What a node's exception looks like to its author: the sentence, the node's own traceback, the line of the test."""
+"""Describe a node's exception: a sentence, the node's own traceback, and the line of the test."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _PACKAGE = str(Path(__file__).parent.parent)
 
 
 def account(error: BaseException, test: Path) -> str:
-    """Return what to show of an error that a test got; one that no node's exception caused is its sentence alone."""
+    """Return the text to show for an error in a test; only its message unless a node's exception caused it."""
     cause = error.__cause__
     if not isinstance(error, NodeError) or cause is None or cause.__traceback__ is None:
         return str(error)
@@ -23,7 +23,7 @@ def account(error: BaseException, test: Path) -> str:
 
 
 def of_node(frames: TracebackType) -> TracebackType:
-    """Return a traceback without the scheduler's frames that it begins with."""
+    """Return a traceback without the scheduler's frames at its beginning."""
     here: TracebackType | None = frames
     while here is not None and here.tb_frame.f_code.co_filename.startswith(_PACKAGE):
         here = here.tb_next
@@ -31,7 +31,7 @@ def of_node(frames: TracebackType) -> TracebackType:
 
 
 def _called(frames: TracebackType | None, test: Path) -> str:
-    """Return the test's own line that let the node run."""
+    """Return the line of the test that ran the node."""
     line = 0
     while frames is not None:
         if frames.tb_frame.f_code.co_filename == str(test):

@@ -1,4 +1,4 @@
-"""The command line that a program believes it was started with."""
+"""Replace `sys.argv` while a node's program runs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def command_line(argv: Sequence[str]) -> Iterator[None]:
-    """Let `sys.argv` be this for a while."""
+    """Set `sys.argv`; restore it on exit."""
     before = sys.argv
     sys.argv = list(argv)
     try:

@@ -1,4 +1,4 @@
-"""Where in a node something happened: the innermost frame that is the user's own."""
+"""Find the place in user code where something happened: the innermost frame outside of libraries."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ _LIBRARIES = tuple({sysconfig.get_path(key) for key in ("stdlib", "platstdlib", 
 _SYSTEM = (
     "/dist-packages/",
     "/opt/ros/",
-)  # seen from a virtual environment, a ROS of the system is in neither
+)  # a system ROS is in neither of these folders when seen from a virtual environment
 
 Place = tuple[str, int, str]  # file, line, function
 
 
 def of_traceback(traceback: TracebackType | None) -> Place | None:
-    """Return the user's innermost place of an exception."""
+    """Return the innermost place in user code of an exception."""
     places = []
     while traceback is not None:
         places.append(
@@ -29,12 +29,12 @@ def of_traceback(traceback: TracebackType | None) -> Place | None:
 
 
 def of_frame(frame: FrameType | None) -> Place | None:
-    """Return the user's innermost place of a running or suspended frame."""
+    """Return the innermost place in user code of a running or suspended frame."""
     return _innermost(_outwards(frame))
 
 
 def describe(place: Place | None) -> str:
-    """Say a place: `traveller.py, line 31, in travel`; the path relative to the working directory if below it."""
+    """Format a place, `traveller.py, line 31, in travel`; relative to the working directory if below it."""
     if place is None:
         return "an unknown line"
     file, line, function = place
@@ -45,12 +45,12 @@ def describe(place: Place | None) -> str:
 
 
 def describe_first(places: Iterable[Place]) -> str:
-    """Say the first place that is the user's own."""
+    """Format the first place in user code."""
     return describe(_innermost(iter(places)))
 
 
 def is_library(file: str) -> bool:
-    """Tell a file of Python or of an installed package from one of the user's."""
+    """Return whether a file belongs to Python or an installed package rather than to the user."""
     return file.startswith((*_LIBRARIES, "<")) or any(place in file for place in _SYSTEM)
 
 

@@ -1,4 +1,4 @@
-"""The topics of an episode: who publishes, who listens, in which order messages arrive."""
+"""The topics of an episode: publications, subscriptions, and the order in which messages arrive."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Subscription(Protocol):
         """The process that subscribes."""
 
     def deliver(self, message: Any) -> None:
-        """Take a message that nobody else holds. Called outside of all tasks."""
+        """Take a message; the caller keeps no reference to it. Called outside of all tasks."""
 
 
 class Publication(Protocol):
@@ -41,7 +41,7 @@ class Publication(Protocol):
 
 
 class Topic:
-    """One topic. `kept` is what a later subscriber still gets (latched, transient local)."""
+    """One topic. `kept` holds messages for later subscribers (latched, transient local)."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -53,26 +53,28 @@ class Topic:
 
 
 class Bus:
-    """What the world publishes and hears. One per episode."""
+    """The world's access to topics and services. One per episode."""
 
     def __init__(
         self, scheduler: Scheduler, run: Callable[..., None], services: ServiceDirectory | None = None
     ) -> None:
-        self._services = services  # None on an installed ROS, which has its own
+        self._services = services  # None with --tarl-ros=real, which has its own services
         self._scheduler = scheduler
         self._run = run
         self._topics: dict[str, Topic] = {}
         self._by_spelling: dict[str, Topic] = {}
         self._observers: list[Callable[[str, Any], None]] = []
-        self.muted = False  # whether what the world publishes goes nowhere
+        self.muted = False  # whether messages of the world are discarded
         self.published: Counter[str] = Counter()
         self.subscribed: set[str] = set()
 
     def publish(self, topic: str, message: Any, *, latch: bool = False) -> None:
-        """Publish from the world: every subscriber gets a copy before this returns, if it can take it now.
+        """Publish from the world: every idle subscriber gets a copy before this returns.
 
-        A header stamp of zero becomes the present time. `latch` keeps the message for later subscribers.
-        Raises NodeError when a callback ends in an exception, RecordingError for a message of a wrong type.
+        A busy subscriber gets it in a later `step`. A header stamp of zero becomes the current time. `latch` keeps
+        the message for later subscribers.
+
+        Raises NodeError if a callback raises an exception, RecordingError for a message of a wrong type.
         """
         place = self.topic(topic)
         if self.muted:
@@ -84,7 +86,7 @@ class Bus:
         stamp_if_unset(message, self._scheduler.time)
         if latch:
             place.kept[None] = snapshot(message)
-        if running_task() is not None:  # the world answers within a node's publish: the node goes on first
+        if running_task() is not None:  # called within a node's publish: the node continues first
             self._scheduler.later(lambda: self._deliver(place, message, spare=True))
             return
         self._run(self._deliver, place, message, True)
@@ -94,22 +96,23 @@ class Bus:
         return self.topic(topic).latest
 
     def subscribe(self, topic: str, callback: Listener) -> None:
-        """Have the world's `callback` called with every message that a node publishes on the topic."""
+        """Call the world's `callback` with every message that a node publishes on the topic."""
         self.topic(topic).listeners.append(callback)
 
     def observe(self, observer: Callable[[str, Any], None]) -> None:
-        """Have `observer` called with topic and message before any subscriber gets it."""
+        """Call `observer` with topic and message before any subscriber gets the message."""
         self._observers.append(observer)
 
     def serve(self, service: str, service_type: Any, handler: Callable[[Any], Any]) -> None:
-        """Have the world answer a service: `handler(request)` returns the response."""
+        """Serve a service from the world: `handler(request)` returns the response."""
         self._own_services("serve").serve(service, service_type, handler)
 
     def call(self, service: str, request: Any) -> Reply:
-        """Call a node's service from the world: the reply is `done` once the node has answered.
+        """Call a node's service from the world; the reply is `done` once the node has answered.
 
-        A node that waits answers before this returns, one that is busy during a later `step`. Raises
-        RecordingError when nobody serves it.
+        A waiting node answers before this returns, a busy one during a later `step`.
+
+        Raises RecordingError if no node serves it.
         """
         services = self._own_services("call")
         reply: list[Reply | None] = []
@@ -133,7 +136,7 @@ class Bus:
         return self._services
 
     def topic(self, name: str) -> Topic:
-        """Return the topic of that name, made at first use."""
+        """Return the topic of that name; create it at first use."""
         found = self._by_spelling.get(name)
         if found is None:
             resolved = absolute(name)
@@ -142,11 +145,11 @@ class Bus:
         return found
 
     def topics(self) -> list[Topic]:
-        """List all topics, in the order of their first use."""
+        """Return all topics in the order of their first use."""
         return list(self._topics.values())
 
     def publish_from(self, publication: Publication, place: Topic, message: Any, *, keep: int = 0) -> None:
-        """Publish from a node: the world hears it at once, other nodes when this one waits. Copies `message`."""
+        """Publish a copy of a node's message: to the world at once, to other nodes when this one waits."""
         message = snapshot(message)
         self.published[place.name] += 1
         place.latest = message
@@ -162,7 +165,7 @@ class Bus:
     def _tell(self, listener: Listener, message: Any) -> None:
         try:
             listener(message)
-        except BaseException as error:  # the world's own error goes to the test, not into the node
+        except BaseException as error:  # an error of the world is raised in the test, not in the node
             self._scheduler.failure = self._scheduler.failure or error
 
     def advertise(self, publication: Publication, place: Topic) -> None:
@@ -170,7 +173,7 @@ class Bus:
         place.publications.append(publication)
 
     def attach(self, subscription: Subscription, place: Topic, *, wants_kept: bool = True) -> None:
-        """Add a node's subscription; what was latched arrives as soon as the node waits."""
+        """Add a node's subscription; it gets latched messages as soon as the node waits."""
         self.subscribed.add(place.name)
         place.subscriptions.append(subscription)
         for publication in place.publications:
@@ -182,7 +185,7 @@ class Bus:
                 self._scheduler.later(partial(self._hand, place, subscription, message))
 
     def hand(self, place: Topic, subscription: Subscription, message: Any) -> None:
-        """Hand a copy of a message to one subscription only, when the running node waits."""
+        """Deliver a copy of a message to one subscription when the running node waits."""
         message = snapshot(message)
         self._scheduler.later(lambda: self._hand(place, subscription, message))
 
@@ -193,7 +196,7 @@ class Bus:
             place.publications = [p for p in place.publications if p.process is not process]
 
     def _deliver(self, place: Topic, message: Any, spare: bool, origin: Publication | None = None) -> None:
-        """Hand a message to everybody. If it is `spare`, nobody else holds it and the last one gets it itself."""
+        """Deliver a message to all subscriptions as copies; the last one gets the original if `spare`."""
         for observer in self._observers:
             observer(place.name, message)
         last = place.subscriptions[-1] if spare and place.subscriptions else None
@@ -217,6 +220,6 @@ class Bus:
 
 
 def _compatible(publication: Publication, subscription: Subscription) -> bool:
-    """Tell whether the qualities of service of two ROS 2 ends allow a connection; others always connect."""
+    """Return whether two ends connect: by their QoS profiles in ROS 2, always in ROS 1."""
     offered, wanted = getattr(publication, "qos_profile", None), getattr(subscription, "qos_profile", None)
     return offered is None or wanted is None or bool(offered.satisfies(wanted))

@@ -1,4 +1,4 @@
-"""cv_bridge on numpy alone: pictures as arrays and back, between the encodings that nodes use."""
+"""cv_bridge implemented with numpy: convert images to arrays and back, between common encodings."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _GREY = (0.299, 0.587, 0.114)  # weights of red, green, blue
 
 
 class CvBridgeError(TypeError):
-    """A picture cannot be converted."""
+    """An image cannot be converted."""
 
 
 class CvBridge:
@@ -103,7 +103,7 @@ class CvBridge:
         return _DEPTHS[found[1]], int(found[2] or 1)
 
     def encoding_to_cvtype2(self, encoding: str) -> int:
-        """Return OpenCV's number of an encoding."""
+        """Return OpenCV's type number for an encoding."""
         dtype, channels = self.encoding_to_dtype_with_channels(encoding)
         return list(_DEPTHS.values()).index(dtype) + ((channels - 1) << 3)
 
@@ -177,5 +177,5 @@ def _opencv(function: str) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("cv_bridge", name)

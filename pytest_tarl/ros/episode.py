@@ -1,4 +1,4 @@
-"""One episode of the in-process ROS: the test's side of it."""
+"""One episode of the in-process ROS, as the test uses it."""
 
 from __future__ import annotations
 
@@ -36,23 +36,23 @@ class Ros(Network):
     ) -> None:
         super().__init__(self._run, parameters or {}, remappings or {}, watchdog_limit)
         self.uninstalled = UninstalledFinder()
-        self._launched = NOTHING  # for the node that is started next
+        self._launched = NOTHING  # parameters for the node that is started next
         self._launch_notes: list[str] = []
         self.closed = False
 
     @property
     def now(self) -> float:
-        """Virtual seconds since the episode began; the nodes' clock shows the same."""
+        """Virtual seconds since the episode began, as on the nodes' clock."""
         return seconds(self.scheduler.time)
 
     @property
     def alive(self) -> bool:
-        """Tell whether the main program of any node is still running."""
+        """Return whether the main program of any node is still running."""
         return any(not process.ended for process in self.processes)
 
     @property
     def published(self) -> Counter[str]:
-        """How many messages nodes have published, by topic."""
+        """Number of messages that nodes have published, by topic."""
         return self.bus.published
 
     @property
@@ -62,32 +62,32 @@ class Ros(Network):
 
     @property
     def shutdown_errors(self) -> tuple[NodeError, ...]:
-        """What nodes raised while they were being ended; they cannot fail an episode that is over."""
+        """Errors that nodes raised during shutdown; they do not fail the episode, which is already over."""
         return tuple(error for process in self.processes for error in process.errors)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the user should know of how the nodes were started."""
+        """Sentences for the user on how the nodes were started."""
         return (*self._launch_notes, *self.uninstalled.notes())
 
     def give(self, parameters: Mapping[str, Any]) -> None:
-        """Give more parameters to every node that is started from now on."""
+        """Add parameters for every node that is started from now on."""
         self.parameters.update(parameters)
         if "parameter_server" in self.__dict__:
             self.parameter_server.take(parameters)
 
     def launch(self, given: Given) -> None:
-        """Give the node that is started next the parameters of a launch file, where the test does not state them."""
+        """Set launch-file parameters for the node that is started next; the test's own parameters take precedence."""
         self._launched = given
         if given.note:
             self._launch_notes.append(given.note)
 
     def use_definitions_around(self, folder: Path) -> None:
-        """Know the message, service and action files of the workspace that `folder` is in."""
+        """Load the message, service and action definitions of the workspace that contains `folder`."""
         workspace.search(folder)
 
     def start(self, run: Callable[[], None], *, name: str, argv: Sequence[str] = ()) -> None:
-        """Run a node's main program until it first waits. Raises NodeError where it ends in an exception."""
+        """Run a node's main program until it first waits. Raises NodeError if it raises an exception."""
         process = Process(self, name, (name, *argv))
         process.launched, self._launched = self._launched, NOTHING
         for key, value in process.launched.shared.items():
@@ -97,19 +97,22 @@ class Ros(Network):
             self._run(process.run, run)
 
     def step(self, dt: float) -> None:
-        """Advance virtual time by `dt` seconds, running what falls due, until every node waits again."""
+        """Advance virtual time by `dt` seconds and run everything due, until every node waits again.
+
+        Raises NodeError if a node raises an exception or never waits.
+        """
         self._run(self.scheduler.advance, self.scheduler.time + nanoseconds(dt))
 
     def on_delivery(self, listener: Callable[[str, Any], None]) -> None:
-        """Have `listener(topic, message)` called for every message before any subscriber gets it."""
+        """Call `listener(topic, message)` for every message before any subscriber gets it."""
         self.bus.observe(listener)
 
     def installed(self) -> AbstractContextManager[None]:
-        """Put rospy, rclpy and the message packages where imports find them; restore on exit what was there."""
+        """Make rospy, rclpy and the message packages importable; restore the former modules on exit."""
         return standins_installed(self.scheduler, self.uninstalled)
 
     def close(self) -> None:
-        """End every node as ROS would, then forget everything. Raises NodeError for one that does not let itself."""
+        """End every node as ROS does, then discard all state. Raises NodeError for a node that refuses to end."""
         if self.closed:
             return
         self.closed = True
@@ -125,7 +128,7 @@ class Ros(Network):
             raise failures[0]
 
     def _run(self, job: Callable[..., object], *args: object) -> None:
-        """Do something that lets nodes run: watch them, and raise what they failed with."""
+        """Call a function that lets nodes run, under the watchdog; raise the nodes' errors."""
         if running_task() is not None:
             raise NodeError(
                 "A node called into the episode that runs it: step(), start() and close() belong to the test."

@@ -1,4 +1,4 @@
-"""What nodes import from genpy: times, the message base class and its errors."""
+"""The parts of genpy that nodes import: times, the message base class and its errors."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ class MessageException(Exception):  # noqa: N818 (named by genpy)
 
 
 class SerializationError(MessageException):
-    """A message cannot be sent."""
+    """A message cannot be serialised."""
 
 
 class DeserializationError(MessageException):
-    """A message cannot be read."""
+    """A message cannot be deserialised."""
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     from pytest_tarl.ros.missing import refuse
 
     raise refuse("genpy", name)

@@ -1,4 +1,4 @@
-"""`genpy.dynamic`: message classes from the full text of a definition, as bags and topics carry it."""
+"""`genpy.dynamic`: build message classes from the full definition text in a bag or topic header."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ __all__ = ["generate_dynamic"]
 
 
 def generate_dynamic(core_type: str, msg_cat: str) -> dict[str, Any]:
-    """Return the classes of a message type and of all types that its full definition contains, by name."""
+    """Return the class of a message type and of every type in its full definition, by name."""
     first, *others = re.split(r"^={3,}\s*$", msg_cat, flags=re.MULTILINE)
     texts = {core_type: first}
     for other in others:
         header, _, text = other.strip().partition("\n")
         texts[header.removeprefix("MSG:").strip()] = text
     made: dict[str, Any] = {}
-    for name in reversed(texts):  # what a type is made of stands after it
+    for name in reversed(texts):  # field types follow the types that use them
         package, _, short = name.partition("/")
         known = ros1.message_class(package, short)
         made[name] = known or ros1.build(parse("ros1", package, short, texts[name]), f"{package}.msg")

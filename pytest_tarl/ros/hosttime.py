@@ -1,4 +1,4 @@
-"""Let nodes see the virtual clock through Python's `time` module too; everybody else keeps the real one."""
+"""Show nodes the virtual clock in Python's `time` module; other code keeps the real one."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ _CLOCKS: tuple[tuple[Any, str], ...] = (
     (time, "perf_counter_ns"),
     (time, "sleep"),
     (select, "select"),
-    (threading, "_time"),  # these two have bound time.monotonic under their own names
+    (threading, "_time"),  # both modules have their own names for time.monotonic
     (queue, "time"),
 )
 
-_POLL = nanoseconds(0.01)  # how often a waiting `select` looks
+_POLL = nanoseconds(0.01)  # ns, polling period of `select`
 
 
 @contextmanager
@@ -54,7 +54,7 @@ def _clock(real: Callable[[], Any], virtual: Callable[[], Any]) -> Callable[[], 
 
 
 def _select(real: Callable[..., Any], scheduler: Scheduler) -> Callable[..., Any]:
-    """Let a node that polls its keyboard or a socket wait in virtual time; what is there is there at once."""
+    """Poll a keyboard or socket in virtual time; return at once if data is ready."""
 
     def select(rlist: Any, wlist: Any, xlist: Any, timeout: float | None = None) -> Any:
         task = running_task()

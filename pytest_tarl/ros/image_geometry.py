@@ -1,6 +1,6 @@
-"""`image_geometry`: where points of space are seen in a picture, by the CameraInfo of one camera or of a pair.
+"""`image_geometry`: project 3-D points to pixels by the CameraInfo of one camera or a stereo pair.
 
-Pinhole model: u = (P00 x + P02 z + P03) / z, with the matrices of sensor_msgs/CameraInfo, reduced to its binning and
+Pinhole model: u = (P00 x + P02 z + P03) / z, with the matrices of sensor_msgs/CameraInfo, adjusted for binning and
 region of interest. Matrices are `numpy.matrix`, as in ROS 1. Rectifying needs OpenCV.
 """
 
@@ -52,7 +52,7 @@ class PinholeCameraModel:
         self.resolution = (msg.width, msg.height)
         self.binning_x, self.binning_y = max(1, msg.binning_x), max(1, msg.binning_y)
         roi = self.raw_roi = copy.copy(msg.roi)
-        if not any((roi.x_offset, roi.y_offset, roi.width, roi.height)):  # stands for the whole picture
+        if not any((roi.x_offset, roi.y_offset, roi.width, roi.height)):  # all zero: the whole image
             roi.width, roi.height = msg.width, msg.height
         self.tf_frame, self.stamp = msg.header.frame_id, msg.header.stamp
         for row, offset, binning in ((0, roi.x_offset, self.binning_x), (1, roi.y_offset, self.binning_y)):
@@ -61,7 +61,7 @@ class PinholeCameraModel:
                 matrix[row, 2] = (matrix[row, 2] - offset) / binning
 
     def project3dToPixel(self, point: Point) -> tuple[float, float]:
-        """Return the rectified pixel at which a point (x, y, z) is seen; not a number for one beside the camera."""
+        """Return the rectified pixel of a point (x, y, z); NaN if its depth z is 0."""
         x, y, w = (self.P @ _matrix([*point[:3], 1.0], 4, 1)).A1.tolist()
         return (x / w, y / w) if w else (math.nan, math.nan)
 
@@ -72,11 +72,11 @@ class PinholeCameraModel:
         return x / norm, y / norm, 1.0 / norm
 
     def projectPixelTo3d(self, uv: Point, depth: float) -> tuple[float, float, float]:
-        """Return the point seen at a rectified pixel in the depth z."""
+        """Return the point at a rectified pixel and depth z."""
         return (uv[0] - self.cx()) / self.fx() * depth, (uv[1] - self.cy()) / self.fy() * depth, depth
 
     def rectifyImage(self, raw: Any, rectified: Any) -> None:
-        """Write the rectified picture of `raw` into the array `rectified`."""
+        """Rectify the image `raw` into the array `rectified`."""
         cv2 = _opencv("PinholeCameraModel.rectifyImage")
         self.mapx, self.mapy = cv2.initUndistortRectifyMap(
             self.K, self.D, self.R, self.P, (self.width, self.height), cv2.CV_32FC1
@@ -92,19 +92,19 @@ class PinholeCameraModel:
         return cv2.undistortPoints(raw, self.K, self.D, R=self.R, P=self.P)[0, 0]
 
     def getDeltaU(self, deltaX: float, Z: float) -> float:
-        """Return the pixels that a length across the picture takes in the depth Z."""
+        """Return the width in pixels of a horizontal length at depth Z."""
         return math.inf if Z == 0 else self.fx() * deltaX / Z
 
     def getDeltaV(self, deltaY: float, Z: float) -> float:
-        """Return the pixels that a length down the picture takes in the depth Z."""
+        """Return the height in pixels of a vertical length at depth Z."""
         return math.inf if Z == 0 else self.fy() * deltaY / Z
 
     def getDeltaX(self, deltaU: float, Z: float) -> float:
-        """Return the length that pixels across the picture stand for in the depth Z."""
+        """Return the horizontal length of a number of pixels at depth Z."""
         return Z * deltaU / self.fx()
 
     def getDeltaY(self, deltaV: float, Z: float) -> float:
-        """Return the length that pixels down the picture stand for in the depth Z."""
+        """Return the vertical length of a number of pixels at depth Z."""
         return Z * deltaV / self.fy()
 
     def fullResolution(self) -> tuple[int, int] | None:
@@ -112,7 +112,7 @@ class PinholeCameraModel:
         return self.resolution
 
     def intrinsicMatrix(self) -> Any:
-        """Return K for binning and region of interest."""
+        """Return K, adjusted for binning and region of interest."""
         return self.K
 
     def distortionCoeffs(self) -> Any:
@@ -124,7 +124,7 @@ class PinholeCameraModel:
         return self.R
 
     def projectionMatrix(self) -> Any:
-        """Return P for binning and region of interest."""
+        """Return P, adjusted for binning and region of interest."""
         return self.P
 
     def fullIntrinsicMatrix(self) -> Any:
@@ -136,19 +136,19 @@ class PinholeCameraModel:
         return self.full_P
 
     def cx(self) -> float:
-        """Return the centre across, in pixels."""
+        """Return the x coordinate of the optical centre, in pixels."""
         return float(self.P[0, 2])
 
     def cy(self) -> float:
-        """Return the centre down, in pixels."""
+        """Return the y coordinate of the optical centre, in pixels."""
         return float(self.P[1, 2])
 
     def fx(self) -> float:
-        """Return the focal length across, in pixels."""
+        """Return the horizontal focal length, in pixels."""
         return float(self.P[0, 0])
 
     def fy(self) -> float:
-        """Return the focal length down, in pixels."""
+        """Return the vertical focal length, in pixels."""
         return float(self.P[1, 1])
 
     def Tx(self) -> float:
@@ -160,15 +160,15 @@ class PinholeCameraModel:
         return float(self.P[1, 3])
 
     def fovX(self) -> float:
-        """Return the field of view across, in radians."""
+        """Return the horizontal field of view, in radians."""
         return 2 * math.atan(self.width / (2 * self.fx()))
 
     def fovY(self) -> float:
-        """Return the field of view down, in radians."""
+        """Return the vertical field of view, in radians."""
         return 2 * math.atan(self.height / (2 * self.fy()))
 
     def tfFrame(self) -> Any:
-        """Return the frame of the camera."""
+        """Return the camera's tf frame."""
         return self.tf_frame
 
 
@@ -189,24 +189,24 @@ class StereoCameraModel:
         self.Q[3, 2] = -right.fx() / right.Tx()
 
     def project3dToPixel(self, point: Point) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Return the rectified pixels at which both cameras see a point."""
+        """Return the rectified pixels of a point in the left and right image."""
         return self.left.project3dToPixel(point), self.right.project3dToPixel(point)
 
     def projectPixelTo3d(self, left_uv: Point, disparity: float) -> tuple[float, float, float]:
-        """Return the point that the left camera sees at a pixel and the right one `disparity` pixels beside it."""
+        """Return the point at a pixel of the left image with that disparity in pixels."""
         x, y, z, w = (self.Q @ _matrix([left_uv[0], left_uv[1], disparity, 1.0], 4, 1)).A1.tolist()
         return (x / w, y / w, z / w) if w else (0.0, 0.0, 0.0)
 
     def getZ(self, disparity: float) -> float:
-        """Return the depth in which a point has a disparity, infinite for none."""
+        """Return the depth for a disparity; infinite for disparity 0."""
         return math.inf if disparity == 0 else -self.right.Tx() / disparity
 
     def getDisparity(self, Z: float) -> float:
-        """Return the disparity of a point in the depth Z."""
+        """Return the disparity at depth Z."""
         return math.inf if Z == 0 else -self.right.Tx() / Z
 
     def tfFrame(self) -> Any:
-        """Return the frame of the left camera."""
+        """Return the left camera's tf frame."""
         return self.left.tfFrame()
 
 
@@ -216,7 +216,7 @@ def _matrix(numbers: Sequence[float], rows: int, columns: int) -> Any:
     with warnings.catch_warnings():
         warnings.simplefilter(
             "ignore", PendingDeprecationWarning
-        )  # of numpy.matrix, which is image_geometry's choice
+        )  # numpy.matrix warns; image_geometry returns it
         return np.matrix(np.array(list(numbers), dtype="float64").reshape(rows, columns))
 
 
@@ -228,5 +228,5 @@ def _opencv(what: str) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("image_geometry", name)

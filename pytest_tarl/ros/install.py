@@ -1,4 +1,4 @@
-"""Put the stand-ins where a node's imports find them, and take them away again."""
+"""Make the stand-ins importable for nodes, and undo it after the episode."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from pytest_tarl.ros.uninstalled import UninstalledFinder
 
 _HOME = "pytest_tarl.ros."
-STANDINS: Mapping[str, str] = {  # what a node imports → what it gets
+STANDINS: Mapping[str, str] = {  # imported name → stand-in module
     "rospy": "rospy",
     "rospy.exceptions": "rospy.exceptions",
     "rospy.rostime": "rospy.timing",
@@ -140,7 +140,7 @@ _STANDALONE = (
     "image_geometry",
     "rospkg",
     "ament_index_python",
-)  # a real one works without a running ROS and is preferred
+)  # the real package works without a running ROS and takes precedence
 
 
 _IMPORT_DATA = ("__name__", "__spec__", "__loader__", "__file__", "__cached__", "__path__", "__package__",
@@ -159,10 +159,10 @@ class StandinFinder:
     def find_spec(
         self, name: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Find a stand-in; None leaves the name to the other finders."""
+        """Find a stand-in; return None to leave the name to other finders."""
         root = name.partition(".")[0]
         if root == "genpy" and _has_genpy():
-            return None  # what the installed messages are made of
+            return None  # installed message classes need the installed package
         if name in STANDINS and root not in _STANDALONE:
             return self._spec(name)
         if root in _TALKING or root in _MISSING:
@@ -176,7 +176,7 @@ class StandinFinder:
         return self._installed_by_workspace(name) if name == root else None
 
     def _holds_messages(self, name: str) -> bool:
-        """Tell whether a module is a message package, or the part of a package of nodes that holds its messages."""
+        """Return whether a module is a message package, or the message part of a node package."""
         root, _, part = name.partition(".")
         kind = self._kind_of_importer()
         if installed_kind(root) == kind or not is_package(kind, root):
@@ -186,13 +186,13 @@ class StandinFinder:
         return not _is_ordinary_package(root) and sibling(root) is None
 
     def _installed_by_workspace(self, root: str) -> ModuleSpec | None:
-        """Find what a package of the workspace would install, unless the search path has a module of that name."""
+        """Find a module that a workspace package would install, unless the search path has one of that name."""
         if not packages() or _is_ordinary_package(root):
             return None
         return sibling(root) or (self._spec(root) if has_configurations(root) else None)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
-        """Make a module object that nobody has seen before."""
+        """Create a new module object."""
         name = spec.name
         if name in STANDINS:
             module = ModuleType(name)
@@ -215,7 +215,7 @@ class StandinFinder:
         """Do nothing: the module is complete."""
 
     def _talking_spec(self, name: str) -> ModuleSpec:
-        """Find a part of a package that talks: its messages, where it has some."""
+        """Find a message part (`msg`, `srv`, `action`) of a package, if it has any."""
         root, _, part = name.partition(".")
         kind = self._kind or "ros1"
         if part.partition(".")[0] in PARTS and is_package(kind, root):
@@ -233,13 +233,13 @@ class StandinFinder:
         return ModuleSpec(name, self, origin="pytest_tarl.ros", is_package=True)  # type: ignore[arg-type]
 
     def _kind_of_importer(self) -> Kind:
-        """Tell for which ROS generation messages are wanted: that of the client library which the importer names."""
+        """Return the ROS generation of the importer, by the client library that its code names."""
         if self._kind is None:
             return self._settle_kind(_kind_named_by(sys._getframe(2)) or "ros2")
         return self._kind
 
     def _settle_kind(self, kind: Kind) -> Kind:
-        """Fix the ROS generation of this episode's messages; those of an installed other one get out of the way."""
+        """Fix the ROS generation of this episode's messages; hide installed ones of the other generation."""
         self._kind = kind
         if installed_kind("std_msgs") not in (None, kind):
             self.hidden.update(_hide({name for name in sys.modules if could_be_package(name)}))
@@ -247,7 +247,7 @@ class StandinFinder:
 
 
 def _attribute(module: str, otherwise: Callable[[str], Any] | None, name: str) -> Any:
-    """Return a module within a stand-in: what the test put into `sys.modules`, or a stand-in of its own."""
+    """Return a submodule of a stand-in: one that the test put into `sys.modules`, or another stand-in."""
     inner = f"{module}.{name}"
     if inner in sys.modules:
         return sys.modules[inner]
@@ -260,7 +260,7 @@ def _attribute(module: str, otherwise: Callable[[str], Any] | None, name: str) -
 
 @cache
 def _contents(home: str) -> Mapping[str, object]:
-    """Return what a stand-in holds; every episode's module gets a copy of it."""
+    """Return the namespace of a stand-in; each episode's module gets a copy."""
     return {key: value for key, value in vars(import_module(home)).items() if key not in _IMPORT_DATA}
 
 
@@ -296,7 +296,7 @@ def _kind_named_by(frame: FrameType | None) -> Kind | None:
 
 
 def kind_of_caller() -> Kind:
-    """Tell for which ROS generation the calling code asks: that of the client library which it names."""
+    """Return the ROS generation of the calling code, by the client library that its code names."""
     return _kind_named_by(sys._getframe(1)) or "ros1"
 
 
@@ -306,7 +306,7 @@ def _imports(code: CodeType) -> set[str]:
 
 @contextmanager
 def standins_installed(scheduler: Scheduler, uninstalled: UninstalledFinder) -> Iterator[None]:
-    """Have imports find the stand-ins and nodes see the virtual clock as the host's; undo all of it on exit."""
+    """Install the stand-ins and the virtual host clock; undo both on exit."""
     finder = StandinFinder()
     finder.hidden = _hide(root for root in _TALKING if root != "genpy" or not _has_genpy())
     sys.meta_path.insert(0, finder)
@@ -319,19 +319,19 @@ def standins_installed(scheduler: Scheduler, uninstalled: UninstalledFinder) -> 
         sys.meta_path.remove(uninstalled)
         gone = [sys.modules[name] for name in finder.loaded if name in sys.modules]
         for name in holders(gone, sorted(sys.modules.keys() - finder.before - set(finder.loaded))):
-            del sys.modules[name]  # what took a stand-in apart, or wrapped it, does so with the next one
+            del sys.modules[name]  # modules that depend on a stand-in are re-imported with the next one
         for name in finder.loaded:
             sys.modules.pop(name, None)
         sys.modules.update(finder.hidden)
 
 
 def _hide(roots: Iterable[str]) -> dict[str, ModuleType]:
-    """Take the modules of a real ROS, or of another stand-in, out of the way."""
+    """Remove modules of a real ROS or another stand-in from `sys.modules`, and return them."""
     present = {root for root in roots if root in sys.modules}
     names = [name for name in sys.modules if name.partition(".")[0] in present and not _is_given(name)]
     return {name: sys.modules.pop(name) for name in names}
 
 
 def _is_given(name: str) -> bool:
-    """Tell whether a module was put into `sys.modules` by the test, for something that there is no stand-in for."""
+    """Return whether the test put this module into `sys.modules`, for a package without a stand-in."""
     return name not in STANDINS and getattr(sys.modules[name], "__spec__", None) is None

@@ -1,4 +1,4 @@
-"""The parameters that the launch files of the workspace give a node, for tests that do not state them."""
+"""Read a node's parameters from the launch files of its workspace."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tarl_lint.workspace.model import Workspace
 
 @dataclass(frozen=True)
 class Given:
-    """Parameters from a launch file: `private` ones by name, `shared` ones by absolute name; `note` says whence."""
+    """Parameters from a launch file: `private` by name, `shared` by absolute name; `note` names the file."""
 
     private: Mapping[str, Any] = field(default_factory=dict)
     shared: Mapping[str, Any] = field(default_factory=dict)
@@ -28,10 +28,11 @@ NOTHING = Given()
 
 @cache
 def given(script: Path, launch: Path | None = None) -> Given:
-    """Return the parameters that a launch file gives a script: the file named, else the only one that gives any.
+    """Return a script's parameters from the named launch file, or else from the only one that sets any.
 
-    Among several files that start the script with different parameters, those of its own package count. Raises
-    SettingsError where the named file does not start it.
+    If several files start the script with different parameters, only those of its own package count.
+
+    Raises SettingsError if the named file does not exist or does not start the script.
     """
     workspace = next((one for one in workspaces() if script.is_relative_to(one.root)), None)
     if workspace is None:
@@ -49,7 +50,7 @@ def given(script: Path, launch: Path | None = None) -> Given:
 
 
 def _chosen(workspace: Workspace, script: Path, found: Sequence[Given], files: Sequence[Path]) -> Given:
-    """Return the parameters that all files agree on; else those that the files of the script's package agree on."""
+    """Return the parameters if all files agree; else if all files of the script's package agree."""
     own = workspace.package_of(script)
     telling = [(one, file) for one, file in zip(found, files, strict=True) if one.private or one.shared]
     near = [(one, file) for one, file in telling if own is not None and file.is_relative_to(own.folder)]
@@ -71,7 +72,7 @@ def _same(one: Given, other: Given) -> bool:
 
 
 def _runs(workspace: Workspace, node: LaunchedNode, script: Path) -> bool:
-    """Tell whether a node of a launch file runs a script."""
+    """Return whether a launch file's node runs the script."""
     package = workspace.package(node.package)
     if package is None:
         return False
@@ -82,7 +83,7 @@ def _runs(workspace: Workspace, node: LaunchedNode, script: Path) -> bool:
 
 
 def _given(launch: Launch, node: LaunchedNode) -> Given:
-    """Return the values of a node's parameters, YAML read."""
+    """Return the values of a node's parameters, with YAML parsed."""
     private: dict[str, Any] = {}
     shared: dict[str, Any] = {}
     files: list[Path] = []
@@ -96,13 +97,13 @@ def _given(launch: Launch, node: LaunchedNode) -> Given:
 
 
 def _rooted(name: str, node: LaunchedNode) -> str:
-    """Return a name within the node's namespace as a name within `/`, where the test starts the node."""
+    """Move a name from the node's namespace to `/`, the namespace in which the test starts the node."""
     inside = name.startswith(f"{node.namespace.rstrip('/')}/") and node.namespace != "/"
     return name.removeprefix(node.namespace.rstrip("/")) if inside else name
 
 
 def _values(setting: Setting, node: LaunchedNode) -> Iterator[tuple[str, Any]]:
-    """Yield the parameters of a setting, by the name within the node or the absolute name."""
+    """Yield the parameters of a setting, by private or absolute name."""
     above = setting.name.removeprefix("~").rstrip("/")
     if setting.yaml is None:
         yield above, setting.value
@@ -116,7 +117,7 @@ def _values(setting: Setting, node: LaunchedNode) -> Iterator[tuple[str, Any]]:
 
 
 def _of_node(content: dict[Any, Any], node: LaunchedNode) -> dict[Any, Any]:
-    """Return the part of a ROS 2 parameter file that is for a node; other content as it is."""
+    """Return the section of a ROS 2 parameter file for a node; other content unchanged."""
     parts = [
         (str(key).strip("/"), value["ros__parameters"])
         for key, value in content.items()
@@ -133,7 +134,7 @@ def _of_node(content: dict[Any, Any], node: LaunchedNode) -> dict[Any, Any]:
 
 
 def _flat(values: Mapping[Any, Any], above: str = "") -> dict[str, Any]:
-    """Return nested parameters of ROS 2 by names with dots."""
+    """Flatten nested ROS 2 parameters to dotted names."""
     found: dict[str, Any] = {}
     for key, value in values.items():
         name = f"{above}{key}"
@@ -156,7 +157,7 @@ def _yaml(setting: Setting) -> Any:
 
 
 def _launches(workspace: Workspace, script: Path) -> tuple[Launch, ...]:
-    """Return the launch files that may start a script: those with its name, or that of a program which it is."""
+    """Return the launch files that contain the script's name or the name of its entry point."""
     named = {one.name for package in workspace.packages for one in package.executables if one.path == script}
     words = [name.encode() for name in sorted({script.name, *named})]
     files = [file for package in workspace.packages for file in package.launch_files]

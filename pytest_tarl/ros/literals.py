@@ -1,4 +1,4 @@
-"""Values as they are written on a ROS command line (the scalar and flow subset of YAML)."""
+"""Parse values on a ROS command line (the scalar and flow subset of YAML)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _WORDS = {
 
 
 def parse_value(text: str) -> Any:
-    """Read a number, a truth value, a list or a text, as `rosrun _gain:=2.5` or `-p gain:=2.5` would."""
+    """Parse a number, boolean, list or string, like `rosrun … _gain:=2.5` and `-p gain:=2.5` do."""
     text = text.strip()
     if text.lower() in _WORDS:
         return _WORDS[text.lower()]

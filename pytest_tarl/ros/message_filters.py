@@ -14,19 +14,19 @@ __all__ = ["ApproximateTimeSynchronizer", "Cache", "SimpleFilter", "Subscriber",
 
 
 class SimpleFilter:
-    """Something that messages come out of."""
+    """Base of filters: sends messages to its callbacks."""
 
     def __init__(self) -> None:
         self.callbacks: dict[int, tuple[Callable[..., Any], tuple[Any, ...]]] = {}
 
     def registerCallback(self, cb: Callable[..., Any], *args: Any) -> int:
-        """Have a function called with what comes out; return a number for it."""
+        """Register a callback for output messages; return its number."""
         number = len(self.callbacks)
         self.callbacks[number] = (cb, args)
         return number
 
     def signalMessage(self, *msg: Any) -> None:
-        """Let messages come out."""
+        """Send messages to the callbacks."""
         for callback, args in list(self.callbacks.values()):
             callback(*(msg + args))
 
@@ -48,7 +48,7 @@ class Subscriber(SimpleFilter):
             self.sub = RospySubscriber(*args, **{**kwargs, "callback": self.callback})
 
     def callback(self, msg: Any) -> None:
-        """Pass a message on."""
+        """Forward a message."""
         self.signalMessage(msg)
 
     def getTopic(self) -> str:
@@ -64,7 +64,7 @@ class Subscriber(SimpleFilter):
 
 
 class Cache(SimpleFilter):
-    """Keeps the last messages of a filter, in the order of their stamps, and passes them on."""
+    """Keeps the last messages of a filter, ordered by stamp, and forwards them."""
 
     def __init__(
         self, f: SimpleFilter | None = None, cache_size: int = 1, allow_headerless: bool = False
@@ -77,11 +77,11 @@ class Cache(SimpleFilter):
             self.connectInput(f)
 
     def connectInput(self, f: SimpleFilter) -> None:
-        """Take messages from a filter."""
+        """Connect to an input filter."""
         f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
-        """Take a message."""
+        """Add a message."""
         self._kept.append((_time_of(msg, self.allow_headerless), msg))
         self._kept.sort(key=lambda entry: entry[0])
         del self._kept[: -self.cache_size]
@@ -116,7 +116,7 @@ class Cache(SimpleFilter):
 
 
 class TimeSynchronizer(SimpleFilter):
-    """Passes messages on together when their stamps are equal."""
+    """Forwards messages together if their stamps are equal."""
 
     def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
         super().__init__()
@@ -125,7 +125,7 @@ class TimeSynchronizer(SimpleFilter):
         self.connectInput(fs)
 
     def connectInput(self, fs: Sequence[SimpleFilter]) -> None:
-        """Take messages from filters."""
+        """Connect to input filters."""
         self.queues = [{} for _ in fs]
         for index, source in enumerate(fs):
             source.registerCallback(self._take, index)
@@ -150,7 +150,7 @@ class TimeSynchronizer(SimpleFilter):
 
 
 class ApproximateTimeSynchronizer(TimeSynchronizer):
-    """Passes messages on together when their stamps differ by no more than `slop` seconds."""
+    """Forwards messages together if their stamps differ by at most `slop` seconds."""
 
     def __init__(
         self,
@@ -169,7 +169,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         return _time_of(message, self.allow_headerless)
 
     def _match(self, stamp: int, index: int) -> None:
-        """Pass on the first set around the new message that lies within the slop, the nearest ones first."""
+        """Forward the first set that contains the new message and lies within the slop, nearest stamps first."""
         near = [
             [stamp]
             if i == index
@@ -206,7 +206,7 @@ def _ns(stamp: Any) -> int:
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     from pytest_tarl.ros.missing import refuse
 
     raise refuse("message_filters", name)

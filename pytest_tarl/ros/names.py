@@ -1,4 +1,4 @@
-"""Names of topics, services and parameters: absolute, relative, private; remapping; what is on a command line."""
+"""Names of topics, services and parameters: resolution, remapping, ROS command lines."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pytest_tarl.ros.literals import parse_value
 
 @dataclass(frozen=True, slots=True)
 class CommandLine:
-    """What a ROS command line sets besides the program's own arguments (`rest`)."""
+    """The parts of a ROS command line; `rest` are the program's own arguments."""
 
     remappings: Mapping[str, str] = field(default_factory=dict)
     parameters: Mapping[str, Any] = field(default_factory=dict)
@@ -22,15 +22,15 @@ class CommandLine:
 
 
 def absolute(name: str) -> str:
-    """Give a name its leading slash and drop doubled and trailing ones: `odom` → `/odom`."""
+    """Add the leading slash to a name and drop doubled and trailing ones: `odom` → `/odom`."""
     return "/" + "/".join(part for part in name.split("/") if part)
 
 
 def resolve(name: str, node: str, remappings: Mapping[str, str]) -> str:
     """Resolve a name used in the node with the fully qualified name `node`, as both ROS generations do.
 
-    `~x` is private to the node, `/x` global, `x` relative to the node's namespace. A remapping applies to the
-    resolved name, whichever way its left side is written.
+    `~x` is private to the node, `/x` global, `x` relative to the node's namespace. A remapping applies to resolved
+    names: its left side is resolved as well.
     """
     resolved = expand(name, node)
     for old, new in remappings.items():
@@ -40,7 +40,7 @@ def resolve(name: str, node: str, remappings: Mapping[str, str]) -> str:
 
 
 def expand(name: str, node: str) -> str:
-    """Expand `~`, `{node}`, `{ns}` and the namespace; no remapping."""
+    """Expand `~`, `{node}`, `{ns}` and relative names, without remapping."""
     namespace, _, base = node.rpartition("/")
     name = name.replace("{node}", base).replace("{namespace}", namespace).replace("{ns}", namespace)
     if name.startswith("~"):
@@ -72,7 +72,7 @@ def parse_ros1(arguments: Iterable[str]) -> CommandLine:
 def parse_ros2(arguments: Iterable[str]) -> CommandLine:
     """Read `--ros-args -r old:=new -p name:=value --params-file file …` up to `--`.
 
-    Node-specific rules keep their `node:` prefix; what a file says stays below the names of nodes.
+    Node-specific rules keep their `node:` prefix; parameters from files stay grouped by node name.
     """
     remappings: dict[str, str] = {}
     parameters: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""Where packages are: ament_index_python, rospkg and roslib.packages, by the package.xml files around the nodes."""
+"""ament_index_python, rospkg and roslib.packages: find packages by the package.xml files around the nodes."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ __all__ = [
 
 
 class PackageNotFoundError(KeyError):
-    """There is no such package below the repository of the node (ament's name)."""
+    """The package is not in the node's repository (ament's exception)."""
 
 
 class ResourceNotFound(Exception):  # noqa: N818
-    """There is no such package below the repository of the node (rospkg's name)."""
+    """The package is not in the node's repository (rospkg's exception)."""
 
 
 class InvalidROSPkgException(Exception):  # noqa: N818
-    """There is no such package below the repository of the node (roslib's name)."""
+    """The package is not in the node's repository (roslib's exception)."""
 
 
 def _folder(package: str) -> Path | None:
@@ -40,7 +40,7 @@ def _folder(package: str) -> Path | None:
 
 
 def get_package_share_directory(package_name: str) -> str:
-    """Return the folder of a package's source: what would be installed from there is found there."""
+    """Return a package's source folder, which stands in for its share directory."""
     found = _folder(package_name)
     if found is None:
         raise PackageNotFoundError(
@@ -50,12 +50,12 @@ def get_package_share_directory(package_name: str) -> str:
 
 
 def get_package_share_path(package_name: str) -> Path:
-    """Return the folder of a package's source as a path."""
+    """Return a package's source folder as a Path."""
     return Path(get_package_share_directory(package_name))
 
 
 def get_package_prefix(package_name: str) -> str:
-    """Return the folder of a package's source."""
+    """Return a package's source folder."""
     return get_package_share_directory(package_name)
 
 
@@ -73,7 +73,7 @@ def get_pkg_dir(package: str, required: bool = True) -> str | None:
 
 
 def on_ros_path(p: str) -> bool:
-    """Tell whether a path is inside of a package."""
+    """Return whether a path is in a package."""
     return any(Path(p).is_relative_to(folder) for folder in package_folders().values())
 
 
@@ -92,11 +92,11 @@ class RosPack:
         return [*package_folders()]
 
     def get_depends(self, name: str, implicit: bool = True) -> Any:  # noqa: ARG002 (rospkg's signature)
-        """List the packages that a package's manifest depends on."""
+        """List a package's dependencies from its manifest."""
         self.get_path(name)
         return [*packages()[name].dependencies]
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse(str(sys._getframe(1).f_globals.get("__name__", "rospkg")), name)

@@ -1,4 +1,4 @@
-"""The parameter server of an episode: one tree that all rospy nodes share."""
+"""The parameter server of an episode."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ class ParameterServer:
 
     def __init__(self, given: Mapping[str, Any]) -> None:
         self._root: dict[str, Any] = {}
-        self._private: dict[str, Any] = {}  # given by the test for every node
+        self._private: dict[str, Any] = {}  # private parameters from the test, for every node
         self.take(given)
 
     def take(self, given: Mapping[str, Any]) -> None:
-        """Take parameters from the test."""
+        """Set the test's parameters."""
         for name, value in given.items():
             if not name.startswith("~"):
                 self.set(absolute(name), value)
@@ -28,7 +28,7 @@ class ParameterServer:
                 self._private[name.removeprefix("~")] = value
 
     def enter_node(self, node: str) -> None:
-        """Give a new node the parameters that the test set without naming a node."""
+        """Copy the test's private parameters to a new node."""
         for name, value in self._private.items():
             if self.get(f"{node}/{name}") is None:
                 self.set(f"{node}/{name}", value)
@@ -56,7 +56,7 @@ class ParameterServer:
         branch[keys[-1]] = deepcopy(value)
 
     def fill(self, name: str, value: Any) -> None:
-        """Set a value, or what a dict holds of a subtree, only where nothing is set."""
+        """Set a value or the leaves of a subtree, without overwriting."""
         if isinstance(value, dict) and value:
             for key, inner in value.items():
                 self.fill(f"{name}/{key}", inner)
@@ -64,7 +64,7 @@ class ParameterServer:
             self.set(name, value)
 
     def delete(self, name: str) -> bool:
-        """Remove a parameter or a subtree; tell whether it was there."""
+        """Remove a parameter or a subtree; return whether it existed."""
         *path, last = keys_of(name)
         branch: Any = self._root
         for key in path:
@@ -72,12 +72,12 @@ class ParameterServer:
         return isinstance(branch, dict) and branch.pop(last, _ABSENT) is not _ABSENT
 
     def names(self) -> list[str]:
-        """List all parameters."""
+        """Return the names of all parameters."""
         return list(_leaves("", self._root))
 
 
 def keys_of(name: str) -> list[str]:
-    """Split a parameter's name at its slashes."""
+    """Split a parameter's name at slashes."""
     return [key for key in name.split("/") if key]
 
 

@@ -1,4 +1,4 @@
-"""The files that `--ros-args --params-file` names: parameters by node, as YAML."""
+"""Read parameter files (`--ros-args --params-file`): parameters by node, as YAML."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pytest_tarl.ros.missing import unsupported
 
 
 def read(filename: str) -> dict[str, Any]:
-    """Return what a file says, by node name or `/**`. Raises RuntimeError, as ROS does, where it cannot be read."""
+    """Return a file's parameters by node name or `/**`. Raises RuntimeError, as ROS does, if it cannot be read."""
     try:
         import yaml
     except ModuleNotFoundError:

@@ -133,5 +133,5 @@ def create_cloud_xyz32(header: Any, points: Any) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("point_cloud2", name)

@@ -1,4 +1,4 @@
-"""One started program, as the operating system would run it: argument list, tasks, what is to be ended with it."""
+"""One started program, like an operating system process: arguments, tasks, shutdown."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from pytest_tarl.ros.watchdog import WATCHDOG
 
 Part = TypeVar("Part")
 
-_PATIENCE = 1_000  # waits that return at once before a loop counts as one that will not end by itself
-_ROUNDS = 5  # how often the tasks of an ending process are given the chance to return by themselves
+_PATIENCE = 1_000  # waits that return at once before a task counts as one that ignores the shutdown
+_ROUNDS = 5  # rounds in which the tasks of an ending process can return before they are killed
 
 
 class Network:
-    """What the processes of an episode share: clock, topics, services, parameters.
+    """State shared by the processes of an episode: clock, topics, services, parameters.
 
-    `part` holds what a single client library shares between processes, such as its actions.
+    `part` holds state that one client library shares between processes, such as its actions.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Network:
         return ParameterServer(self.parameters)
 
     def part(self, kind: Callable[[Network], Part]) -> Part:
-        """Return this episode's only instance of `kind`, made at first use."""
+        """Return this episode's instance of `kind`; create it at first use."""
         if kind not in self._parts:
             self._parts[kind] = kind(self)
         found: Part = self._parts[kind]
@@ -57,7 +57,7 @@ class Network:
 
 
 class Process:
-    """A program and the state that rospy or rclpy keep in its interpreter (`part`)."""
+    """A program, and the global state of rospy or rclpy in its interpreter (`part`)."""
 
     def __init__(self, ros: Network, name: str, argv: Sequence[str]) -> None:
         self.ros = ros
@@ -69,9 +69,9 @@ class Process:
         self.ended = False
         self._closing = False
         self._refused = 0
-        self.launched = NOTHING  # what a launch file gives the node
-        self.label = name  # what messages call it: the node's name once it has one
-        self.errors: list[NodeError] = []  # what went wrong while it was being ended
+        self.launched = NOTHING  # parameters from a launch file
+        self.label = name  # name in messages: that of the node once it has one
+        self.errors: list[NodeError] = []  # errors during shutdown
         self._parts: dict[Any, Any] = {}
         self._at_end: list[Callable[[], None]] = []
 
@@ -86,14 +86,14 @@ class Process:
         return self.ros.bus
 
     def part(self, kind: Callable[[Process], Part]) -> Part:
-        """Return this process's only instance of `kind`, made at first use."""
+        """Return this process's instance of `kind`; create it at first use."""
         if kind not in self._parts:
             self._parts[kind] = kind(self)
         found: Part = self._parts[kind]
         return found
 
     def at_end(self, hook: Callable[[], None]) -> None:
-        """Have `hook` called when the process is asked to end, before its tasks are woken."""
+        """Register `hook` to be called at shutdown, before tasks are woken."""
         self._at_end.append(hook)
 
     def run(self, program: Callable[[], None]) -> None:
@@ -105,7 +105,7 @@ class Process:
         program()
 
     def failed(self, task: Task, error: BaseException) -> None:
-        """Take note of how a task ended: an exception of the node becomes a NodeError."""
+        """Handle the exception that ended a task: one of the node becomes a NodeError."""
         if self.ending and getattr(error, "tarl_shutdown", False):
             return
         if isinstance(error, Spinning):
@@ -114,19 +114,19 @@ class Process:
             if task is self.main and error.code not in (None, 0) and not self.ending:
                 self._fail(self._ended_in(error))
         elif isinstance(error, TarlError | KeyboardInterrupt) or _of_pytest(error):
-            self._fail(error)  # for the user, or for those outside
+            self._fail(error)  # the user's interrupt, or an error outside of the node
         else:
             self._fail(self._ended_in(error))
 
     def finished(self, task: Task) -> None:
-        """Forget a task; a process whose main program has returned ends."""
+        """Remove an ended task; if it was the main program, end the process."""
         if task in self.tasks:
             self.tasks.remove(task)
         if task is self.main and not self._closing:
             self.scheduler.later(self.end)
 
     def end(self) -> None:
-        """End the process cleanly: hooks, then let every task return, then force the rest. Outside of tasks."""
+        """End the process: call hooks, let every task return, then kill the rest. Called outside of tasks."""
         if self._closing:
             return
         self._closing = True
@@ -145,7 +145,7 @@ class Process:
         self.bus.disconnect(self)
 
     def ask_to_end(self) -> None:
-        """Mark the process as ending, call the hooks and wake every task, which sees it."""
+        """Mark the process as ending, call the hooks and wake every task."""
         self.ending = True
         for hook in self._at_end:
             hook()
@@ -153,13 +153,13 @@ class Process:
             self.scheduler.wake(task)
 
     def refuse_to_wait(self) -> None:
-        """Take note of a wait that returns at once because the process is ending; one that keeps trying is parked."""
+        """Count a wait that returns at once because the process is ending; suspend a task that keeps waiting."""
         self._refused += 1
         while self._refused > _PATIENCE:
             self.scheduler.wait()
 
     def spins(self, place: blame.Place | None) -> NodeError:
-        """Say that the node never waits."""
+        """Return the error for a node that never waits."""
         return StuckNodeError(
             f"Node {self.label!r} never waits: {WATCHDOG.hanging(self.ros.watchdog_limit)} went by while virtual "
             f"time stood still, at {blame.describe(place)}. Call Rate.sleep(), rospy.sleep() or a spin function in "
@@ -185,18 +185,18 @@ class Process:
 
 
 def _of_pytest(error: BaseException) -> bool:
-    """Tell pytest.fail, skip and exit, which a node may call when it is a test's own; pytest is not imported for it."""
+    """Return whether an exception comes from pytest.fail, skip or exit; does not import pytest."""
     return any(kind.__module__ == "_pytest.outcomes" for kind in type(error).__mro__)
 
 
 def running_process() -> Process | None:
-    """Return the process whose task is running, None outside of all nodes."""
+    """Return the process of the running task; None outside of nodes."""
     task = running_task()
     return task.process if task is not None and isinstance(task.process, Process) else None
 
 
 def current_process(api: str) -> Process:
-    """Return the process whose task is running. Raises UnsupportedApiError outside of all nodes."""
+    """Return the process of the running task. Raises UnsupportedApiError outside of nodes."""
     process = running_process()
     if process is not None:
         return process

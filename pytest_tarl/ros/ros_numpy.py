@@ -1,4 +1,4 @@
-"""ros_numpy: geometry, pictures, maps and clouds as numpy arrays, and back."""
+"""ros_numpy: convert geometry, images, maps and point clouds to numpy arrays and back."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _KINDS = {kind: number for number, kind in TYPES.items()}  # numpy → PointFiel
 
 
 def numpify(msg: Any, *args: Any, **kwargs: Any) -> Any:
-    """Return a message as an array. Raises ValueError for a type that has no such form."""
+    """Return a message as an array. Raises ValueError for an unsupported type."""
     convert = _TO_ARRAY.get(type_name(type(msg)))
     if convert is None:
         raise ValueError(
@@ -32,7 +32,7 @@ def numpify(msg: Any, *args: Any, **kwargs: Any) -> Any:
 
 
 def msgify(msg_type: Any, numpy_obj: Any, *args: Any, **kwargs: Any) -> Any:
-    """Return an array as a message of a type. Raises ValueError for a type that has no such form."""
+    """Return an array as a message of a type. Raises ValueError for an unsupported type."""
     convert = _FROM_ARRAY.get(type_name(msg_type))
     if convert is None:
         raise ValueError(
@@ -81,12 +81,12 @@ def _transform(made: Any, matrix: Any) -> Any:
 
 
 def image_to_numpy(msg: Any) -> Any:
-    """Return a picture as an array of shape (height, width[, channels])."""
+    """Return an image as an array of shape (height, width[, channels])."""
     return CvBridge().imgmsg_to_cv2(msg)
 
 
 def numpy_to_image(arr: Any, encoding: str) -> Any:
-    """Return an array as a picture."""
+    """Return an array of shape (height, width[, channels]) as an image message."""
     return CvBridge().cv2_to_imgmsg(arr, encoding)
 
 
@@ -99,7 +99,7 @@ def occupancygrid_to_numpy(msg: Any) -> Any:
 
 
 def numpy_to_occupancy_grid(arr: Any, info: Any = None) -> Any:
-    """Return an array of shape (height, width) as a map; what is masked becomes unknown."""
+    """Return an array of shape (height, width) as a map; masked cells become unknown."""
     import numpy as np
 
     if arr.ndim != 2 or arr.dtype != np.int8:
@@ -113,7 +113,7 @@ def numpy_to_occupancy_grid(arr: Any, info: Any = None) -> Any:
 
 
 def pointcloud2_to_array(cloud_msg: Any, squeeze: bool = True) -> Any:
-    """Return a cloud as a structured array, of shape (points,) where it has one row only."""
+    """Return a cloud as a structured array of shape (height, width), or (points,) if it has one row."""
     import numpy as np
 
     kind = dtype_from_fields(cloud_msg.fields, cloud_msg.point_step, cloud_msg.is_bigendian)
@@ -156,7 +156,7 @@ def _fields(kind: Any, made: Any) -> list[Any]:
 
 
 def get_xyz_points(cloud_array: Any, remove_nans: bool = True, dtype: Any = float) -> Any:
-    """Return the x, y and z of a structured array, with one more dimension of three."""
+    """Return the x, y and z of a structured array, shape (…, 3)."""
     import numpy as np
 
     if remove_nans:
@@ -171,7 +171,7 @@ def pointcloud2_to_xyz_array(cloud_msg: Any, remove_nans: bool = True) -> Any:
 
 
 def split_rgb_field(cloud_arr: Any) -> Any:
-    """Return a structured array with r, g and b (uint8) in place of the packed field rgb."""
+    """Return a structured array with fields r, g and b (uint8) in place of the packed field rgb."""
     import numpy as np
 
     packed = np.ascontiguousarray(cloud_arr["rgb"]).view(np.uint32)
@@ -211,7 +211,7 @@ _FROM_ARRAY: dict[str, Callable[..., Any]] = {
 
 
 def __getattr__(name: str) -> Any:
-    """Return a submodule, which a node need not import by itself; name what is missing."""
+    """Return a submodule without an explicit import; raise for a name that the stand-in lacks."""
     if name in ("geometry", "image", "occupancy_grid", "point_cloud2"):
         return import_module(f"ros_numpy.{name}")
     raise refuse("ros_numpy", name)

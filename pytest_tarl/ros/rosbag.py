@@ -1,4 +1,4 @@
-"""`rosbag`: bags of ROS 1, read and written with the package `rosbags`."""
+"""`rosbag`: read and write ROS 1 bags with the package `rosbags`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class ROSBagException(Exception):  # noqa: N818 (these names are rosbag's)
 
 
 class ROSBagFormatException(ROSBagException):
-    """A file is no bag."""
+    """A file is not a bag."""
 
 
 class ROSBagUnindexedException(ROSBagException):
@@ -39,7 +39,7 @@ class BagMessage(NamedTuple):
 
 
 class TopicTuple(NamedTuple):
-    """What a bag holds of a topic."""
+    """Type, message count and connections of a topic in a bag."""
 
     msg_type: str
     message_count: int
@@ -55,7 +55,7 @@ class TypesAndTopicsTuple(NamedTuple):
 
 
 class Bag:
-    """A bag that is read (`r`) or written (`w`). Raises ROSBagException for a file that cannot be read."""
+    """A bag opened for reading (`r`) or writing (`w`). Raises ROSBagException for a file that cannot be read."""
 
     def __init__(self, f: Any, mode: str = "r", compression: str = "none", **_: Any) -> None:  # noqa: ARG002
         if not isinstance(f, str | Path):
@@ -69,7 +69,7 @@ class Bag:
 
     @property
     def filename(self) -> str:
-        """Return the path as it was given."""
+        """Return the path that the constructor got."""
         return str(self._path)
 
     @property
@@ -104,7 +104,7 @@ class Bag:
         raw: bool = False,
         return_connection_header: bool = False,
     ) -> Iterator[BagMessage]:
-        """Yield topic, message and time of the messages, by time: of some topics, within times, both included."""
+        """Yield topic, message and time in order of time; optionally of some topics, within inclusive limits."""
         if connection_filter is not None or return_connection_header:
             raise unsupported("read_messages(connection_filter=…, return_connection_header=True)")
         wanted = [topics] if isinstance(topics, str) else topics
@@ -123,7 +123,7 @@ class Bag:
             yield BagMessage(connection.topic, message, stamp)
 
     def write(self, topic: str, msg: Any, t: Any = None, raw: bool = False, **_: Any) -> None:
-        """Write a message with the time `t`, else with the present one."""
+        """Write a message with the time `t`, by default the current time."""
         if raw:
             raise unsupported("rosbag.Bag.write(raw=True)")
         from pytest_tarl.ros.rospy.timing import Time as RospyTime
@@ -137,7 +137,7 @@ class Bag:
         bag.write(self._connections[key], stamp.to_nsec(), serialize(msg))
 
     def flush(self) -> None:
-        """Do nothing: what is written is complete when the bag is closed."""
+        """Do nothing: the file is complete when the bag is closed."""
 
     def get_start_time(self) -> float:
         """Return the time of the first message, in seconds."""
@@ -148,7 +148,7 @@ class Bag:
         return float((self._open().end_time - 1) / 1e9)
 
     def get_message_count(self, topic_filters: Any = None) -> int:
-        """Return how many messages there are, of some topics."""
+        """Return the number of messages, optionally of some topics."""
         wanted = [topic_filters] if isinstance(topic_filters, str) else topic_filters
         return sum(one.msgcount for one in self._open().connections if wanted is None or one.topic in wanted)
 
@@ -172,7 +172,7 @@ class Bag:
         return self._bag
 
     def _class(self, connection: Any) -> Any:
-        """Return the class of a connection's messages: the known one, if its checksum is that of the bag."""
+        """Return a connection's message class: the known one if its checksum matches, else built from the bag."""
         name = connection.msgtype.replace("/msg/", "/")
         if name not in self._classes:
             known = find_class("ros1", *name.split("/"))
@@ -207,5 +207,5 @@ def _opened(path: Path, mode: str) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("rosbag", name)

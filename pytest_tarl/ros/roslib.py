@@ -1,4 +1,4 @@
-"""The one call of roslib that old nodes still make."""
+"""`roslib.load_manifest`, which old nodes still call."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def load_manifest(package_name: str) -> None:
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     from pytest_tarl.ros.missing import refuse
 
     raise refuse("roslib", name)

@@ -1,4 +1,4 @@
-"""`roslib.message` and `genpy.message`: classes of messages and services by the names of their types."""
+"""`roslib.message` and `genpy.message`: look up message and service classes by type name."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ __all__ = [
 
 
 def get_message_class(message_type: str, reload_on_error: bool = False) -> Any:  # noqa: ARG001 (genpy's signature)
-    """Return the class of a message type, `std_msgs/String`; None if nobody knows it."""
+    """Return the class of a message type such as `std_msgs/String`; None if it is unknown."""
     return _class(message_type, "msg")
 
 
 def get_service_class(service_type: str, reload_on_error: bool = False) -> Any:  # noqa: ARG001
-    """Return the class of a service type, `std_srvs/Empty`; None if nobody knows it."""
+    """Return the class of a service type such as `std_srvs/Empty`; None if it is unknown."""
     return _class(service_type, "srv")
 
 
@@ -45,12 +45,12 @@ def _class(name: str, part: str) -> Any:
 
 
 def strify_message(val: Any, indent: str = "", *_: Any, **__: Any) -> str:
-    """Return a message as text, as `rostopic echo` shows it."""
+    """Format a message like `rostopic echo` does."""
     return as_yaml(val, indent)
 
 
 def get_printable_message_args(msg: Any, buff: Any = None, prefix: str = "") -> str:  # noqa: ARG001
-    """Return the names of all fields, those of inner messages with dots."""
+    """Return the names of all fields, with dots for nested messages."""
     names = []
     for name, kind in zip(msg.__slots__, msg._slot_types, strict=True):
         inner = getattr(msg, name)
@@ -65,7 +65,7 @@ def get_printable_message_args(msg: Any, buff: Any = None, prefix: str = "") -> 
 def fill_message_args(msg: Any, msg_args: Any, keys: Mapping[str, Any] | None = None) -> None:
     """Fill a message from a dict of fields, or from a list with one value for each field.
 
-    `keys` are values by name, such as `now`, that stand for times. Raises MessageException for what does not fit.
+    `keys` maps names such as `now` to time values. Raises MessageException for values that do not fit.
     """
     if len(msg_args) == 1 and isinstance(msg_args[0], dict | list) and not isinstance(msg_args, dict):
         msg_args = msg_args[0]
@@ -90,7 +90,7 @@ def _fill(msg: Any, given: Any, keys: Mapping[str, Any], prefix: str) -> None:
 
 
 def _filled(msg: Any, name: str, value: Any, keys: Mapping[str, Any], prefix: str) -> Any:
-    """Return the value of a field: texts, numbers and times as they are, messages from dicts and lists."""
+    """Return a field's value: strings, numbers and times unchanged, messages built from dicts and lists."""
     old = getattr(msg, name)
     if isinstance(old, TVal):
         if isinstance(value, str) and value in keys:

@@ -1,7 +1,7 @@
-"""Who runs, who waits and until when: tasks as greenlets on a virtual clock.
+"""Schedule tasks, which are greenlets, on a virtual clock.
 
-All tasks are resumed from one place, the greenlet that called into the episode. A task never resumes another
-one: it asks for it (`wake`, `later`) and goes on until it waits itself. So a run is one fixed sequence.
+All tasks are resumed from one place, the greenlet that called into the episode. A task never resumes another one: it
+requests it (`wake`, `later`) and continues until it waits itself. So the order of execution is deterministic.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from pytest_tarl.ros.watchdog import WATCHDOG, Spinning
 
 
 class Program(Protocol):
-    """What the scheduler needs of the process that a task belongs to: see `Process`."""
+    """The interface of a task's process that the scheduler needs; see `Process`."""
 
     label: str
     tasks: list[Task]
@@ -31,20 +31,20 @@ class Program(Protocol):
         """The scheduler that runs its tasks."""
 
     def failed(self, task: Task, error: BaseException) -> None:
-        """Take note of the exception that ended a task."""
+        """Handle the exception that ended a task."""
 
     def finished(self, task: Task) -> None:
-        """Forget a task that has ended."""
+        """Remove a task that has ended."""
 
     def spins(self, place: blame.Place | None) -> NodeError:
         """Return the error for a task that never waits."""
 
     def refuse_to_wait(self) -> None:
-        """Take note of a wait that returns at once because the process is ending."""
+        """Count a wait that returns at once because the process is ending."""
 
 
 class Task:
-    """One thread of control of a process: its main program, a callback that is running, a timer."""
+    """One thread of control of a process: its main program, a running callback, or a timer."""
 
     __slots__ = ("args", "done", "function", "parked", "process", "ticket", "worker")
 
@@ -52,13 +52,13 @@ class Task:
         self.process = process
         self.function = function
         self.args = args
-        self.ticket = 0  # grows at every resumption; a heap entry with an older one is void
+        self.ticket = 0  # grows at every resumption; heap entries with an older ticket are stale
         self.parked = False
         self.done = False
         self.worker: Worker | None = None
 
     def execute(self) -> None:
-        """Run the task's function; whatever it ends in is handed to its process."""
+        """Run the task's function; pass any exception to its process."""
         try:
             self.function(*self.args)
         except GreenletExit:
@@ -71,7 +71,7 @@ class Task:
 
 
 class Worker(greenlet):
-    """A greenlet that runs one task after the other: making one costs ten times what switching does."""
+    """A greenlet that runs tasks one after another, because creating one costs ten times as much as a switch."""
 
     def __init__(self, idle: list[Worker]) -> None:
         super().__init__()
@@ -79,7 +79,7 @@ class Worker(greenlet):
         self._idle = idle
 
     def run(self, *_: Any) -> None:
-        """Run the task at hand, then wait for the next."""
+        """Run the assigned task, then wait for the next, forever."""
         while self.task is not None:
             self.task.execute()
             self.task = None
@@ -88,7 +88,7 @@ class Worker(greenlet):
 
 
 def hand_over() -> Any:
-    """Switch to whoever resumed the running greenlet; return what the next resumption brings."""
+    """Switch to the greenlet that resumed the running one; return the value passed at the next resumption."""
     parent = getcurrent().parent
     if parent is None:
         raise RuntimeError("only a task can hand over")
@@ -96,13 +96,13 @@ def hand_over() -> Any:
 
 
 def running_task() -> Task | None:
-    """Return the task that is running, None outside of all tasks."""
+    """Return the running task; None outside of tasks."""
     worker = getcurrent()
     return worker.task if isinstance(worker, Worker) else None
 
 
 def current_task() -> Task:
-    """Return the task that is running. Called within one."""
+    """Return the running task. Raises RuntimeError outside of tasks."""
     task = running_task()
     if task is None:
         raise RuntimeError("only a task has a current task")
@@ -110,7 +110,7 @@ def current_task() -> Task:
 
 
 class Scheduler:
-    """The virtual clock (`time`, ns), the tasks that wait for an instant and those that are ready now."""
+    """The virtual clock (`time`, ns), tasks that wait for an instant, and tasks that are ready."""
 
     def __init__(self) -> None:
         self.time = 0
@@ -122,7 +122,7 @@ class Scheduler:
         self._idle: list[Worker] = []
 
     def wait(self, until: int | None = None) -> bool:
-        """Hand over until the instant `until` or until woken; tell whether woken. Called within a task."""
+        """Suspend the running task until the instant `until` or until woken; return whether it was woken."""
         worker = getcurrent()
         task = worker.task if isinstance(worker, Worker) else None
         if task is None or worker.parent is None:
@@ -134,21 +134,21 @@ class Scheduler:
         return bool(worker.parent.switch())
 
     def yield_now(self) -> None:
-        """Let everything run that is ready, then go on at the same instant."""
+        """Let all ready tasks run, then continue at the same instant."""
         task = current_task()
         task.parked = True
         self.wake(task)
         hand_over()
 
     def wake(self, task: Task) -> None:
-        """Resume a waiting task as soon as the running one waits."""
+        """Make a waiting task ready; it resumes as soon as the running one waits."""
         if task.parked:
             task.parked = False
             task.ticket += 1
             self._ready.append(partial(self._resume, task, True))
 
     def spawn(self, process: Program, function: Callable[..., Any], *args: Any) -> Task:
-        """Start a task: at once when called from outside, when the running task waits otherwise."""
+        """Start a task: at once if called outside of tasks, else as soon as the running task waits."""
         task = Task(process, function, args)
         process.tasks.append(task)
         if running_task() is not None:
@@ -158,17 +158,17 @@ class Scheduler:
         return task
 
     def later(self, job: Callable[[], None]) -> None:
-        """Do something outside of all tasks, as soon as the running one waits."""
+        """Call a function outside of tasks, as soon as the running task waits."""
         self._ready.append(job)
 
     def settle(self) -> None:
-        """Run everything that is ready now."""
+        """Run until no task is ready at the current instant."""
         ready = self._ready
         while ready and self.failure is None:
             ready.popleft()()
 
     def advance(self, until: int) -> None:
-        """Move the clock to `until`, running what falls due in the order of its instants."""
+        """Move the clock to `until` (ns); run tasks that fall due, in order of their instants."""
         if self._ready:
             self.settle()
         sleeping = self._sleeping
@@ -187,24 +187,24 @@ class Scheduler:
             self.time = until
 
     def kill(self, task: Task) -> None:
-        """End a task wherever it waits."""
+        """Kill a task at the place where it waits."""
         task.ticket += 1
         if task.worker is None:
             task.done = True
-            task.process.finished(task)  # never started: there is nothing to unwind
+            task.process.finished(task)  # never started, so there is no stack to unwind
         elif not task.done:
             task.worker.parent = getcurrent()
             task.worker.throw(GreenletExit)
 
     def close(self) -> None:
-        """Let go of the workers, which are idle by now."""
+        """End the greenlets, which are idle by now."""
         for worker in self._idle:
             worker.parent = getcurrent()
             worker.throw(GreenletExit)
         self._idle.clear()
 
     def spinning(self) -> NodeError:
-        """Blame the task that ran last for never waiting."""
+        """Return the error for the task that ran last, which never waits."""
         task = self._running
         if task is None or task.worker is None:
             return StuckNodeError("A node never waits.")

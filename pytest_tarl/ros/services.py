@@ -1,4 +1,4 @@
-"""Who serves what in an episode, for both client libraries and for the world."""
+"""The services of an episode, for both client libraries and for the world."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from pytest_tarl.ros.messages.snapshot import snapshot, translate
 from pytest_tarl.ros.names import absolute
 from pytest_tarl.ros.scheduler import Scheduler, Task, running_task
 
-Answer = Callable[[Any], None]  # takes the response, None where the handler gave none
+Answer = Callable[[Any], None]  # gets the response; None if the handler returned none
 
 
 class Endpoint(Protocol):
-    """One end of a service that answers."""
+    """The server end of a service."""
 
     request_type: type
     service_class: Any
 
     def handle(self, request: Any, answer: Answer) -> None:
-        """Take a request; `answer` is called when the response is there."""
+        """Handle a request; `answer` is called with the response when there is one."""
 
 
 class ServiceDirectory:
-    """The services of one episode. An offer becomes an endpoint when somebody asks for it."""
+    """The services of one episode. An offer is a service that is created when first requested."""
 
     def __init__(self, scheduler: Scheduler) -> None:
         self._scheduler = scheduler
@@ -35,38 +35,38 @@ class ServiceDirectory:
         return name in self._endpoints or name in self._offers
 
     def find(self, name: str) -> Endpoint | None:
-        """Return who answers, None if nobody does."""
+        """Return the endpoint of a service; None if there is none."""
         if name not in self._endpoints and name in self._offers:
-            self._offers[name]()  # adds the endpoint
+            self._offers[name]()  # `make` adds the endpoint
         return self._endpoints.get(name)
 
     def add(self, name: str, endpoint: Endpoint) -> None:
-        """Add a service and wake those who wait for it."""
+        """Add a service and wake the tasks that wait for it."""
         self._endpoints[name] = endpoint
         for task in self._waiting:
             self._scheduler.wake(task)
 
     def offer(self, names: Iterable[str], make: Callable[[], Any]) -> None:
-        """Have `make` called when one of `names` is first asked for."""
+        """Register `make`, which creates services; it is called when one of `names` is first requested."""
         for name in names:
             self._offers[name] = make
 
     def remove(self, name: str, endpoint: Endpoint) -> None:
-        """Take a service away, unless another one answers under its name by now."""
+        """Remove a service unless another one has taken its name."""
         if self._endpoints.get(name) is endpoint:
             del self._endpoints[name]
 
     def withdraw(self, names: Iterable[str]) -> None:
-        """Take offers back."""
+        """Withdraw offers."""
         for name in names:
             self._offers.pop(name, None)
 
     def names(self) -> list[tuple[str, Any]]:
-        """List names and service classes."""
+        """Return the service classes by name."""
         return [(name, endpoint.service_class) for name, endpoint in self._endpoints.items()]
 
     def wait(self, task: Task, name: str, until: int | None, going_on: Callable[[], bool]) -> bool:
-        """Wait in `task` until somebody serves `name`; tell whether that was within the time."""
+        """Wait in `task` until `name` is served; return whether that happened in time."""
         clock = self._scheduler
         self._waiting.append(task)
         try:
@@ -77,7 +77,7 @@ class ServiceDirectory:
         return name in self
 
     def serve(self, name: str, service_class: Any, handler: Callable[[Any], Any]) -> None:
-        """Have the world answer a service with `handler(request)`, which returns the response."""
+        """Serve a service from the world; `handler(request)` returns the response."""
         self.add(absolute(name), WorldService(self._scheduler, service_class, handler))
 
     def call(self, name: str, request: Any) -> Reply | None:
@@ -95,19 +95,19 @@ class ServiceDirectory:
 
 
 class Reply:
-    """What the world gets for a call: `response` is None until the node has answered."""
+    """The result of a call from the world: `response` is None until the node has answered."""
 
     def __init__(self) -> None:
         self.response: Any = None
         self.done = False
 
     def take(self, response: Any) -> None:
-        """Take the answer."""
+        """Store the response."""
         self.response, self.done = response, True
 
 
 class WorldService:
-    """A service that the simulated world answers, as quickly as it is asked."""
+    """A service that the simulated world answers without delay."""
 
     def __init__(self, scheduler: Scheduler, service_class: Any, handler: Callable[[Any], Any]) -> None:
         self.service_class = service_class
@@ -116,7 +116,7 @@ class WorldService:
         self._handler = handler
 
     def handle(self, request: Any, answer: Answer) -> None:
-        """Let the world answer; its own errors go to the test, not into the node."""
+        """Call the world's handler; its errors are raised in the test, not in the node."""
         try:
             answer(self._handler(request))
         except Exception as error:
@@ -125,10 +125,10 @@ class WorldService:
 
 
 def request_class(service_class: Any) -> Any:
-    """Return the class of a service's requests, of either ROS generation."""
+    """Return a service's request class, for either ROS generation."""
     return getattr(service_class, "Request", None) or service_class._request_class
 
 
 def adapted(message: Any, wanted: type) -> Any:
-    """Return a copy of a request or response in the class that the other side uses."""
+    """Copy a request or response into the class that the other side uses."""
     return snapshot(message) if isinstance(message, wanted) else translate(message, wanted)

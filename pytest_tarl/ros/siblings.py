@@ -1,4 +1,4 @@
-"""Import packages of the workspace as they would be installed, and the modules that `.cfg` files generate."""
+"""Import workspace packages as if installed, and modules generated from `.cfg` files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tarl_lint.workspace.cfg_files import Configuration, configurations
 
 
 def sibling(root: str) -> ModuleSpec | None:
-    """Find a top-level module that a package of the workspace installs, None where none does."""
+    """Find a top-level module that a workspace package installs; None if no package does."""
     for package in packages().values():
         for module in package.modules:
             if module.name == root:
@@ -23,19 +23,19 @@ def sibling(root: str) -> ModuleSpec | None:
 
 
 def has_configurations(package: str) -> bool:
-    """Tell whether a package of the workspace has `.cfg` files."""
+    """Return whether a workspace package has `.cfg` files."""
     known = packages().get(package)
     return known is not None and bool(known.configurations)
 
 
 def is_generated(name: str) -> bool:
-    """Tell whether a module is `PACKAGE.cfg` or `PACKAGE.cfg.NAMEConfig` of a package with `.cfg` files."""
+    """Return whether a module is `PACKAGE.cfg` or `PACKAGE.cfg.NAMEConfig` of a package with `.cfg` files."""
     package, _, rest = name.partition(".")
     return (rest == "cfg" or rest.startswith("cfg.")) and has_configurations(package)
 
 
 def generated(name: str) -> ModuleType:
-    """Make the module `PACKAGE.cfg.NAMEConfig` from its `.cfg` file. Raises UnsupportedApiError without such a file."""
+    """Create the module `PACKAGE.cfg.NAMEConfig` from its `.cfg` file. Raises UnsupportedApiError without one."""
     package, _, rest = name.partition(".")
     module = ModuleType(name, f"Generated from the .cfg files of {package}.")
     wanted = rest.removeprefix("cfg").removeprefix(".")
@@ -59,7 +59,7 @@ def _of_package(files: tuple[Path, ...]) -> Mapping[str, Configuration]:
 
 
 def _fill(module: ModuleType, found: Configuration) -> None:
-    """Give a module the names that dynamic_reconfigure's template defines."""
+    """Define the names of dynamic_reconfigure's template in a module."""
     names = module.__dict__
     names.update(inf=float("inf"), config_description=found.description, all_level=0, **found.constants)
     names.update({name: {} for name in ("min", "max", "defaults", "level", "type")})

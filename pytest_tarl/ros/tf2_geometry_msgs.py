@@ -1,4 +1,4 @@
-"""tf2_geometry_msgs: stamped geometry in another frame."""
+"""tf2_geometry_msgs: transform stamped geometry into another frame."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def do_transform_point(point: Any, transform: Any) -> Any:
 
 
 def do_transform_vector3(vector3: Any, transform: Any) -> Any:
-    """Return a Vector3Stamped in the transform's frame: turned, not moved."""
+    """Return a Vector3Stamped in the transform's frame: rotated, not translated."""
     moved = _in_frame(vector3, transform)
     _set(
         moved.vector,
@@ -70,7 +70,7 @@ def do_transform_pose_stamped(pose: Any, transform: Any) -> Any:
 
 
 def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
-    """Return a PoseWithCovarianceStamped in the transform's frame; the covariance is turned with it."""
+    """Return a PoseWithCovarianceStamped in the transform's frame; the covariance is rotated too."""
     import numpy as np
 
     moved = _in_frame(pose, transform)
@@ -86,7 +86,7 @@ def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
 
 
 def do_transform_wrench(wrench: Any, transform: Any) -> Any:
-    """Return a WrenchStamped in the transform's frame: turned, not moved."""
+    """Return a WrenchStamped in the transform's frame: rotated, not translated."""
     moved = _in_frame(wrench, transform)
     for part in (moved.wrench.force, moved.wrench.torque):
         _set(part, rotate(_rigid(transform).rotation, (part.x, part.y, part.z)))
@@ -103,5 +103,5 @@ TRANSFORMERS: dict[str, Callable[[Any, Any], Any]] = {
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("tf2_geometry_msgs", name)

@@ -1,4 +1,4 @@
-"""Threads that a node starts become tasks, and the locks it makes hand over: no second thread, nothing at random."""
+"""Run a node's threads as tasks, and let its locks suspend tasks, so that execution is deterministic."""
 
 from __future__ import annotations
 
@@ -16,17 +16,21 @@ from pytest_tarl.ros import blame
 from pytest_tarl.ros.clock import nanoseconds
 from pytest_tarl.ros.scheduler import Scheduler, Task, running_task
 
-_OWN = str(Path(__file__).parents[1])  # a thread of ours that a node's program leads to stays one
-_PASSED_THROUGH = (threading.__file__, queue.__file__, __file__)  # what they make, they make for their caller
+_OWN = str(Path(__file__).parents[1])  # threads of this package stay threads
+_PASSED_THROUGH = (
+    threading.__file__,
+    queue.__file__,
+    __file__,
+)  # modules that create locks and threads for their callers
 
 
 @contextmanager
 def threads_as_tasks() -> Iterator[None]:
-    """Replace what `threading` makes while nodes run. Outside of nodes everything stays as it is."""
+    """Replace the threads and locks of `threading` while nodes run; code outside of nodes gets the real ones."""
     replaced = [
         (threading, "Lock", _instead(threading.Lock, Lock)),
         (threading, "RLock", _instead(threading.RLock, ReentrantLock)),
-        (threading, "_allocate_lock", _instead(threading.Lock, Lock)),  # what Condition.wait makes
+        (threading, "_allocate_lock", _instead(threading.Lock, Lock)),  # used by Condition.wait
         (threading.Thread, "start", _start(threading.Thread.start)),
         (threading.Thread, "join", _join(threading.Thread.join)),
         (threading.Thread, "is_alive", _is_alive(threading.Thread.is_alive)),
@@ -42,7 +46,7 @@ def threads_as_tasks() -> Iterator[None]:
 
 
 class Lock:
-    """A lock for which a task waits without holding up the others."""
+    """A lock that suspends only the waiting task."""
 
     def __init__(self, scheduler: Scheduler) -> None:
         self._scheduler = scheduler
@@ -50,7 +54,7 @@ class Lock:
         self._waiting: deque[Task] = deque()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Take the lock; tell whether that was possible."""
+        """Acquire the lock; return whether that succeeded."""
         clock = self._scheduler
         until = clock.time + nanoseconds(timeout) if timeout >= 0 else None
         while self._held:
@@ -69,7 +73,7 @@ class Lock:
         return True
 
     def release(self) -> None:
-        """Give the lock back; whoever has waited longest is woken."""
+        """Release the lock; wake the task that has waited longest."""
         if not self._held:
             raise RuntimeError("release unlocked lock")
         self._held = False
@@ -77,7 +81,7 @@ class Lock:
             self._scheduler.wake(self._waiting.popleft())
 
     def locked(self) -> bool:
-        """Tell whether somebody holds it."""
+        """Return whether the lock is held."""
         return self._held
 
     def __enter__(self) -> bool:
@@ -88,7 +92,7 @@ class Lock:
 
 
 class ReentrantLock(Lock):
-    """A lock that its holder can take again."""
+    """A lock that its holder can acquire again."""
 
     def __init__(self, scheduler: Scheduler) -> None:
         super().__init__(scheduler)
@@ -96,7 +100,7 @@ class ReentrantLock(Lock):
         self._count = 0
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Take the lock, once more if the running task holds it."""
+        """Acquire the lock, again if the running task already holds it."""
         if not (self._held and self._owner is running_task()):
             if not super().acquire(blocking, timeout):
                 return False
@@ -105,7 +109,7 @@ class ReentrantLock(Lock):
         return True
 
     def release(self) -> None:
-        """Give the lock back as often as it was taken."""
+        """Release the lock once; it is free after as many releases as acquisitions."""
         if not self._is_owned():
             raise RuntimeError("cannot release un-acquired lock")
         self._count -= 1
@@ -113,7 +117,7 @@ class ReentrantLock(Lock):
             self._owner = None
             super().release()
 
-    def _is_owned(self) -> bool:  # these three are what threading.Condition asks its lock for
+    def _is_owned(self) -> bool:  # interface of threading.Condition
         return self._held and self._owner is running_task()
 
     def _release_save(self) -> int:
@@ -135,7 +139,7 @@ def _instead(real: Callable[[], Any], own: Callable[[Scheduler], Lock]) -> Calla
 
 
 def _asked_by_node() -> bool:
-    """Tell a node's own code from a library that is imported meanwhile: its locks outlive the episode."""
+    """Return whether a node's own code is the caller, not a library being imported: its locks outlive the episode."""
     frame: FrameType | None = sys._getframe(2)
     while frame is not None and frame.f_code.co_filename in _PASSED_THROUGH:
         frame = frame.f_back

@@ -1,4 +1,4 @@
-"""`topic_tools`: a base class for nodes that subscribe only while somebody listens to them; the world always does."""
+"""`topic_tools.LazyTransport`: a base class for nodes that subscribe only while they have subscribers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["LazyTransport"]
 
 
 class _Subscribing(type):
-    """Calls `_post_init` once the node's own constructor is through."""
+    """Metaclass that calls `_post_init` after the node's constructor."""
 
     def __call__(cls, *args: Any, **kwds: Any) -> Any:
         node = super().__call__(*args, **kwds)
@@ -21,38 +21,38 @@ class _Subscribing(type):
 
 
 class LazyTransport(SubscribeListener, metaclass=_Subscribing):
-    """A node that publishes what it makes of other topics: `advertise`, `subscribe` and `unsubscribe`.
+    """A node that processes topics on demand: `advertise`, `subscribe` and `unsubscribe`.
 
-    Without the parameter `~lazy` it subscribes when a first peer does. The simulated world is a peer of every topic, so
-    the node subscribes as soon as it advertises something.
+    By default it subscribes when a first peer does. The simulated world is a peer of every topic, so the node
+    subscribes as soon as it advertises a topic.
     """
 
     def __init__(self) -> None:
         self._publishers: list[Publisher] = []
-        self._connection_status: bool | None = None  # None until it first subscribes
+        self._connection_status: bool | None = None  # None before the first subscription
 
     def subscribe(self) -> None:
-        """Subscribe to what the node needs."""
+        """Subscribe to the input topics."""
         raise NotImplementedError("Please overwrite this method")
 
     def unsubscribe(self) -> None:
-        """Give up what `subscribe` made."""
+        """Undo `subscribe`."""
         raise NotImplementedError("Please overwrite this method")
 
     def advertise(self, *args: Any, **kwds: Any) -> Publisher:
-        """Make a publisher whose peers decide whether the node subscribes."""
+        """Create a publisher whose peers decide whether the node subscribes."""
         publisher = Publisher(*args, **{**kwds, "subscriber_listener": self})
         self._publishers.append(publisher)
         return publisher
 
     def peer_subscribe(self, *_: Any, **__: Any) -> None:
-        """Subscribe, unless the node does so already."""
+        """Subscribe unless the node already has."""
         if not self._connection_status:
             self.subscribe()
             self._connection_status = True
 
     def peer_unsubscribe(self, *_: Any, **__: Any) -> None:
-        """Unsubscribe once nobody listens to any publisher."""
+        """Unsubscribe if no publisher has a peer."""
         if not get_param("~lazy", True) or not self._connection_status:
             return
         if all(publisher.get_num_connections() == 0 for publisher in self._publishers):
@@ -65,5 +65,5 @@ class LazyTransport(SubscribeListener, metaclass=_Subscribing):
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("topic_tools", name)

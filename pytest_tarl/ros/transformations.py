@@ -1,4 +1,4 @@
-"""Quaternions (x, y, z, w), Euler angles and 4×4 matrices as `tf.transformations` has them."""
+"""`tf.transformations`: quaternions (x, y, z, w), Euler angles and 4×4 matrices."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = [*transformations_rigid.__all__, *_SELDOM]
 
 
 def __getattr__(name: str) -> Any:
-    """Return what is needed seldom; name what is missing."""
+    """Import a rarely used function; raise for a name that the stand-in lacks."""
     if name in _SELDOM:
         from pytest_tarl.ros import transformations_affine
 

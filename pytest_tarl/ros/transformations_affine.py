@@ -1,4 +1,4 @@
-"""The rest of `tf.transformations`: reflections, scaling, shears, projections, and matrices taken apart.
+"""Affine part of `tf.transformations`: reflection, scaling, shear, projection, decomposition of 4×4 matrices.
 
 A 4×4 matrix is composed as P · T · R · Z · S: perspective, translation, rotation, shear, scale; applied from the right.
 """
@@ -22,7 +22,7 @@ Numbers = Sequence[float]
 
 
 def reflection_matrix(point: Numbers, normal: Numbers) -> Any:
-    """Return the reflection at the plane through a point with a normal."""
+    """Return the 4×4 matrix of a reflection in the plane through a point with that normal."""
     import numpy as np
 
     direction = plain.unit_vector(list(normal)[:3])
@@ -33,26 +33,26 @@ def reflection_matrix(point: Numbers, normal: Numbers) -> Any:
 
 
 def reflection_from_matrix(matrix: Any) -> tuple[Any, Any]:
-    """Return a point of the mirror and its normal. Raises ValueError for no reflection."""
+    """Return a point on the mirror plane and its normal. Raises ValueError if the matrix is not a reflection."""
     normal = _eigenvector(matrix, -1.0, 3)
     return _eigenvector(matrix, 1.0, 4), normal
 
 
 def rotation_from_matrix(matrix: Any) -> tuple[float, Any, Any]:
-    """Return angle, axis and a point of the axis. Raises ValueError for no rotation."""
+    """Return angle, axis and a point on the axis. Raises ValueError if the matrix is not a rotation."""
     import numpy as np
 
     turn = np.asarray(matrix, float)[:3, :3]
     direction = _eigenvector(turn.T, 1.0, 3)
     cosine = (np.trace(turn) - 1.0) / 2.0
-    k = int(np.argmax(abs(direction)))  # the largest part divides without loss
+    k = int(np.argmax(abs(direction)))  # divide by the largest component for precision
     i, j = (k + 1) % 3, (k + 2) % 3
     sine = (turn[j, i] + (cosine - 1.0) * direction[i] * direction[j]) / direction[k]
     return math.atan2(sine, cosine), direction, _eigenvector(matrix, 1.0, 4)
 
 
 def scale_matrix(factor: float, origin: Numbers | None = None, direction: Numbers | None = None) -> Any:
-    """Return the scaling about an origin: everywhere, or along a direction."""
+    """Return the 4×4 matrix of a scaling about an origin, in all directions or along one."""
     import numpy as np
 
     matrix = np.diag([factor, factor, factor, 1.0])
@@ -66,7 +66,7 @@ def scale_matrix(factor: float, origin: Numbers | None = None, direction: Number
 
 
 def scale_from_matrix(matrix: Any) -> tuple[float, Any, Any]:
-    """Return factor, origin and direction (None where it scales everywhere)."""
+    """Return factor, origin and direction (None if uniform)."""
     import numpy as np
 
     part = np.asarray(matrix, float)[:3, :3]
@@ -88,7 +88,7 @@ def projection_matrix(
     perspective: Numbers | None = None,
     pseudo: bool = False,
 ) -> Any:
-    """Return the projection onto a plane: along its normal or a direction, or from a point of perspective."""
+    """Return the 4×4 matrix of a projection onto a plane: along its normal or a direction, or from a viewpoint."""
     import numpy as np
 
     centre, axis = np.asarray(point, float)[:3], plain.unit_vector(list(normal)[:3])
@@ -113,7 +113,7 @@ def projection_matrix(
 def clip_matrix(
     left: float, right: float, bottom: float, top: float, near: float, far: float, perspective: bool = False
 ) -> Any:
-    """Return the matrix that turns a frustum into the cube from -1 to 1. Raises ValueError for an empty one."""
+    """Return the 4×4 matrix that maps a frustum to the cube from -1 to 1. Raises ValueError for an empty one."""
     import numpy as np
 
     if left >= right or bottom >= top or near >= far:
@@ -137,7 +137,10 @@ def clip_matrix(
 
 
 def shear_matrix(angle: float, direction: Numbers, point: Numbers, normal: Numbers) -> Any:
-    """Return the shear by an angle along a direction in the plane through a point. Raises ValueError for another."""
+    """Return the 4×4 matrix of a shear by an angle, in radians, along a direction in a plane through a point.
+
+    Raises ValueError if direction and normal are not orthogonal.
+    """
     import numpy as np
 
     axis, along = plain.unit_vector(list(normal)[:3]), plain.unit_vector(list(direction)[:3])
@@ -169,7 +172,7 @@ def decompose_matrix(matrix: Any) -> tuple[Any, list[float], tuple[float, float,
     scale, shear = (
         np.zeros(3),
         [0.0, 0.0, 0.0],
-    )  # Gram-Schmidt: what rows share is shear, what is left is scale
+    )  # Gram-Schmidt: projections between rows are shear, remaining lengths are scale
     scale[0] = np.linalg.norm(rows[0])
     rows[0] /= scale[0]
     shear[0] = float(np.dot(rows[0], rows[1]))
@@ -197,7 +200,7 @@ def compose_matrix(
     translate: Numbers | None = None,
     perspective: Numbers | None = None,
 ) -> Any:
-    """Return the matrix of what `decompose_matrix` returns."""
+    """Return the 4×4 matrix with these parts; the inverse of `decompose_matrix`."""
     import numpy as np
 
     matrix = np.identity(4)
@@ -232,7 +235,7 @@ def orthogonalization_matrix(lengths: Numbers, angles: Numbers) -> Any:
 
 
 def superimposition_matrix(v0: Any, v1: Any, scaling: bool = False, usesvd: bool = True) -> Any:  # noqa: ARG001
-    """Return the turn, move and scale that bring points v0, shape (3, n), onto v1 with least squares (Kabsch)."""
+    """Return the 4×4 matrix that maps points v0 to v1, each of shape (3, n), by least squares (Kabsch)."""
     import numpy as np
 
     old, new = np.array(v0, float)[:3], np.array(v1, float)[:3]
@@ -248,14 +251,14 @@ def superimposition_matrix(v0: Any, v1: Any, scaling: bool = False, usesvd: bool
 
 
 def random_vector(size: int) -> Any:
-    """Return numbers from 0 to 1, from numpy's random numbers."""
+    """Return uniform random numbers in [0, 1), shape (size,)."""
     import numpy as np
 
     return np.random.random(size)
 
 
 def random_quaternion(rand: Numbers | None = None) -> Any:
-    """Return a turn at random, or the one of three numbers from 0 to 1 (Shoemake 1992)."""
+    """Return a uniform random rotation, or the one for three given numbers in [0, 1] (Shoemake 1992)."""
     import numpy as np
 
     one, two, three = random_vector(3) if rand is None else rand
@@ -267,12 +270,12 @@ def random_quaternion(rand: Numbers | None = None) -> Any:
 
 
 def random_rotation_matrix(rand: Numbers | None = None) -> Any:
-    """Return the matrix of a turn at random."""
+    """Return the 4×4 matrix of a uniform random rotation."""
     return plain.quaternion_matrix(random_quaternion(rand))
 
 
 def is_same_transform(matrix0: Any, matrix1: Any) -> bool:
-    """Tell whether two matrices do the same."""
+    """Return whether two 4×4 matrices describe the same transformation."""
     import numpy as np
 
     first, second = np.array(matrix0, float), np.array(matrix1, float)
@@ -280,7 +283,7 @@ def is_same_transform(matrix0: Any, matrix1: Any) -> bool:
 
 
 def _eigenvector(matrix: Any, value: float, size: int) -> Any:
-    """Return the unit eigenvector of an eigenvalue; of a 4×4 matrix, the point with last element one."""
+    """Return the unit eigenvector of an eigenvalue; for a 4×4 matrix, scaled so that its last element is one."""
     import numpy as np
 
     values, vectors = np.linalg.eig(np.asarray(matrix, float)[:size, :size])

@@ -1,4 +1,4 @@
-"""Quaternions (x, y, z, w), Euler angles and 4×4 matrices as `tf.transformations` has them."""
+"""Rigid part of `tf.transformations`: quaternions (x, y, z, w), Euler angles and 4×4 matrices."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _AXES = "xyz"
 
 
 def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Any:
-    """Return the quaternion of three turns, in radians, about fixed (`s…`) or moving (`r…`) axes."""
+    """Return the quaternion of three rotations, in radians, about fixed (`s…`) or moving (`r…`) axes."""
     turn = (0.0, 0.0, 0.0, 1.0)
     for angle, axis in zip((ai, aj, ak), _letters(axes), strict=True):
         one = [0.0, 0.0, 0.0, math.cos(angle / 2)]
@@ -42,8 +42,9 @@ def euler_from_quaternion(quaternion: Numbers, axes: str = "sxyz") -> tuple[floa
 def euler_from_matrix(matrix: Any, axes: str = "sxyz") -> tuple[float, float, float]:
     """Return the three angles of a rotation matrix, in radians.
 
-    Turns about fixed axes are turns about moving ones in the opposite order. With moving axes i, j, k the matrix is
-    R_i(a) R_j(b) R_k(c), whose entries give the angles; near b's limit the third is taken as zero.
+    Rotations about fixed axes equal rotations about moving axes in the opposite order. With moving axes i, j, k the
+    matrix is R_i(a) R_j(b) R_k(c), whose entries give the angles. At gimbal lock (b at its limit), one angle is set
+    to zero.
     """
     letters = _letters(axes) if axes[0] == "r" else _letters(axes)[::-1]
     i, j, k = (_AXES.index(letter) for letter in letters)
@@ -61,7 +62,7 @@ def _three_axes(matrix: Any, i: int, j: int, k: int) -> tuple[float, float, floa
             second,
             math.atan2(-sign * matrix[i][j], matrix[i][i]),
         )
-    # only the sum of first and last turn is left; all of it goes to the one that is named first for fixed axes
+    # gimbal lock fixes only the sum of first and last angle: assign it to the first (fixed axes)
     return 0.0, second, math.atan2(sign * matrix[j][i], matrix[j][j])
 
 
@@ -80,39 +81,39 @@ def _proper(matrix: Any, i: int, j: int) -> tuple[float, float, float]:
 
 
 def euler_matrix(ai: float, aj: float, ak: float, axes: str = "sxyz") -> Any:
-    """Return the 4×4 matrix of three turns."""
+    """Return the 4×4 matrix of three rotations, in radians."""
     return quaternion_matrix(quaternion_from_euler(ai, aj, ak, axes))
 
 
 def quaternion_about_axis(angle: float, axis: Numbers) -> Any:
-    """Return the quaternion of a turn by `angle` radians about an axis."""
+    """Return the quaternion of a rotation by `angle` radians about an axis."""
     length = math.sqrt(sum(float(part) ** 2 for part in axis))
     factor = math.sin(angle / 2.0) / length if length else 0.0
     return _array([*(float(part) * factor for part in axis), math.cos(angle / 2.0)])
 
 
 def quaternion_multiply(quaternion1: Numbers, quaternion0: Numbers) -> Any:
-    """Return the turn `quaternion0` followed by `quaternion1`."""
+    """Return the product quaternion1 × quaternion0: rotate by `quaternion0`, then by `quaternion1`."""
     x1, y1, z1, w1 = (float(part) for part in quaternion1)
     x0, y0, z0, w0 = (float(part) for part in quaternion0)
     return _array(multiply((x1, y1, z1, w1), (x0, y0, z0, w0)))
 
 
 def quaternion_conjugate(quaternion: Numbers) -> Any:
-    """Return the opposite turn of a unit quaternion."""
+    """Return the conjugate: the inverse rotation of a unit quaternion."""
     x, y, z, w = (float(part) for part in quaternion)
     return _array([-x, -y, -z, w])
 
 
 def quaternion_inverse(quaternion: Numbers) -> Any:
-    """Return the opposite turn."""
+    """Return the inverse rotation."""
     return quaternion_conjugate(quaternion) / sum(float(part) ** 2 for part in quaternion)
 
 
 def quaternion_slerp(
     quat0: Numbers, quat1: Numbers, fraction: float, spin: int = 0, shortestpath: bool = True
 ) -> Any:
-    """Return the turn at `fraction` of the way between two."""
+    """Interpolate between two rotations (slerp) at `fraction` from 0 to 1."""
     if spin or not shortestpath:
         raise refuse("tf.transformations", "quaternion_slerp(spin=…, shortestpath=False)")
     start, end = (unit_vector(quaternion) for quaternion in (quat0, quat1))
@@ -120,7 +121,7 @@ def quaternion_slerp(
 
 
 def quaternion_matrix(quaternion: Numbers) -> Any:
-    """Return the 4×4 matrix of a quaternion of any length."""
+    """Return the 4×4 rotation matrix of a quaternion, which need not have unit length."""
     x, y, z, w = (float(part) for part in quaternion)
     norm = x * x + y * y + z * z + w * w
     s = 2.0 / norm if norm > 1e-15 else 0.0
@@ -133,9 +134,9 @@ def quaternion_matrix(quaternion: Numbers) -> Any:
 
 
 def quaternion_from_matrix(matrix: Any) -> Any:
-    """Return the quaternion of a rotation matrix, from its largest part so that nothing is lost."""
+    """Return the quaternion of a rotation matrix; divides by the largest component for precision."""
     m = matrix
-    squares = [  # four times the square of x, y, z, w
+    squares = [  # 4x², 4y², 4z², 4w²
         1 + m[0][0] - m[1][1] - m[2][2],
         1 - m[0][0] + m[1][1] - m[2][2],
         1 - m[0][0] - m[1][1] + m[2][2],
@@ -161,7 +162,7 @@ def translation_from_matrix(matrix: Any) -> Any:
 
 
 def rotation_matrix(angle: float, direction: Numbers, point: Numbers | None = None) -> Any:
-    """Return the 4×4 matrix of a turn about an axis through the origin, or through a point."""
+    """Return the 4×4 matrix of a rotation, in radians, about an axis through the origin or a point."""
     turned = quaternion_matrix(quaternion_about_axis(angle, direction))
     if point is not None:
         centre = _array([float(part) for part in point[:3]])
@@ -170,26 +171,26 @@ def rotation_matrix(angle: float, direction: Numbers, point: Numbers | None = No
 
 
 def compose(translation: Numbers, rotation: Numbers) -> Any:
-    """Return the 4×4 matrix of a turn followed by a translation."""
+    """Return the 4×4 matrix of a rotation followed by a translation."""
     matrix = quaternion_matrix(rotation)
     matrix[:3, 3] = translation
     return matrix
 
 
 def identity_matrix() -> Any:
-    """Return the 4×4 matrix that changes nothing."""
+    """Return the 4×4 identity matrix."""
     return quaternion_matrix((0.0, 0.0, 0.0, 1.0))
 
 
 def inverse_matrix(matrix: Any) -> Any:
-    """Return the inverse."""
+    """Return the inverse of a square matrix."""
     import numpy as np
 
     return np.linalg.inv(matrix)
 
 
 def concatenate_matrices(*matrices: Any) -> Any:
-    """Return the product, the last one applied first."""
+    """Return the product of 4×4 matrices; the last one is applied first."""
     product = identity_matrix()
     for matrix in matrices:
         product = product @ matrix
@@ -214,6 +215,6 @@ def _letters(axes: str) -> str:
 
 
 def _array(parts: Any) -> Any:
-    import numpy as np  # nodes index, unpack and add what they get
+    import numpy as np  # nodes expect arrays: they index, unpack and add the results
 
     return np.array(parts, dtype=float)

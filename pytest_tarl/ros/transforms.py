@@ -1,4 +1,4 @@
-"""The tree of coordinate frames that a tf2 buffer keeps: whose child each is, since when, and the way between two."""
+"""The tree of coordinate frames in a tf2 buffer: poses of frames over time, and transforms between any two."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import Any
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
-DEFAULT_CACHE = 10_000_000_000  # nanoseconds
+DEFAULT_CACHE = 10_000_000_000  # ns
 
 
 class TransformException(Exception):  # noqa: N818 (these names are tf2's)
-    """A transform cannot be had."""
+    """A transform cannot be computed."""
 
 
 class LookupException(TransformException):
@@ -22,11 +22,11 @@ class LookupException(TransformException):
 
 
 class ConnectivityException(TransformException):
-    """Two frames are not in one tree."""
+    """Two frames are not in the same tree."""
 
 
 class ExtrapolationException(TransformException):
-    """An instant is outside of what was heard."""
+    """An instant lies outside of the received transforms."""
 
 
 class InvalidArgumentException(TransformException):
@@ -34,7 +34,7 @@ class InvalidArgumentException(TransformException):
 
 
 class TimeoutException(TransformException):
-    """It took too long."""
+    """A look-up timed out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,7 @@ class Rigid:
         return Rigid(translation, multiply(self.rotation, inner.rotation))  # type: ignore[arg-type]
 
     def inverse(self) -> Rigid:
-        """Return the way back."""
+        """Return the inverse transform."""
         x, y, z, w = self.rotation
         back = (-x, -y, -z, w)
         a, b, c = rotate(back, self.translation)
@@ -63,7 +63,7 @@ class Rigid:
 
 
 def multiply(outer: Quaternion, inner: Quaternion) -> Quaternion:
-    """Return the turn `inner` followed by `outer`."""
+    """Return the quaternion product: rotate by `inner`, then by `outer`."""
     x1, y1, z1, w1 = outer
     x0, y0, z0, w0 = inner
     return (
@@ -75,7 +75,7 @@ def multiply(outer: Quaternion, inner: Quaternion) -> Quaternion:
 
 
 def rotate(turn: Quaternion, vector: Vector) -> Vector:
-    """Turn a vector by a unit quaternion."""
+    """Rotate a vector by a unit quaternion."""
     x, y, z, w = turn
     a, b, c = vector
     tx, ty, tz = 2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)
@@ -83,7 +83,7 @@ def rotate(turn: Quaternion, vector: Vector) -> Vector:
 
 
 def slerp(start: Quaternion, end: Quaternion, share: float) -> Quaternion:
-    """Return the turn at `share` (0…1) of the way between two, at constant speed, the short way round."""
+    """Interpolate between two unit quaternions (slerp) at `share` from 0 to 1, along the shorter arc."""
     cosine = sum(a * b for a, b in zip(start, end, strict=True))
     if cosine < 0:
         cosine, end = -cosine, (-end[0], -end[1], -end[2], -end[3])
@@ -97,7 +97,7 @@ def slerp(start: Quaternion, end: Quaternion, share: float) -> Quaternion:
 
 @dataclass
 class Edge:
-    """How a frame lies in its parent, over time (ns); a static one at all times."""
+    """The pose of a frame in its parent over time (ns), constant if static."""
 
     parent: str
     static: bool
@@ -105,7 +105,10 @@ class Edge:
     poses: dict[int, Rigid] = field(default_factory=dict)
 
     def at(self, time: int, child: str) -> Rigid:
-        """Return the pose at an instant (0: the latest), between two that were heard. Raises ExtrapolationException."""
+        """Return the interpolated pose at an instant (0: the latest).
+
+        Raises ExtrapolationException outside of the received data.
+        """
         if self.static or time == 0:
             return self.poses[self.times[-1]]
         if time in self.poses:
@@ -127,7 +130,7 @@ class Edge:
 
 
 class TransformTree:
-    """All frames that were heard of."""
+    """All known frames."""
 
     def __init__(self, cache: int = DEFAULT_CACHE) -> None:
         self.cache = cache
@@ -135,7 +138,7 @@ class TransformTree:
         self.authorities: dict[str, str] = {}
 
     def add(self, message: Any, time: int, *, static: bool, authority: str = "") -> None:
-        """Add geometry_msgs/TransformStamped. Raises InvalidArgumentException for what is no rotation."""
+        """Add geometry_msgs/TransformStamped. Raises InvalidArgumentException if it is not a valid transform."""
         child, parent = clean(message.child_frame_id), clean(message.header.frame_id)
         move, turn = message.transform.translation, message.transform.rotation
         pose = Rigid((move.x, move.y, move.z), (turn.x, turn.y, turn.z, turn.w))
@@ -157,7 +160,7 @@ class TransformTree:
             del edge.poses[edge.times.pop(0)]
 
     def look_up(self, target: str, source: str, time: int) -> tuple[Rigid, int]:
-        """Return how `source` lies in `target` and for which instant (0 asks for the latest common one)."""
+        """Return the pose of `source` in `target`, and its instant (0 requests the latest common one)."""
         target, source = self._known(target), self._known(source)
         up, down = self._way_up(source), self._way_up(target)
         common = next((frame for frame in up if frame in down), None)
@@ -196,5 +199,5 @@ class TransformTree:
 
 
 def clean(frame: str) -> str:
-    """Return a frame's name without the leading slash of old days."""
+    """Return a frame's name without tf1's leading slash."""
     return frame.lstrip("/")

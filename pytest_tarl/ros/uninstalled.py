@@ -1,4 +1,4 @@
-"""Import modules of the workspace that no package installs, and take note: on the robot the import would fail."""
+"""Import workspace modules that no package installs, and warn: on the robot the import would fail."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MISSING = frozenset({"ImportError", "ModuleNotFoundError", "Exception", "BaseEx
 
 
 class UninstalledFinder:
-    """The last finder on `sys.meta_path`: it is asked for what nobody else has. `taken` are module names and files."""
+    """The last finder on `sys.meta_path`, for names that no other finder knows. `taken` are module names and files."""
 
     def __init__(self) -> None:
         self.taken: dict[str, Path] = {}
@@ -25,7 +25,7 @@ class UninstalledFinder:
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Find a top-level module that a file of a workspace imports, in its own package, else in the workspace."""
+        """Find a top-level module imported by a workspace file: in its own package, else in the workspace."""
         if path is not None or "." in name:
             return None
         importer = _importer(sys._getframe(1))
@@ -38,7 +38,7 @@ class UninstalledFinder:
         return PathFinder.find_spec(name, [str(place.parent)])
 
     def notes(self) -> tuple[str, ...]:
-        """Return what users should know of the modules that were found this way."""
+        """Return sentences for the user about modules found this way."""
         return tuple(
             f"{name} was imported from {place}, which no package of the workspace installs: on the robot the import "
             "fails unless the folder is on PYTHONPATH. Name it in the setup.py of its package."
@@ -47,7 +47,7 @@ class UninstalledFinder:
 
 
 def _importer(frame: FrameType | None) -> FrameType | None:
-    """Return the frame that imports, if it runs a file of a workspace."""
+    """Return the importing frame if it runs a workspace file."""
     while frame is not None and (
         "importlib" in frame.f_code.co_filename
         or frame.f_globals.get("__name__", "").startswith("pytest_tarl")
@@ -73,7 +73,7 @@ def _nearest(name: str, importer: Path) -> Path | None:
 
 @cache
 def _modules(root: Path) -> dict[str, tuple[Path, ...]]:
-    """Return the files and folders of a workspace that could be imported at the top, by name."""
+    """Return the files and folders of a workspace that could be top-level modules, by name."""
     found: dict[str, tuple[Path, ...]] = {}
     for folder, files in folders(root):
         if folder.name in ("launch", "test", "tests"):
@@ -96,7 +96,7 @@ def _importable(folder: Path, files: list[str]) -> Iterator[Path]:
 
 @cache
 def _is_optional(file: str, line: int) -> bool:
-    """Tell whether an import stands in a `try` that catches its failure: the node copes without the module."""
+    """Return whether an import is in a `try` that catches its failure: the node can do without the module."""
     try:
         tree = ast.parse(Path(file).read_bytes())
     except (OSError, SyntaxError, ValueError):

@@ -1,4 +1,4 @@
-"""Stop a node that never waits. Measured is what it computes: a busy machine stops nobody. No result depends on it."""
+"""Stop a node that never waits. It measures CPU time, so a busy machine stops no node and no result depends on it."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from collections.abc import Callable
 
 from pytest_tarl.held_interpreter import allow
 
-DEFAULT_LIMIT = 10.0  # seconds of computing in which virtual time stands still
-_PATIENCE = 12  # how many times as long a node may hang in something that is neither computing nor ROS
-_HOLD = 12  # the same in CPU time, for one that lets no thread look
-_INTERVAL = 0.1  # seconds between two looks
-_IDLE_EXIT = 50  # looks after which an unused watching thread ends
+DEFAULT_LIMIT = 10.0  # CPU seconds without progress of virtual time
+_PATIENCE = 12  # factor on the limit for waits outside of ROS, which use no CPU time
+_HOLD = 12  # factor in CPU time for a node that holds the interpreter
+_INTERVAL = 0.1  # s between two checks
+_IDLE_EXIT = 50  # checks after which an unused watching thread ends
 _DEBUGGERS = ("pdb", "bdb", "pydevd", "debugpy")
 _CLOCK_OF: Callable[[int], int] | None = getattr(
     time, "pthread_getcpuclockid", None
-)  # not on macOS and Windows
+)  # missing on macOS and Windows
 _read_clock: Callable[[int], float] | None = getattr(
     time, "clock_gettime", None
-)  # bound before nodes see another
+)  # bound before nodes see the virtual clock
 _process_time = time.process_time
 
 
 class Spinning(BaseException):
-    """Raised into a node that never waits. Not an Exception, so that `except Exception` lets it through."""
+    """Raised in a node that never waits. A BaseException, so that `except Exception` does not catch it."""
 
 
 class Watchdog:
@@ -35,17 +35,17 @@ class Watchdog:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._armed = False
-        self._moves = 0  # grows with all progress: what looks the same in two looks stood still
+        self._moves = 0  # counts progress: an equal count in two checks means none
         self._limit = DEFAULT_LIMIT
         self._target = 0
         self._clock = -1
         self._watching = False
-        self._allowed = False  # whether the system counts as well
+        self._allowed = False  # whether the kernel's CPU timer runs as well
         self.fired = False
-        self.hung = False  # whether what fired was a wait for something outside, not computing
+        self.hung = False  # whether it fired for a wait outside of ROS instead of computing
 
     def arm(self, limit: float) -> None:
-        """Watch the calling thread from now on for `limit` seconds of its CPU time."""
+        """Watch the calling thread: fire after `limit` CPU seconds without `beat`."""
         thread = threading.get_ident()
         if thread != self._target:
             self._target = thread
@@ -60,11 +60,11 @@ class Watchdog:
             threading.Thread(target=self._watch, name="tarl-watchdog", daemon=True).start()
 
     def beat(self) -> None:
-        """Start the limit anew: virtual time moved."""
+        """Restart the limit: virtual time has moved."""
         self._moves += 1
 
     def disarm(self) -> bool:
-        """Stop watching; tell whether it fired. Takes back an exception that has not arrived yet."""
+        """Stop watching and return whether it fired; cancel an exception that has not been raised yet."""
         self._armed = False
         if self._allowed:
             self._allow(0.0)
@@ -76,7 +76,7 @@ class Watchdog:
         return True
 
     def hanging(self, limit: float) -> str:
-        """Say what went by before it fired."""
+        """Describe the limit that was exceeded."""
         if self.hung:
             return f"{limit * _PATIENCE:g} s of waiting for something outside of ROS"
         return f"{limit:g} s of computing"
@@ -89,7 +89,7 @@ class Watchdog:
             idle = 0 if self._armed else idle + 1
             if idle > _IDLE_EXIT:
                 self._watching = False
-                if not self._armed:  # nobody armed it in between, trusting that we watch
+                if not self._armed:  # not armed since the last check, by a caller that relies on this thread
                     return
                 self._watching = True
             self._allow(self._limit * _HOLD if self._armed else 0.0)
@@ -97,32 +97,32 @@ class Watchdog:
             if idle or moves != seen:
                 seen, looks, computed = moves, 0, self._computed()
                 continue
-            looks += 1  # counted, not read from a clock: a process that is stopped does not look
+            looks += 1  # counted instead of timed: a suspended process makes no checks
             worked = self._computed() - computed >= self._limit
             if worked or (looks * _INTERVAL >= self._limit * _PATIENCE and not _debugged(self._target)):
                 self._fire(moves, hung=not worked)
-                seen = -1  # again later, should a bare `except:` swallow it
+                seen = -1  # raise again later if a bare `except:` swallows it
 
     def _allow(self, seconds: float) -> None:
-        """Let the system end a process whose interpreter is held for so long, or no longer mind it."""
+        """Set or clear the kernel's CPU limit for a process whose interpreter is held."""
         if seconds or self._allowed:
             self._allowed = bool(seconds)
             allow(seconds)
-        if seconds and not self._armed:  # disarmed in between
+        if seconds and not self._armed:  # disarmed meanwhile
             self._allow(0.0)
 
     def _computed(self) -> float:
-        """Return the CPU seconds of the watched thread, where there is no such clock those of the process."""
+        """Return the CPU seconds of the watched thread; of the process if there is no thread clock."""
         if self._clock != -1 and _read_clock is not None:
             try:
                 return _read_clock(self._clock)
-            except OSError:  # that thread has ended, and another one has its number
+            except OSError:  # the thread has ended and its id was reused
                 self._target = 0
                 return 0.0
         return _process_time()
 
     def forget(self) -> None:
-        """Start anew: threads do not survive a fork."""
+        """Reset after a fork, which threads do not survive."""
         self.__init__()  # type: ignore[misc]
 
     def _fire(self, moves: int, *, hung: bool) -> None:
@@ -134,7 +134,7 @@ class Watchdog:
 
 
 def _debugged(thread: int) -> bool:
-    """Tell whether a thread stands in a debugger, where somebody may take their time."""
+    """Return whether a thread is stopped in a debugger, where time does not count."""
     frame = sys._current_frames().get(thread)
     while frame is not None:
         if str(frame.f_globals.get("__name__", "")).startswith(_DEBUGGERS):
@@ -144,7 +144,7 @@ def _debugged(thread: int) -> bool:
 
 
 def _raise_in(thread: int, exception: type[BaseException] | None) -> None:
-    import ctypes  # slow to import and needed only here
+    import ctypes  # imported late because it is slow
 
     argument = ctypes.py_object(exception) if exception is not None else None
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), argument)

@@ -1,4 +1,4 @@
-"""actionlib on the topics of its protocol (goal, cancel, status, feedback, result), so that a world can take part."""
+"""actionlib, implemented on the topics of its protocol (goal, cancel, …) so that a test's world can take part."""
 
 from __future__ import annotations
 
@@ -21,5 +21,5 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("actionlib", name)

@@ -14,30 +14,30 @@ from pytest_tarl.ros.rospy.node import this_node
 from pytest_tarl.ros.rospy.timing import Time, get_rostime
 from pytest_tarl.ros.scheduler import Task, current_task
 
-_LOOK = nanoseconds(0.1)  # how often a waiting client looks whether the server is there
+_LOOK = nanoseconds(0.1)  # ns, polling period while waiting for the server
 
 
 class SimpleGoalState:
-    """Where a goal is, roughly."""
+    """Coarse state of a goal."""
 
     PENDING, ACTIVE, DONE = range(3)
 
 
 class SimpleClientGoalState:
-    """Names of the states, as older nodes use them."""
+    """Names of the goal states that older nodes use."""
 
     PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST = 0, 1, 2, 3, 4, 5, 8, 9
 
 
 class GoalManager:
-    """Keeps several goals of one client apart; not here."""
+    """Placeholder: several goals of one client are not implemented."""
 
     def __init__(self, *_: Any) -> None:
         raise unsupported("actionlib.GoalManager")
 
 
 class SimpleActionClient:
-    """Sends one goal at a time and follows it."""
+    """Sends one goal at a time and tracks it."""
 
     def __init__(self, ns: str, ActionSpec: Any) -> None:  # noqa: N803 (actionlib's name)
         self._node = this_node("SimpleActionClient")
@@ -59,7 +59,7 @@ class SimpleActionClient:
         Subscriber(f"{self._name}/feedback", self._types.action_feedback, self._take_feedback)
 
     def wait_for_server(self, timeout: Any = None) -> bool:
-        """Wait until somebody serves the action; tell whether that was within the time (none or zero: any)."""
+        """Wait until the action has a server; return whether that happened in time. No timeout if None or zero."""
         return self._wait(lambda: self._servers.ready(self._name), timeout, poll=True)
 
     def send_goal(
@@ -69,7 +69,7 @@ class SimpleActionClient:
         active_cb: Callable[[], Any] | None = None,
         feedback_cb: Callable[[Any], Any] | None = None,
     ) -> None:
-        """Send a goal; the one before is not followed any more."""
+        """Send a goal, and stop tracking the previous one."""
         self._forget()
         self._done_cb, self._active_cb, self._feedback_cb = done_cb, active_cb, feedback_cb
         self._servers.goals += 1
@@ -82,7 +82,7 @@ class SimpleActionClient:
         self._goal_pub.publish(message)
 
     def send_goal_and_wait(self, goal: Any, execute_timeout: Any = None, preempt_timeout: Any = None) -> int:
-        """Send a goal and wait for its end; cancel it after the first timeout. Return its state."""
+        """Send a goal and wait for its end; cancel it after the first timeout; return its state."""
         self.send_goal(goal)
         if not self.wait_for_result(execute_timeout):
             self.cancel_goal()
@@ -90,7 +90,7 @@ class SimpleActionClient:
         return self.get_state()
 
     def wait_for_result(self, timeout: Any = None) -> bool:
-        """Wait until the goal has ended; tell whether that was within the time (none or zero: any)."""
+        """Wait until the goal has ended; return whether that happened in time. No timeout if None or zero."""
         if self._goal_id is None:
             return False
         return self._wait(lambda: self._done, timeout)
@@ -100,31 +100,31 @@ class SimpleActionClient:
         return self._result
 
     def get_state(self) -> int:
-        """Return the goal's state, as actionlib_msgs/GoalStatus numbers them; LOST without a goal."""
+        """Return the goal's state as a number of actionlib_msgs/GoalStatus; LOST without a goal."""
         if self._goal_id is None:
             return protocol.LOST
         simple = {protocol.PREEMPTING: protocol.ACTIVE, protocol.RECALLING: protocol.PENDING}
         return simple.get(self._state, self._state)
 
     def get_goal_status_text(self) -> str:
-        """Return what the server said about the goal."""
+        """Return the server's status text on the goal."""
         return self._text
 
     def cancel_goal(self) -> None:
-        """Ask the server to end the goal."""
+        """Ask the server to cancel the goal."""
         if self._goal_id is not None:
             self._cancel_pub.publish(message_type("actionlib_msgs/GoalID")(Time(), self._goal_id.id))
 
     def cancel_all_goals(self) -> None:
-        """Ask the server to end every goal."""
+        """Ask the server to cancel every goal."""
         self._cancel_pub.publish(message_type("actionlib_msgs/GoalID")())
 
     def cancel_goals_at_and_before_time(self, time: Any) -> None:
-        """Ask the server to end the goals up to an instant."""
+        """Ask the server to cancel all goals sent up to an instant."""
         self._cancel_pub.publish(message_type("actionlib_msgs/GoalID")(time, ""))
 
     def stop_tracking_goal(self) -> None:
-        """Do not follow the goal any more."""
+        """Stop tracking the goal."""
         self._forget()
 
     def _forget(self) -> None:
@@ -138,7 +138,7 @@ class SimpleActionClient:
         for status in message.status_list:
             if self._mine(status) and self._state not in TERMINAL:
                 began = self._state == protocol.PENDING and status.status == protocol.ACTIVE
-                if status.status not in TERMINAL:  # the end comes with the result
+                if status.status not in TERMINAL:  # terminal states arrive with the result
                     self._state = status.status
                 if began and self._active_cb is not None:
                     self._active_cb()

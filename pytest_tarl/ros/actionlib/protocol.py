@@ -1,4 +1,4 @@
-"""What client and server of a ROS 1 action have in common."""
+"""Common parts of client and server of a ROS 1 action."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ TERMINAL = (PREEMPTED, SUCCEEDED, ABORTED, REJECTED, RECALLED, LOST)
 
 
 def __getattr__(name: str) -> Any:
-    """Build GoalStatus and GoalID when they are asked for."""
+    """Build GoalStatus and GoalID at first use."""
     if name in ("GoalStatus", "GoalID", "GoalStatusArray"):
         return message_type(f"actionlib_msgs/{name}")
     raise AttributeError(name)
 
 
 class ActionServers:
-    """The actions that nodes of an episode serve, and how many goals there were."""
+    """The actions that nodes of an episode serve, and the number of goals so far."""
 
     def __init__(self, ros: Network) -> None:
         self._ros = ros
@@ -30,12 +30,12 @@ class ActionServers:
         self.goals = 0
 
     def ready(self, name: str) -> bool:
-        """Tell whether a node serves an action, or the world listens to its goals."""
+        """Return whether a node serves an action, or the world subscribes to its goals."""
         return name in self.names or bool(self._ros.bus.topic(f"{name}/goal").listeners)
 
 
 class ActionTypes:
-    """The message classes of an action, found through the class that names it."""
+    """The message classes of an action, derived from its action class."""
 
     def __init__(self, spec: Any) -> None:
         example = spec()

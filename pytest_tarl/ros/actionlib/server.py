@@ -1,4 +1,4 @@
-"""actionlib's SimpleActionServer: one goal at a time; a newer goal asks the older one to give way."""
+"""actionlib's SimpleActionServer: one goal at a time; a newer goal preempts the older one."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _REPLACED = "This goal was canceled because another goal was received by the sim
 
 
 class SimpleActionServer:
-    """Executes goals with `execute_cb(goal)` in a task of its own, or tells by callbacks that there is one."""
+    """Executes goals with `execute_cb(goal)` in its own task, or announces them by callbacks."""
 
     def __init__(
         self,
@@ -43,7 +43,7 @@ class SimpleActionServer:
             self.start()
 
     def start(self) -> None:
-        """Begin to take goals."""
+        """Start accepting goals."""
         if self._started:
             return
         self._started = True
@@ -61,7 +61,7 @@ class SimpleActionServer:
             self._worker = process.scheduler.spawn(process, self._execute_goals)
 
     def register_goal_callback(self, cb: Callable[[], Any] | None) -> None:
-        """Have a function called when a goal can be accepted."""
+        """Register a callback for a goal that can be accepted."""
         if self._execute_cb is not None:
             logwarn(
                 "Cannot call SimpleActionServer.register_goal_callback() because an executeCallback exists"
@@ -70,11 +70,11 @@ class SimpleActionServer:
             self._goal_callback = cb
 
     def register_preempt_callback(self, cb: Callable[[], Any] | None) -> None:
-        """Have a function called when the current goal should give way."""
+        """Register a callback for a preemption request."""
         self._preempt_callback = cb
 
     def accept_new_goal(self) -> Any:
-        """Take the newest goal over; one that is still active is preempted."""
+        """Accept the newest goal; preempt one that is still active."""
         if self._next is None:
             logerr("Attempting to accept the next goal when a new goal is not available")
             return None
@@ -86,32 +86,32 @@ class SimpleActionServer:
         return self._current.goal
 
     def is_new_goal_available(self) -> bool:
-        """Tell whether a goal waits."""
+        """Return whether a new goal waits."""
         return self._next is not None
 
     def is_preempt_requested(self) -> bool:
-        """Tell whether the current goal should give way."""
+        """Return whether preemption of the current goal is requested."""
         return self._preempt_requested
 
     def is_active(self) -> bool:
-        """Tell whether a goal is being worked on."""
+        """Return whether a goal is active."""
         status = None if self._current is None else self._status.get(self._current.goal_id.id)
         return status in (protocol.ACTIVE, protocol.PREEMPTING)
 
     def set_succeeded(self, result: Any = None, text: str = "") -> None:
-        """End the goal as a success."""
+        """End the goal as succeeded."""
         self._end(protocol.SUCCEEDED, result, text)
 
     def set_aborted(self, result: Any = None, text: str = "") -> None:
-        """End the goal as a failure."""
+        """End the goal as aborted."""
         self._end(protocol.ABORTED, result, text)
 
     def set_preempted(self, result: Any = None, text: str = "") -> None:
-        """End the goal as one that gave way."""
+        """End the goal as preempted."""
         self._end(protocol.PREEMPTED, result, text)
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Tell the client how far it is."""
+        """Publish feedback to the client."""
         message = self._types.action_feedback()
         self._address(message, self._current.goal_id)
         message.feedback = feedback

@@ -1,4 +1,4 @@
-"""dynamic_reconfigure: parameters that change while a node runs; server, client, generated configurations."""
+"""dynamic_reconfigure: parameters that change at run time; server, client, generated configurations."""
 
 from __future__ import annotations
 
@@ -18,5 +18,5 @@ class DynamicReconfigureCallbackException(Exception):  # noqa: N818
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("dynamic_reconfigure", name)

@@ -32,11 +32,11 @@ class Client:
         Subscriber(f"{self.name}/parameter_updates", message_type("dynamic_reconfigure/Config"), self._take)
 
     def get_configuration(self, timeout: float | None = None) -> Config | None:  # noqa: ARG002
-        """Return what the server last told."""
+        """Return the last configuration from the server."""
         return self._config
 
     def update_configuration(self, changes: dict[str, Any]) -> Config:
-        """Change some parameters; return what the server made of it."""
+        """Change some parameters; return the resulting configuration."""
         return decode_config(self._proxy(encode_config(changes)).config)
 
     def _take(self, message: Any) -> None:

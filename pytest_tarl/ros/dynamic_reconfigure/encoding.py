@@ -1,4 +1,4 @@
-"""Configurations as dictionaries with attributes, and as dynamic_reconfigure/Config messages."""
+"""Convert configurations between attribute dictionaries and dynamic_reconfigure/Config messages."""
 
 from __future__ import annotations
 
@@ -38,7 +38,10 @@ def described(config_type: Any) -> dict[str, dict[str, Any]]:
 
 
 def checked(config_type: Any, given: dict[str, Any]) -> Config:
-    """Return values in the types of their parameters and within their limits. Raises for unknown ones."""
+    """Convert values to their parameters' types and clip them to the limits.
+
+    Raises DynamicReconfigureParameterException for an unknown parameter.
+    """
     known = described(config_type)
     config = Config()
     for name, value in given.items():
@@ -55,7 +58,7 @@ def checked(config_type: Any, given: dict[str, Any]) -> Config:
 
 
 def level_of(config_type: Any, old: dict[str, Any], new: dict[str, Any]) -> int:
-    """Return the levels of all parameters that changed, or-ed."""
+    """Return the bitwise or of the levels of all changed parameters."""
     level = 0
     for name, one in described(config_type).items():
         if old.get(name) != new.get(name):
@@ -64,7 +67,7 @@ def level_of(config_type: Any, old: dict[str, Any], new: dict[str, Any]) -> int:
 
 
 def encode_config(config: dict[str, Any]) -> Any:
-    """Return dynamic_reconfigure/Config."""
+    """Encode a configuration as dynamic_reconfigure/Config."""
     message: Any = message_type("dynamic_reconfigure/Config")()
     for name, value in config.items():
         for field, kind in _KINDS:
@@ -75,5 +78,5 @@ def encode_config(config: dict[str, Any]) -> Any:
 
 
 def decode_config(message: Any) -> Config:
-    """Return the values of dynamic_reconfigure/Config."""
+    """Decode the values of a dynamic_reconfigure/Config."""
     return Config({one.name: one.value for field, _ in _KINDS for one in getattr(message, field)})

@@ -19,11 +19,11 @@ from pytest_tarl.ros.rospy.parameters import get_param, set_param
 from pytest_tarl.ros.rospy.services import Service
 from pytest_tarl.ros.rospy.topics import Publisher
 
-_EVERYTHING = 0xFFFFFFFF  # the level of the first call
+_EVERYTHING = 0xFFFFFFFF  # level of the first call: all bits
 
 
 class Server:
-    """Calls `callback(config, level)` at the start and at each change; what it returns is the configuration."""
+    """Calls `callback(config, level)` at the start and at each change; uses the configuration that it returns."""
 
     def __init__(self, type: Any, callback: Callable[[Config, int], Any], namespace_prefix: str = "") -> None:  # noqa: A002
         self.type = type
@@ -41,7 +41,7 @@ class Server:
         self._service = Service(f"{self.ns}/set_parameters", service, self._asked)
 
     def update_configuration(self, changes: dict[str, Any]) -> Config:
-        """Change some parameters from within the node."""
+        """Change some parameters from inside the node."""
         new = Config({**self.config, **checked(self.type, changes)})
         return self._change(new, level_of(self.type, self.config, new))
 

@@ -1,4 +1,4 @@
-"""ROS message and service classes: of an installed ROS where there is one, built from definitions where not."""
+"""ROS message and service classes: from an installed ROS, or built from definitions."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _BUILDERS: dict[tuple[str, str], Callable[[str, str], type[Any] | None]] = {
 def message_type(name: str) -> type[Any]:
     """Return a message class by its ROS name.
 
-    `nav_msgs/Odometry` names the ROS 1 class, `nav_msgs/msg/Odometry` the ROS 2 class, as in the two systems
-    themselves. Either can be published to nodes of either kind: subscribers get the class they asked for.
-    Services and actions likewise: `std_srvs/srv/SetBool`, `nav2_msgs/action/NavigateToPose`, `std_srvs/SetBool`.
+    `nav_msgs/Odometry` is the ROS 1 class, `nav_msgs/msg/Odometry` the ROS 2 class. Nodes of either generation can
+    receive both: a subscriber gets the class that it subscribed with. Services and actions likewise:
+    `std_srvs/srv/SetBool`, `nav2_msgs/action/NavigateToPose`, `std_srvs/SetBool`.
     """
     package, *middle, short = name.split("/") if "/" in name else ("", name)
     if middle not in ([], ["msg"], ["srv"], ["action"]) or not package or not short:
@@ -42,7 +42,7 @@ def message_type(name: str) -> type[Any]:
 
 @cache
 def find_class(kind: Kind, package: str, name: str, part: str = "msg") -> type[Any] | None:
-    """Return the class of a message (`part` msg), service (srv) or action type, None if nobody knows it."""
+    """Return the class of a message (`part` msg), service (srv) or action type; None if it is unknown."""
     builder = _BUILDERS.get((kind, part))
     return installed_class(kind, package, name, part) or (
         builder(package, name) if builder is not None else None
@@ -50,7 +50,7 @@ def find_class(kind: Kind, package: str, name: str, part: str = "msg") -> type[A
 
 
 def class_of(kind: Kind, name: str) -> type[Any]:
-    """Return the message class of a type name, `package/Name`. Raises UnsupportedApiError if nobody knows it."""
+    """Return the message class of a type name, `package/Name`. Raises UnsupportedApiError if it is unknown."""
     package, _, short = name.partition("/")
     found = find_class(kind, package, short)
     if found is None:
@@ -59,7 +59,7 @@ def class_of(kind: Kind, name: str) -> type[Any]:
 
 
 def unknown_type(package: str, name: str) -> UnsupportedApiError:
-    """Say that a type has no definition."""
+    """Return the error for a type without a definition."""
     return UnsupportedApiError(
         f"Message type {package}/{name} is not known here: its definition comes neither with `rosbags` nor with us, "
         f"there is no {name}.msg, .srv or .action in the repository of the node, and no installed ROS package "

@@ -1,4 +1,4 @@
-"""What a message type consists of: from the definitions that `rosbags` ships and a few that it lacks."""
+"""Definitions of message types: from `rosbags`, from the workspace, and some built in."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Shape = Literal["one", "array", "sequence"]
 
 DEFAULTS: Mapping[
     str, Mapping[str, Any]
-] = {  # rosbags drops default values; these are all in common packages
+] = {  # default values, which rosbags drops: all that common packages have
     "ros2:geometry_msgs/Quaternion": {"w": 1.0},
 }
-_FILLER = "structure_needs_at_least_one_member"  # what ROS 2 puts into empty types, which no program sees
+_FILLER = "structure_needs_at_least_one_member"  # ROS 2's dummy member of empty types, hidden from programs
 _PRIMITIVES = frozenset(
     [
         "bool",
@@ -56,18 +56,18 @@ class Field:
 
     @property
     def primitive(self) -> bool:
-        """Tell whether the elements are numbers, texts or (ROS 1) times."""
+        """Return whether the elements are numbers, strings or (ROS 1) times."""
         return self.base in _PRIMITIVES
 
     @property
     def text(self) -> str:
-        """Write the type as a message file does: `float64[36]`."""
+        """Return the type as in a message file: `float64[36]`."""
         return self.base + {"one": "", "array": f"[{self.size}]", "sequence": "[]"}[self.shape]
 
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """A named constant of a message type; `text` is its line as ROS 1 takes checksums of it."""
+    """A named constant of a message type; `text` is its line in the text for ROS 1 checksums."""
 
     name: str
     value: Any
@@ -86,7 +86,7 @@ class Definition:
 
 
 def find_message(kind: Kind, package: str, name: str) -> Definition | None:
-    """Return the definition of a message type, None if nobody knows it."""
+    """Return the definition of a message type, None if it is unknown."""
     own = _text(kind, "msg", f"{package}/{name}")
     if own is not None:
         return parse(kind, package, name, own)
@@ -97,7 +97,7 @@ def find_message(kind: Kind, package: str, name: str) -> Definition | None:
 
 
 def find_service(kind: Kind, package: str, name: str) -> tuple[Definition, Definition] | None:
-    """Return request and response of a service type, None if nobody knows it."""
+    """Return request and response of a service type, None if it is unknown."""
     own = _text(kind, "srv", f"{package}/{name}")
     if own is None:
         return None
@@ -109,7 +109,7 @@ def find_service(kind: Kind, package: str, name: str) -> tuple[Definition, Defin
 
 
 def find_action(kind: Kind, package: str, name: str) -> tuple[Definition, Definition, Definition] | None:
-    """Return goal, result and feedback of an action type, None if nobody knows it."""
+    """Return goal, result and feedback of an action type, None if it is unknown."""
     own = _text(kind, "action", f"{package}/{name}")
     if own is None:
         return None
@@ -121,7 +121,7 @@ def find_action(kind: Kind, package: str, name: str) -> tuple[Definition, Defini
     return goal, result, feedback
 
 
-_ACTION_MESSAGES = {  # what genaction makes of an action, outermost last
+_ACTION_MESSAGES = {  # messages that genaction makes for an action, outermost last
     "Goal": None,
     "Result": None,
     "Feedback": None,
@@ -144,12 +144,12 @@ def _part_of_action(package: str, name: str) -> Definition | None:
 
 
 def _text(kind: Kind, part: Part, name: str) -> str | None:
-    """Return a definition from the user's workspace, else a known one."""
+    """Return a definition from the user's workspace, or else a known one."""
     return workspace_types(part).get(name) or known_types(kind, part).get(name)
 
 
 def _sections(text: str, count: int) -> list[str]:
-    """Split at the lines of dashes."""
+    """Split a definition at lines of dashes."""
     found = [""]
     for line in text.splitlines():
         if line.strip() == "---":
@@ -160,7 +160,7 @@ def _sections(text: str, count: int) -> list[str]:
 
 
 def type_names(kind: Kind, package: str, part: Part) -> tuple[str, ...]:
-    """List the messages, services or actions of a package."""
+    """Return the names of a package's messages, services or actions."""
     own = [name.partition("/")[2] for name in workspace_types(part) if name.startswith(f"{package}/")]
     names = {*own, *_fixed_names(kind, package, part)}
     if kind == "ros1" and part == "msg":
@@ -170,14 +170,14 @@ def type_names(kind: Kind, package: str, part: Part) -> tuple[str, ...]:
 
 @cache
 def _fixed_names(kind: Kind, package: str, part: Part) -> frozenset[str]:
-    """Return what does not depend on the user's workspace."""
+    """Return the names that do not depend on the user's workspace."""
     shipped = _store(kind) if part == "msg" else {}
     names = (name for table in (shipped, known_types(kind, part)) for name in table)
     return frozenset(name.rpartition("/")[2] for name in names if name.startswith(f"{package}/"))
 
 
 def parse(kind: Kind, package: str, name: str, text: str) -> Definition:
-    """Read a message definition as it stands in a `.msg` file (one half of a `.srv` file)."""
+    """Parse a message definition: a `.msg` file, or one section of a `.srv` or `.action` file."""
     fields, constants = [], []
     for line in text.splitlines():
         line = _without_comment(kind, line)
@@ -194,7 +194,7 @@ def parse(kind: Kind, package: str, name: str, text: str) -> Definition:
 
 
 def _without_comment(kind: Kind, line: str) -> str:
-    """Cut the comment off, except in a text constant of ROS 1, where a `#` belongs to the text."""
+    """Remove the comment, except in a ROS 1 string constant, where `#` belongs to the value."""
     head = line.split("#")[0]
     return (line if kind == "ros1" and head.lstrip().startswith("string ") and "=" in head else head).strip()
 

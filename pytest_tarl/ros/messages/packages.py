@@ -1,4 +1,4 @@
-"""Message packages as modules: `from geometry_msgs.msg import Twist`, each class built when it is asked for."""
+"""Message packages as modules: `from geometry_msgs.msg import Twist` builds the class at first use."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ PARTS: tuple[Part, ...] = ("msg", "srv", "action")
 
 
 def could_be_package(name: str) -> bool:
-    """Tell by the name alone whether this may be a message package: most imports are none and must stay cheap."""
+    """Return whether a name could be a message package; cheap, since most imports are none."""
     return name.endswith(_ENDINGS) or name in _OTHERS or name in workspace_packages()
 
 
 def is_package(kind: Kind, package: str) -> bool:
-    """Tell whether definitions of this message package are known."""
+    """Return whether definitions of this message package are known."""
     return any(type_names(kind, package, part) for part in PARTS)
 
 
@@ -31,7 +31,7 @@ class PackagePart(ModuleType):
     """`package.msg`, `package.srv` or `package.action`."""
 
     def __init__(self, kind: Kind, package: str, part: Part) -> None:
-        super().__init__(f"{package}.{part}", f"Types of {package}, built from their definitions.")
+        super().__init__(f"{package}.{part}", f"Types of {package}, built from definitions.")
         self._kind, self._package, self._part = kind, package, part
         self.__path__: list[str] = []
 
@@ -52,7 +52,7 @@ class PackagePart(ModuleType):
         return sorted([*names, *(name + half for name in names for half in halves)])
 
     def _half_of_service(self, name: str) -> Any:
-        """ROS 1 has `SetBoolRequest` and `SetBoolResponse` beside `SetBool`."""
+        """Return `SetBoolRequest` or `SetBoolResponse` of a ROS 1 service `SetBool`; None for other names."""
         for suffix, attribute in (("Request", "_request_class"), ("Response", "_response_class")):
             if self._kind == "ros1" and self._part == "srv" and name.endswith(suffix):
                 return getattr(ros1.service_class(self._package, name.removesuffix(suffix)), attribute, None)
@@ -60,7 +60,7 @@ class PackagePart(ModuleType):
 
 
 class MessagePackage(ModuleType):
-    """`package`: its parts are there without an import of their own, since other messages import them."""
+    """`package`: its parts need no import of their own, as in ROS, where other messages import them."""
 
     def __init__(self, kind: Kind, package: str) -> None:
         super().__init__(package, f"Message package {package}, built from definitions.")
@@ -75,7 +75,7 @@ class MessagePackage(ModuleType):
 
 
 def package_module(kind: Kind, name: str) -> ModuleType | None:
-    """Make the module of that dotted name; None if it is no part of a message package."""
+    """Create the module of that dotted name; None if it is not part of a message package."""
     package, _, part = name.partition(".")
     if not is_package(kind, package):
         return None

@@ -1,6 +1,6 @@
-"""ROS 1 message classes: generated from definitions, behaving as genpy's do.
+"""ROS 1 message classes, generated from definitions, that behave like genpy's.
 
-Each class gets a function `_tarl_copy(message)` that does what sending and receiving would do: checks types, rounds
+Each class gets a function `_tarl_copy(message)` with the effect of sending and receiving: it checks types, rounds
 float32, turns arrays of numbers into tuples (bytes for uint8), and shares nothing with the original.
 """
 
@@ -18,13 +18,11 @@ from pytest_tarl.ros.messages.definitions import Definition, Field, find_message
 from pytest_tarl.ros.messages.times import Duration, Time, TVal
 from pytest_tarl.ros.messages.values import INTEGERS, FieldError
 
-CARRIED: dict[
-    str, type[Message]
-] = {}  # types that nobody knows, built from the text that a bag or topic carried
+CARRIED: dict[str, type[Message]] = {}  # unknown types, built from the definition in a bag or topic header
 
 
 class Message:
-    """Base of all ROS 1 messages: arguments by position (all of them) or by keyword (any of them)."""
+    """Base of all ROS 1 messages; takes all fields by position, or any of them by keyword."""
 
     __slots__ = ["_connection_header"]
     _type: ClassVar[str] = ""
@@ -50,11 +48,11 @@ class Message:
             setattr(self, name, defaults[name]() if value is None else value)
 
     def serialize(self, buff: Any) -> None:
-        """Write the message as bytes into a file."""
+        """Serialise the message into a file."""
         buff.write(ros1_wire.serialize(self))
 
     def deserialize(self, data: bytes) -> Message:
-        """Take the values of all fields from bytes; return the message."""
+        """Set all fields from bytes; return the message."""
         self.__setstate__(ros1_wire.deserialize(type(self), data, field_class).__getstate__())
         return self
 
@@ -82,14 +80,14 @@ class Message:
 
 
 def _equal(one: Any, other: Any) -> bool:
-    """Compare two fields; a list and a tuple are the same, since what is received has tuples."""
+    """Compare two fields; a list equals a tuple, since received messages hold tuples."""
     if isinstance(one, list | tuple) and isinstance(other, list | tuple):
         return tuple(one) == tuple(other)
     return bool(one == other)
 
 
 def _rebuild(name: str, state: list[Any]) -> Message:
-    """Unpickle a message by its type name: the module that it claims to live in exists only within an episode."""
+    """Unpickle a message by its type name, because its module exists only during an episode."""
     built = message_class(*name.split("/"))
     if built is None:
         raise FieldError(f"message type {name} is not known")
@@ -99,7 +97,7 @@ def _rebuild(name: str, state: list[Any]) -> Message:
 
 
 def as_yaml(value: Any, indent: str = "") -> str:
-    """Write a message as `rostopic echo` shows it."""
+    """Format a message like `rostopic echo`."""
     if isinstance(value, Message):
         lines = (
             f"{indent}{name}: {as_yaml(getattr(value, name), indent + '  ')}" for name in value.__slots__
@@ -118,19 +116,19 @@ def as_yaml(value: Any, indent: str = "") -> str:
 
 @cache
 def message_class(package: str, name: str) -> type[Message] | None:
-    """Return the class of a message type, built at first use; None if nobody knows the type."""
+    """Return the class of a message type, built at first use; None if it is unknown."""
     definition = find_message("ros1", package, name)
     return build(definition, f"{package}.msg") if definition is not None else None
 
 
 def field_class(base: str) -> type[Message] | None:
-    """Return the class of a message type by its full name, also of parts of services and actions."""
+    """Return the class of a message type by its full name, including parts of services and actions."""
     return message_class(*base.split("/", 1)) or CARRIED.get(base)
 
 
 @cache
 def service_class(package: str, name: str) -> type | None:
-    """Return the class that stands for a service type; its request and response classes hang on it."""
+    """Return the class of a service type, with its request and response classes as attributes."""
     halves = find_service("ros1", package, name)
     if halves is None:
         return None
@@ -186,7 +184,7 @@ def build(definition: Definition, module: str) -> type[Message]:
 
 
 def md5_text(definition: Definition) -> str:
-    """Return what ROS 1 takes the checksum of: constants, then fields, nested types as their checksums."""
+    """Return the text that ROS 1 hashes: constants, then fields, with nested types as their checksums."""
     lines = [f"{constant.text}\n" for constant in definition.constants]
     for field in definition.fields:
         kind = field.text if field.primitive else _nested(field.base)._md5sum
@@ -226,7 +224,7 @@ def _nested(base: str) -> type[Message]:
 
 
 def _copy_lines(field: Field, position: int, scope: dict[str, Any]) -> list[str]:
-    """Write the copying of one field: the usual exact type inline, everything else through `slow`."""
+    """Return source lines that copy one field: the exact type inline, other values through `slow`."""
     name, slow = field.name, f"slow{position}(v, {field.name!r})"
     exact = {"float64": "float", "string": "str", "bool": "bool"}.get(field.base)
     if field.shape == "one" and not field.primitive:
@@ -261,7 +259,7 @@ def _converter(field: Field) -> Callable[[Any, str], Any]:
 
 
 def _packed_converter(base: str, size: int) -> Callable[[Any, str], Any]:
-    last: Any = ()  # what was made last; a tuple of numbers cannot have changed since
+    last: Any = ()  # the last result; a tuple of numbers is immutable, so it can be reused
 
     def convert(value: Any, name: str) -> Any:
         nonlocal last
@@ -275,7 +273,7 @@ def _packed_converter(base: str, size: int) -> Callable[[Any, str], Any]:
 
 
 def _same_doubles(size: int, convert: Callable[[Any, str], Any]) -> Callable[[Any, str], Any]:
-    """Spare the conversion where the bytes are those of the last time: covariances hardly ever change."""
+    """Reuse the last result if the bytes are equal: covariances hardly ever change."""
     pack = Struct(f"{size}d").pack
     last: tuple[bytes, Any] = (b"", ())
 
@@ -288,7 +286,7 @@ def _same_doubles(size: int, convert: Callable[[Any, str], Any]) -> Callable[[An
         try:
             content = pack(*value)
         except StructError:
-            return convert(value, name)  # says what is wrong
+            return convert(value, name)  # raises with the reason
         if content != last[0]:
             last = (content, convert(value, name))
         return last[1]

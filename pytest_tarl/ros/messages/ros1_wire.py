@@ -1,4 +1,4 @@
-"""ROS 1 messages as bytes, as topics and bags carry them: little-endian fields in order, lengths as uint32.
+"""Serialise ROS 1 messages: little-endian fields in order, lengths as uint32.
 
 Format: https://wiki.ros.org/msg, "Array handling" and "Primitive types".
 """
@@ -22,23 +22,21 @@ Find = Callable[[str], Any]
 
 
 class WireError(ValueError):
-    """Bytes are not a message of the type."""
+    """The bytes are not a message of the type."""
 
 
 def serialize(message: Any) -> bytes:
-    """Return a message as bytes. Raises FieldError for a field whose value its type does not allow."""
+    """Serialise a message. Raises FieldError for a value that its field's type does not allow."""
     parts: list[bytes] = []
-    copied = getattr(
-        type(message), "_tarl_copy", None
-    )  # messages of an installed ROS are checked as they are written
+    copied = getattr(type(message), "_tarl_copy", None)  # an installed ROS checks while it serialises
     _write_message(message if copied is None else copied(message), parts)
     return b"".join(parts)
 
 
 def deserialize(kind: Any, data: bytes, find: Find) -> Any:
-    """Return the message of a class that bytes hold; `find` returns the class of a field by its type.
+    """Deserialise a message of a class; `find` returns a nested class by its type name.
 
-    Raises WireError where they are too few, or too many.
+    Raises WireError if there are too few or too many bytes.
     """
     try:
         message, end = _read_message(kind, data, 0, find)
@@ -50,7 +48,7 @@ def deserialize(kind: Any, data: bytes, find: Find) -> Any:
 
 
 def full_text(kind: Any) -> str:
-    """Return the definition of a message type with those of all types in it, as bags keep it."""
+    """Return the definition of a message type with those of all nested types, as stored in bags."""
     texts: dict[str, str] = {}
     pending = [kind._type]
     while pending:
@@ -117,7 +115,7 @@ def _read(kind: str, data: bytes, at: int, find: Find) -> tuple[Any, int]:
     count = int(size.rstrip("]") or 0)
     if size == "]":
         (count,), at = _LENGTH.unpack_from(data, at), at + _LENGTH.size
-    if count > len(data):  # every element takes a byte at least, but for empty messages
+    if count > len(data):  # every element takes at least a byte, except empty messages
         raise WireError(f"an array of {count} elements does not fit {len(data)} bytes")
     if base in ("uint8", "char"):
         if at + count > len(data):

@@ -1,4 +1,4 @@
-"""ROS 2 message classes: generated from definitions, behaving as rosidl's do.
+"""ROS 2 message classes, generated from definitions, that behave like rosidl's.
 
 Fields are properties whose setters assert the type, so that `twist.linear.x = 1` fails here as on the robot.
 Sequences of numbers are `array.array`, arrays of numbers are numpy arrays, as in rosidl.
@@ -29,7 +29,7 @@ from pytest_tarl.ros.messages.values import CODES, FieldError
 
 
 class Message:
-    """Base of all ROS 2 messages built here: keyword arguments only."""
+    """Base of all ROS 2 messages built here; takes keyword arguments only."""
 
     __slots__: ClassVar[Sequence[str]] = ()
     _check_fields: ClassVar[bool] = True
@@ -40,7 +40,7 @@ class Message:
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
-        """Return field names and types as the message file gives them."""
+        """Return field names and types as in the message file."""
         return dict(cls._fields_and_field_types)
 
     def __repr__(self) -> str:
@@ -72,7 +72,7 @@ class Message:
 
 
 def _rebuild(module: str, name: str, fields: dict[str, Any]) -> Message:
-    """Return a copy, possibly in another process, where the class may not have been built yet."""
+    """Unpickle a message, possibly in another process, where the class may not have been built yet."""
     package, _, part = module.partition(".")
     if part == "srv":
         service_class(package, name.rpartition("_")[0])
@@ -92,14 +92,14 @@ def _equal(one: Any, other: Any) -> bool:
 
 @cache
 def message_class(package: str, name: str) -> type[Message] | None:
-    """Return the class of a message type, built at first use; None if nobody knows the type."""
+    """Return the class of a message type, built at first use; None if it is unknown."""
     definition = find_message("ros2", package, name)
     return build(definition, f"{package}.msg") if definition is not None else None
 
 
 @cache
 def service_class(package: str, name: str) -> type | None:
-    """Return the class that stands for a service type, with `Request` and `Response`."""
+    """Return the class of a service type, with `Request` and `Response`."""
     halves = find_service("ros2", package, name)
     if halves is None:
         return None
@@ -109,7 +109,7 @@ def service_class(package: str, name: str) -> type | None:
 
 @cache
 def action_class(package: str, name: str) -> type | None:
-    """Return the class that stands for an action type, with `Goal`, `Result`, `Feedback` and what carries them."""
+    """Return the class of an action type, with `Goal`, `Result`, `Feedback` and their transport messages."""
     parts = find_action("ros2", package, name)
     if parts is None:
         return None
@@ -122,7 +122,7 @@ def action_class(package: str, name: str) -> type | None:
 
 
 def _carriers(package: str, name: str, parts: tuple[Definition, ...]) -> dict[str, Any]:
-    """Build what rosidl wraps around the parts of an action."""
+    """Build the services and messages that transport the parts of an action, as rosidl does."""
     goal, result, feedback = (f"{package}/{part.name}" for part in parts)
     uuid = "unique_identifier_msgs/UUID goal_id"
     texts = {
@@ -178,13 +178,13 @@ def build(definition: Definition, module: str) -> type[Message]:
     return built
 
 
-PACKED = frozenset(CODES) - {"byte"}  # what rosidl stores in an `array.array`
+PACKED = frozenset(CODES) - {"byte"}  # types that rosidl stores in an `array.array`
 _UNSET = object()
-_parts: dict[str, type[Message]] = {}  # halves of services and actions, which carriers refer to
+_parts: dict[str, type[Message]] = {}  # parts of services and actions, for the transport messages
 
 
 def _init_lines(fields: list[Field]) -> list[str]:
-    """Write the constructor: a keyword for each field, its default where it is not given."""
+    """Return source lines of the constructor: a keyword with a default for each field."""
     if any(keyword.iskeyword(field.name) or field.name in ("self", "unknown") for field in fields):
         defaults = [f"    self._{field.name} = default{position}()" for position, field in enumerate(fields)]
         return ["def __init__(self, **unknown):", *defaults, "    fill(self, unknown)"]
@@ -196,20 +196,20 @@ def _init_lines(fields: list[Field]) -> list[str]:
     for position, field in enumerate(fields):
         plain = LITERALS.get(field.base) if field.shape == "one" and field.default is None else None
         lines.append(f"    if {field.name} is UNSET: self._{field.name} = {plain or f'default{position}()'}")
-        code = _packed_code(field)  # rosidl's constructors take all that `array` takes, its setters do not
+        code = _packed_code(field)  # rosidl's constructors accept any argument of `array`, its setters do not
         given = f"array({code!r}, {field.name})" if code else field.name
         lines.append(f"    else: self.{field.name} = {given}")
     return lines
 
 
 def _packed_code(field: Field) -> str:
-    """Return the type code of a sequence of numbers, nothing for other fields."""
+    """Return the type code of a sequence of numbers; empty for other fields."""
     return CODES[field.base] if field.shape == "sequence" and field.base in PACKED else ""
 
 
 def _fill(message: Message, given: dict[str, Any]) -> None:
     names = {field.name: _packed_code(field) for field in message._tarl_fields}
-    given.pop("check_fields", None)  # newer rosidl's switch; here fields are always checked
+    given.pop("check_fields", None)  # option of newer rosidl; fields are always checked here
     assert all(key in names for key in given), "Invalid arguments passed to constructor: " + ", ".join(
         sorted(key for key in given if key not in names)
     )

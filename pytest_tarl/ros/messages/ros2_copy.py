@@ -1,4 +1,4 @@
-"""Write the function that copies a ROS 2 message: nested messages inline, since calls are what takes the time."""
+"""Generate the function that copies a ROS 2 message, with nested messages inline for speed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Scope = dict[str, Any]
 
 
 def copy_function(fields: Iterable[Field], nested: Nested, scope: Scope) -> list[str]:
-    """Return the source of `copy(m)`; what it refers to is put into `scope`, where `cls` is to be the class."""
+    """Return the source of `copy(m)`; put its globals into `scope`, where the caller sets `cls`."""
     return [
         "def copy(m):",
         "    n = new(cls)",
@@ -59,7 +59,7 @@ def _copier(field: Field, nested: Nested) -> Callable[[Any], Any]:
     if not field.primitive:
         element = nested(field.base)._tarl_copy
         return lambda value: [element(item) for item in value]
-    if field.shape == "one":  # only float32 changes on the wire
+    if field.shape == "one":  # of single values, only float32 changes when sent
         return lambda value: values.as_float32(value, field.name)
     if field.base in CODES and field.base != "byte":
         return (

@@ -1,4 +1,4 @@
-"""ROS 2 fields: what a new message holds in them and what can be assigned to them, as rosidl has it."""
+"""Defaults and setters of ROS 2 fields, as in rosidl."""
 
 # ruff: noqa: S101 (rosidl's setters assert, and `python -O` switches them off there as well)
 
@@ -11,9 +11,9 @@ from typing import Any
 from pytest_tarl.ros.messages.definitions import Field
 from pytest_tarl.ros.messages.values import CODES, INTEGERS
 
-Nested = Callable[[str], type]  # finds the class of a nested message by its type
+Nested = Callable[[str], type]  # returns a nested message class by its type name
 
-_FLOAT32_LIMIT = 3.402823466e38  # as rosidl rounds it: the largest float32 of all is refused there too
+_FLOAT32_LIMIT = 3.402823466e38  # rosidl's rounded limit, which excludes the largest float32
 LITERALS = {
     "float64": "0.0", "float32": "0.0", "bool": "False", "string": "''", "wstring": "''",
     **dict.fromkeys(set(INTEGERS) - {"byte"}, "0"),
@@ -21,7 +21,7 @@ LITERALS = {
 
 
 def default(field: Field, nested: Nested) -> Callable[[], Any]:
-    """Return what makes the value of a field in a new message."""
+    """Return a function that creates a field's default value."""
     if field.default is not None:
         return lambda: field.default
     element = _element_default(field, nested)
@@ -50,13 +50,13 @@ def _element_default(field: Field, nested: Nested) -> Callable[[], Any]:
 
 
 def _numpy_array(numbers: Any, base: str) -> Any:
-    import numpy as np  # only messages with fixed arrays of numbers need it
+    import numpy as np  # needed only for fixed arrays of numbers
 
     return np.array(numbers, dtype=base)
 
 
 def setter(field: Field, position: int, nested: Nested, scope: dict[str, Any], source: list[str]) -> str:
-    """Write the function that a field is assigned through; return its name."""
+    """Append the source of a field's setter to `source`, put its globals into `scope`, and return its name."""
     name, check = f"set{position}", f"check{position}"
     scope[check] = _check(field, nested)
     if field.shape != "one":
@@ -71,7 +71,7 @@ def setter(field: Field, position: int, nested: Nested, scope: dict[str, Any], s
 
 
 def _accepted(field: Field, check: Callable[[Any], None], value: Any) -> Any:
-    """Check an assigned sequence and bring it into the form in which rosidl stores it."""
+    """Check an assigned sequence and convert it to the form that rosidl stores."""
     packed = field.base in CODES and field.base != "byte"
     if packed and field.shape == "array" and hasattr(value, "dtype"):
         assert value.dtype.name == field.base, (
@@ -109,7 +109,7 @@ def _sized(field: Field, value: Any) -> Any:
 
 
 def _check(field: Field, nested: Nested) -> Callable[[Any], None]:
-    """Return the assertion for one element."""
+    """Return a function that asserts the type of one element."""
     if not field.primitive:
         wanted: type = nested(field.base)
         said = f"a sub message of type '{field.base.rpartition('/')[2]}'"

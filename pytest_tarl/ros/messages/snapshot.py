@@ -1,4 +1,4 @@
-"""Messages as the other side gets them: copied, checked, and of the class that the other side asked for."""
+"""Copy messages as a receiver gets them: checked, and in the receiver's class."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from pytest_tarl.ros.clock import NANOSECONDS
 from pytest_tarl.ros.messages import find_class, unknown_type
 from pytest_tarl.ros.messages.values import FieldError, as_float32
 
-_COPIERS: dict[type, Callable[[Any], Any]] = {}  # by message class; filled at first use, never changed
+_COPIERS: dict[type, Callable[[Any], Any]] = {}  # by message class; entries never change
 _STAMPS: dict[
     type, tuple[str, str] | None
-] = {}  # what a class's header calls the parts of its stamp; likewise
+] = {}  # names of the stamp's parts in a class's header; entries never change
 
 
 def snapshot(message: Any, wanted: type | None = None) -> Any:
-    """Return what a receiver of class `wanted` (None: the same) gets. Raises FieldError for what cannot be sent."""
+    """Copy a message for a receiver of class `wanted` (None: the same). Raises FieldError if it cannot be sent."""
     own = type(message)
     if wanted is not None and wanted is not own:
         if type_name(wanted) != type_name(own):
@@ -32,7 +32,7 @@ def snapshot(message: Any, wanted: type | None = None) -> Any:
 
 
 def type_name(message_type: Any) -> str:
-    """Name a message class the same for both ROS generations: `nav_msgs/Odometry`."""
+    """Return the type name of a class, `nav_msgs/Odometry`, in the same form for both ROS generations."""
     if hasattr(message_type, "_slot_types"):
         return str(message_type._type)
     package = getattr(message_type, "__module__", "").partition(".")[0]
@@ -44,14 +44,14 @@ def type_name(message_type: Any) -> str:
 
 
 def field_names(message: Any) -> tuple[str, ...]:
-    """List the fields of a message or a message class."""
+    """Return the field names of a message or message class."""
     if hasattr(message, "get_fields_and_field_types"):
         return tuple(message.get_fields_and_field_types())
     return tuple(message.__slots__)
 
 
 def translate(message: Any, wanted: type) -> Any:
-    """Carry a message over into the class of the same type of the other ROS generation, field by field."""
+    """Convert a message, field by field, to the class of the same type in the other ROS generation."""
     made = wanted()
     for name in field_names(wanted):
         if hasattr(message, name):
@@ -81,7 +81,7 @@ def _class_like(own: type, other: type) -> type[Any]:
 
 
 def is_message(value: Any) -> bool:
-    """Tell a ROS message of either generation from anything else."""
+    """Return whether an object is a ROS message of either generation."""
     own = type(value)
     return hasattr(own, "get_fields_and_field_types") or (
         hasattr(own, "_slot_types") and hasattr(own, "_type")
@@ -89,7 +89,7 @@ def is_message(value: Any) -> bool:
 
 
 def stamp_if_unset(message: Any, now: int) -> None:
-    """Give the header of `message` the present time (ns) unless it has a stamp."""
+    """Set the header stamp of `message` to the current time (ns) unless it has one."""
     own = type(message)
     if own not in _STAMPS:
         _STAMPS[own] = _stamp_parts(message)
@@ -112,11 +112,11 @@ def _stamp_parts(message: Any) -> tuple[str, str] | None:
         return "secs", "nsecs"
     return (
         ("_sec", "_nanosec") if hasattr(stamp, "_tarl_fields") else ("sec", "nanosec")
-    )  # ours need no checks
+    )  # classes built here need no checks
 
 
 def _copier(own: type) -> Callable[[Any], Any]:
-    """Return how messages of a class are copied; classes of an installed ROS 1 serialise, as they would."""
+    """Return the copy function of a class; for an installed ROS 1, serialise and deserialise."""
     copier: Callable[[Any], Any] | None = getattr(own, "_tarl_copy", None)
     if copier is not None:
         return copier
@@ -130,7 +130,7 @@ def _copier(own: type) -> Callable[[Any], Any]:
 
 
 def _slot_copier(own: type) -> Callable[[Any], Any]:
-    """Return how messages of an installed ROS 2 are copied: slot by slot, as far as they can change."""
+    """Return the copy function of an installed ROS 2 class: slot by slot, sharing immutable values."""
     slots = [slot for base in reversed(own.__mro__) for slot in getattr(base, "__slots__", ())]
     singles = {f"_{name}" for name, kind in own.get_fields_and_field_types().items() if kind == "float"}  # type: ignore[attr-defined]
 

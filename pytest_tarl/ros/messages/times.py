@@ -1,6 +1,6 @@
 """ROS 1 instants and durations (`genpy.Time`, `genpy.Duration`): whole seconds and nanoseconds.
 
-Arithmetic returns the class of its left operand, so that a `rospy.Duration` stays one.
+Arithmetic returns the class of its left operand, so that `rospy.Duration` is preserved.
 """
 
 from __future__ import annotations
@@ -36,19 +36,19 @@ class TVal:
 
     @classmethod
     def from_sec(cls: type[Self], float_secs: float) -> Self:
-        """Make a value from float seconds."""
+        """Create a value from float seconds."""
         return cls(*_split(float_secs))
 
     def is_zero(self) -> bool:
-        """Tell whether this is zero."""
+        """Return whether this is zero."""
         return self.secs == 0 and self.nsecs == 0
 
     def set(self, secs: int, nsecs: int) -> None:
-        """Set both parts as they are."""
+        """Set both parts without normalising."""
         self.secs, self.nsecs = secs, nsecs
 
     def canon(self) -> None:
-        """Bring the parts into canonical form."""
+        """Normalise the parts."""
         carry, self.nsecs = divmod(self.nsecs, NANOSECONDS)
         self.secs += carry
 
@@ -105,7 +105,7 @@ class TVal:
 
 
 class Time(TVal):
-    """An instant. Negative ones do not exist."""
+    """An instant, never negative."""
 
     __slots__ = ["nsecs", "secs"]
 
@@ -137,7 +137,7 @@ class Time(TVal):
 
 
 class Duration(TVal):
-    """A span of time, of either sign."""
+    """A span of time, positive or negative."""
 
     __slots__ = ["nsecs", "secs"]
 

@@ -1,4 +1,4 @@
-"""Turn what a program put into a field into what the other side would receive, or say why it cannot be sent."""
+"""Convert field values as a receiver gets them, or raise FieldError with the reason."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ CODES = {
 
 
 class FieldError(Exception):
-    """A field holds what its type does not allow. The message is the end of a sentence."""
+    """A field's value does not fit its type. The message is the end of a sentence."""
 
 
 def as_float(value: Any, field: str) -> float:
-    """Return a number as float64 carries it."""
+    """Convert a number to float64."""
     if isinstance(value, str | bytes) or not hasattr(value, "__float__"):
         raise FieldError(f"field {field!r} must be a number, not {value!r}")
     return float(value)
 
 
 def as_float32(value: Any, field: str) -> float:
-    """Return a number as float32 carries it."""
+    """Round a number to float32."""
     try:
         rounded: float = _FLOAT32.unpack(_FLOAT32.pack(as_float(value, field)))[0]
     except OverflowError as error:
@@ -41,7 +41,7 @@ def as_float32(value: Any, field: str) -> float:
 
 
 def as_integer(value: Any, base: str, field: str) -> int:
-    """Return an integer that fits `base`; a float is refused, as in ROS."""
+    """Return an integer that fits `base`; floats are refused, as in ROS."""
     low, high = INTEGERS[base]
     try:
         number = operator.index(value)
@@ -53,19 +53,19 @@ def as_integer(value: Any, base: str, field: str) -> int:
 
 
 def as_bool(value: Any, field: str) -> bool:
-    """Return a truth value."""
+    """Return a boolean."""
     if isinstance(value, bool):
         return value
     try:
         return bool(operator.index(value))
     except TypeError as error:
         if type(value).__module__ == "numpy" and type(value).__name__ in ("bool", "bool_"):
-            return bool(value)  # numpy 2 took its index away
+            return bool(value)  # numpy 2's bool has no __index__
         raise FieldError(f"field {field!r} must be a bool, not {value!r}") from error
 
 
 def as_text(value: Any, field: str) -> str:
-    """Return a text."""
+    """Return a string."""
     if not isinstance(value, str):
         raise FieldError(f"field {field!r} must be a text, not {value!r}")
     return value

@@ -1,4 +1,4 @@
-"""The workspaces that nodes are started from: their packages, definitions of messages, services and actions."""
+"""The workspaces of started nodes: their packages and message, service and action definitions."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from tarl_lint.workspace.folders import is_ignored, workspace_root
 from tarl_lint.workspace.model import Package, Workspace
 from tarl_lint.workspace.read import read
 
-_SEARCHED: list[Path] = []  # like sys.path: it grows with the folders that nodes are started from
+_SEARCHED: list[Path] = []  # grows with the folders of started nodes, as sys.path does
 
 _CACHES: list[Callable[[], None]] = []  # functions that empty them
 
-_KEPT: set[Path] = set()  # folders of nodes in packages that the build tool is told to ignore
+_KEPT: set[Path] = set()  # folders of nodes in packages with COLCON_IGNORE or CATKIN_IGNORE
 
 
 def search(folder: Path) -> None:
-    """Know the packages of the workspace of `folder` too: the repository or the ROS packages around it."""
+    """Add the packages around `folder`: those of its repository, or the enclosing ROS workspace."""
     root = workspace_root(folder.resolve())
     if root is None:
         return
@@ -36,20 +36,20 @@ def on_forget(clear: Callable[[], None]) -> None:
 
 
 def forget() -> None:
-    """Empty all caches of facts about the workspaces, so that they are read again when next asked for."""
+    """Empty all caches of facts about the workspaces; they are read again at next use."""
     for clear in _CACHES:
         clear()
 
 
 @cache
 def workspaces() -> tuple[Workspace, ...]:
-    """Return the descriptions of the workspaces, in the order in which nodes were started from them."""
+    """Return descriptions of the workspaces, in the order in which nodes were started from them."""
     return tuple(read(root, frozenset(_KEPT)) for root in _SEARCHED)
 
 
 @cache
 def packages() -> Mapping[str, Package]:
-    """Return the packages by name, the first found of each."""
+    """Return the packages by name; the first found wins."""
     found: dict[str, Package] = {}
     for workspace in workspaces():
         for package in workspace.packages:
@@ -59,7 +59,7 @@ def packages() -> Mapping[str, Package]:
 
 @cache
 def workspace_types(part: str) -> Mapping[str, str]:
-    """Return the text of all `.msg`, `.srv` or `.action` files by type name, the first found of each."""
+    """Return the texts of all `.msg`, `.srv` or `.action` files by type name; the first found wins."""
     return {
         f"{package.name}/{file.stem}": file.read_text(encoding="utf-8", errors="replace")
         for package in packages().values()
@@ -70,7 +70,7 @@ def workspace_types(part: str) -> Mapping[str, str]:
 
 @cache
 def workspace_packages() -> frozenset[str]:
-    """Return the packages that have such files."""
+    """Return the packages that contain such files."""
     return frozenset(name for name, package in packages().items() if package.interfaces)
 
 

@@ -45,7 +45,7 @@ __all__ = [
 
 
 def init(*, args: list[str] | None = None, context: Any = None, **_: Any) -> Context:
-    """Bring ROS up in this program; what is returned brings it down at the end of a `with`."""
+    """Initialise ROS in this program; as a context manager, shut it down at the end."""
     found = this_context("init")
     found.init(args)
     return found
@@ -66,7 +66,7 @@ def get_global_executor() -> Executor:
 
 
 def spin(node: Node, executor: Executor | None = None) -> None:
-    """Run the node's callbacks until ROS is shut down."""
+    """Run callbacks of the node until ROS is shut down."""
     executor = executor or get_global_executor()
     executor.add_node(node)
     try:
@@ -76,7 +76,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
 
 
 def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
-    """Run one callback of the node, waiting up to `timeout_sec` for it."""
+    """Run one callback of the node; wait up to `timeout_sec` for it."""
     executor = executor or get_global_executor()
     executor.add_node(node)
     try:
@@ -88,7 +88,7 @@ def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: floa
 def spin_until_future_complete(
     node: Node, future: Future, executor: Executor | None = None, timeout_sec: float | None = None
 ) -> None:
-    """Run the node's callbacks until a future is done."""
+    """Run callbacks of the node until a future is done."""
     executor = executor or get_global_executor()
     executor.add_node(node)
     try:
@@ -98,5 +98,5 @@ def spin_until_future_complete(
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("rclpy", name)

@@ -1,4 +1,4 @@
-"""Callback groups: which callbacks a multi-threaded executor may run beside each other."""
+"""Callback groups: which callbacks a multi-threaded executor may run concurrently."""
 
 # ruff: noqa: ARG002 (signatures are rclpy's)
 
@@ -8,41 +8,41 @@ from typing import Any
 
 
 class CallbackGroup:
-    """Decides whether one more of its callbacks may start. Nodes derive groups of their own from it."""
+    """Decides whether another of its callbacks may start. Base class for groups of nodes' own."""
 
     def __init__(self) -> None:
         self.entities: set[Any] = set()
 
     def add_entity(self, entity: Any) -> None:
-        """Take an entity in."""
+        """Add an entity."""
         self.entities.add(entity)
 
     def has_entity(self, entity: Any) -> bool:
-        """Tell whether an entity belongs to this group."""
+        """Return whether an entity belongs to this group."""
         return entity in self.entities
 
     def can_execute(self, entity: Any) -> bool:
-        """Tell whether a callback could start now."""
+        """Return whether a callback could start now."""
         raise NotImplementedError
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Let a callback start, or refuse."""
+        """Return whether a callback may start, and count it as running if so."""
         raise NotImplementedError
 
     def ending_execution(self, entity: Any) -> None:
-        """Take note that a callback has ended."""
+        """Count a callback as ended."""
         raise NotImplementedError
 
 
 class ReentrantCallbackGroup(CallbackGroup):
-    """Any number of callbacks at once."""
+    """Allows any number of concurrent callbacks."""
 
     def can_execute(self, entity: Any) -> bool:
-        """Tell that it can."""
+        """Return True."""
         return True
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Let it."""
+        """Return True."""
         return True
 
     def ending_execution(self, entity: Any) -> None:
@@ -50,23 +50,23 @@ class ReentrantCallbackGroup(CallbackGroup):
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
-    """One callback at a time; a coroutine counts until it has returned."""
+    """Allows one callback at a time; a coroutine occupies the group until it returns."""
 
     def __init__(self) -> None:
         super().__init__()
         self.active: Any = None
 
     def can_execute(self, entity: Any) -> bool:
-        """Tell whether none is running."""
+        """Return whether no callback is running."""
         return self.active is None
 
     def beginning_execution(self, entity: Any) -> bool:
-        """Let it start if none is running."""
+        """Return whether no callback was running, and count this one as running if so."""
         if self.active is not None:
             return False
         self.active = entity
         return True
 
     def ending_execution(self, entity: Any) -> None:
-        """Make room for the next."""
+        """Let the next callback start."""
         self.active = None

@@ -1,4 +1,4 @@
-"""What `rclpy.init` makes: whether ROS is up in this process."""
+"""The context that `rclpy.init` initialises: whether ROS is up in this process."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from pytest_tarl.ros.rclpy.exceptions import NotInitializedException, RCLError
 
 
 class Context:
-    """The rclpy context of a process; all contexts of a process are one, which `Context()` returns."""
+    """The rclpy context of a process. It is a singleton, which `Context()` returns."""
 
     def __new__(cls, process: Process | None = None) -> Context:
-        """Return the process's context, made at first use."""
+        """Return the process's context; create it at first use."""
         return object.__new__(cls) if process is not None else this_context("Context")
 
     def __init__(self, process: Process | None = None) -> None:
@@ -30,7 +30,7 @@ class Context:
         process.at_end(self._stop)
 
     def init(self, args: list[str] | None = None, **_: Any) -> None:
-        """Bring ROS up. Raises RuntimeError if it is."""
+        """Initialise ROS. Raises RuntimeError if it is up already."""
         if self.initialised:
             raise RuntimeError("Context.init() must only be called once")
         if args is not None:
@@ -38,7 +38,7 @@ class Context:
         self.initialised = True
 
     def ok(self) -> bool:
-        """Tell whether ROS is up."""
+        """Return whether ROS is up."""
         return self.initialised and not self.process.ending
 
     def require(self) -> None:
@@ -47,26 +47,29 @@ class Context:
             raise NotInitializedException
 
     def shutdown(self) -> None:
-        """Bring ROS down. Raises RuntimeError if it is, RCLError where the node was ended from outside."""
+        """Shut ROS down.
+
+        Raises RuntimeError if it is not up, RCLError if the node was ended from outside.
+        """
         if self.process.ending:
             error = RCLError("failed to shutdown: rcl_shutdown already called on the given context")
-            error.tarl_shutdown = True  # the usual last line of a program that was ended from outside
+            error.tarl_shutdown = True  # normal for the last line of a program ended from outside
             raise error
         if not self.initialised:
             raise RuntimeError("Context must be initialized before it can be shutdown")
         self._stop()
 
     def try_shutdown(self) -> None:
-        """Bring ROS down unless it is."""
+        """Shut ROS down unless it is down already."""
         if self.ok():
             self._stop()
 
     def on_shutdown(self, callback: Callable[[], Any]) -> None:
-        """Have a function called when ROS goes down."""
+        """Register a callback for the shutdown."""
         self._callbacks.append(callback)
 
     def on_wake(self, waker: Callable[[], None]) -> None:
-        """Have an executor woken when ROS goes down."""
+        """Register an executor to be woken at shutdown."""
         self._wakers.append(waker)
 
     def _stop(self) -> None:
@@ -85,5 +88,5 @@ class Context:
 
 
 def this_context(api: str) -> Context:
-    """Return the context of the program that is running."""
+    """Return the context of the running program."""
     return current_process(f"rclpy.{api}").part(Context)

@@ -1,4 +1,4 @@
-"""What a parameter's descriptor allows: its type, a range, whether it can change at all."""
+"""Check parameter values against descriptors: type, range, read-only."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ _TOLERANCE = 1e-6
 
 
 def new_descriptor(**fields: Any) -> Any:
-    """Make rcl_interfaces/ParameterDescriptor."""
+    """Create rcl_interfaces/ParameterDescriptor."""
     made: Any = find_class("ros2", "rcl_interfaces", "ParameterDescriptor")
     return made(**fields)
 
 
 def objection(parameter: Parameter, descriptor: Any, *, declaring: bool) -> str:
-    """Say why a descriptor refuses a value, in rclpy's words; empty where it does not."""
+    """Return rclpy's reason for refusing a value; empty if the descriptor allows it."""
     if descriptor.read_only and not declaring:
         return f"Trying to set a read-only parameter: {parameter.name}."
     if not descriptor.dynamic_typing:
@@ -35,7 +35,7 @@ def objection(parameter: Parameter, descriptor: Any, *, declaring: bool) -> str:
 
 
 def fits(parameter: Parameter, expected: int) -> bool:
-    """Tell whether a value has the declared type; an empty list fits every array."""
+    """Return whether a value has the declared type; an empty list fits every array type."""
     if expected == ParameterType.NOT_SET or parameter.type_ == expected:
         return True
     empty = isinstance(parameter.value, list | tuple) and not parameter.value

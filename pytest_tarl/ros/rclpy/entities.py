@@ -1,4 +1,4 @@
-"""What a node holds: publishers, subscriptions, timers, clients, services."""
+"""The entities of a node: publishers, subscriptions, timers, clients, services."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pytest_tarl.ros.rclpy.waitable import GuardCondition, Mailbox
 
 
 class NodeEntities:
-    """The part of a node that lists and destroys what it created."""
+    """Mixin of Node: list and destroy the node's entities."""
 
     def __init__(self) -> None:
         self.publishers_: list[Publisher] = []
@@ -22,7 +22,7 @@ class NodeEntities:
         self.services_: list[Service] = []
         self.guards_: list[GuardCondition] = []
         self.waitables_: list[Mailbox] = []
-        self.entities: tuple[list[Any], ...] = (  # what an executor can run, in rclpy's order
+        self.entities: tuple[list[Any], ...] = (  # entities that an executor can run, in rclpy's order
             self.timers_, self.subscriptions_, self.guards_, self.clients_, self.services_, self.waitables_,
         )  # fmt: skip
 
@@ -58,7 +58,7 @@ class NodeEntities:
 
     @property
     def waitables(self) -> Iterator[Any]:
-        """What actions wait for."""
+        """The waitables of the node's actions."""
         return iter(self.waitables_)
 
     def destroy_publisher(self, publisher: Publisher) -> bool:

@@ -1,4 +1,4 @@
-"""Callbacks for quality-of-service events: taken, and never called, since nothing is late or lost here."""
+"""Callbacks for quality-of-service events: accepted but never called, since no message is late or lost."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ EventCallback = Callable[[Any], Any]
 
 
 class UnsupportedEventTypeError(RuntimeError):
-    """A middleware does not know an event; this one takes all."""
+    """A middleware does not support an event; never raised here."""
 
 
 class _EventCallbacks:
-    """Holds callbacks by the names that rclpy gives them."""
+    """Holds callbacks under rclpy's names."""
 
     _names: tuple[str, ...] = ()
 

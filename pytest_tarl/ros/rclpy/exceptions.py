@@ -8,20 +8,20 @@ from typing import Any
 
 
 class NotInitializedException(Exception):  # noqa: N818 (these names are rclpy's)
-    """Something was used before `rclpy.init`."""
+    """A function was called before `rclpy.init`."""
 
     def __init__(self, *_: Any) -> None:
         super().__init__("rclpy.init() has not been called", *_)
 
 
 class RCLError(RuntimeError):
-    """What the layer below Python would refuse."""
+    """An error of rcl, the C layer below rclpy."""
 
     tarl_shutdown = False
 
 
 class NameValidationException(Exception):  # noqa: N818
-    """A name has characters that it may not have."""
+    """A name has invalid characters."""
 
     def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int = 0) -> None:
         pointer = " " * invalid_index + "^"
@@ -59,11 +59,11 @@ class InvalidServiceNameException(NameValidationException):
 
 
 class InvalidHandle(Exception):  # noqa: N818
-    """Something that was destroyed is used."""
+    """A destroyed entity is used."""
 
 
 class NoTypeSupportImportedException(Exception):  # noqa: N818
-    """What was given as a message type is none."""
+    """An argument is not a message type."""
 
 
 class ParameterException(Exception):  # noqa: N818
@@ -102,7 +102,7 @@ class InvalidParameterException(ParameterException):
 
 
 class InvalidParameterTypeException(ParameterException):
-    """A parameter gets a value of another type than it was declared with."""
+    """A parameter is set to a value of another type than declared."""
 
     def __init__(self, parameter: Any, expected: Any, *args: Any) -> None:
         name, given = parameter.name, parameter.type_.name
@@ -118,7 +118,7 @@ class InvalidParameterValueException(ParameterException):
 
 
 class ParameterImmutableException(ParameterException):
-    """A read-only parameter is to be changed or forgotten."""
+    """A read-only parameter is set or undeclared."""
 
     def __init__(self, parameter_name: str, *args: Any) -> None:
         super().__init__("Attempted to modify read-only parameter", parameter_name, *args)

@@ -1,4 +1,4 @@
-"""rclpy's executors: they wait for what becomes ready in their nodes and run its callbacks."""
+"""rclpy's executors: wait for ready entities of their nodes and run their callbacks."""
 
 # ruff: noqa: ARG002 (signatures are rclpy's)
 
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
 
 
 class Entity(Protocol):
-    """Something of a node that an executor can run when it is ready."""
+    """The interface of a node's entity that an executor can run."""
 
     callback_group: Any
 
     def is_ready(self) -> bool:
-        """Tell whether there is something to do."""
+        """Return whether there is work."""
 
     def run(self) -> Any:
-        """Do it; a coroutine is returned for the executor to go on with."""
+        """Do the work; return a coroutine if the executor has to continue it."""
 
 
 class ExternalShutdownException(Exception):  # noqa: N818 (these names are rclpy's)
@@ -47,11 +47,11 @@ class TimeoutException(Exception):  # noqa: N818
 
 
 class ConditionReachedException(Exception):  # noqa: N818
-    """What was waited for has happened."""
+    """The awaited condition holds."""
 
 
 class Executor:
-    """Runs one callback at a time, in the task that spins."""
+    """Runs one callback at a time in the spinning task."""
 
     def __init__(self, *, context: Any = None) -> None:
         self.process = current_process("rclpy.executors.Executor")
@@ -61,13 +61,15 @@ class Executor:
         self._tasks: list[Task] = []
         self._batch: deque[Entity] = deque()
         self._waiting: list[RunningTask] = []
-        self._stirred = True  # whether anything may have become ready since the last look, timers aside
+        self._stirred = (
+            True  # whether an entity other than a timer may have become ready since the last check
+        )
         self._is_shutdown = False
-        self._active, self._limit = 0, 1  # callbacks that run beside each other
+        self._active, self._limit = 0, 1  # running callbacks and their limit
         self.context.on_wake(self.wake)
 
     def add_node(self, node: Node) -> bool:
-        """Take a node over; tell whether it is new here."""
+        """Add a node; return whether it is new."""
         if node in self._nodes:
             return False
         if node.executor is not None:
@@ -78,28 +80,28 @@ class Executor:
         return True
 
     def remove_node(self, node: Node) -> None:
-        """Let a node go."""
+        """Remove a node."""
         if node in self._nodes:
             self._nodes.remove(node)
             node.take_executor(None)
 
     def get_nodes(self) -> list[Node]:
-        """List the nodes."""
+        """Return the nodes."""
         return list(self._nodes)
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task:
-        """Have a function or coroutine run when the executor comes to it."""
+        """Queue a function or coroutine."""
         task = Task(callback, args, kwargs, self)
         self._tasks.append(task)
         self.wake()
         return task
 
     def create_future(self) -> Future:
-        """Make a future whose callbacks this executor runs."""
+        """Create a future whose callbacks this executor runs."""
         return Future(executor=self)
 
     def wake(self) -> None:
-        """Look again for what is ready."""
+        """Check again for ready entities."""
         self._stirred = True
         for task in self._waiting:
             self._clock.wake(task)
@@ -121,7 +123,7 @@ class Executor:
                 self._run(work)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Run one callback, waiting up to `timeout_sec` for it (None: as long as it takes)."""
+        """Run one callback; wait up to `timeout_sec` for it (None: no limit)."""
         work = self._next_work(_until(self._clock.time, timeout_sec), None)
         if work is not None:
             self._run(work)
@@ -137,7 +139,7 @@ class Executor:
             self._spin_towards(future, until)
 
     def spin_once_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
-        """Run one callback, unless the future is done before."""
+        """Run one callback unless the future is done."""
         future.watch(self.wake)
         future.add_done_callback(_nothing)
         self._spin_towards(future, _until(self._clock.time, timeout_sec))
@@ -156,7 +158,7 @@ class Executor:
                 return None
             looks = (
                 1 if self._active < self._limit else 0
-            )  # one look a round: what a group refused waits for the next
+            )  # entities refused by their group wait for the next round
             while True:
                 if not batch:
                     if not looks or not self._look():
@@ -170,20 +172,18 @@ class Executor:
             self._wait(until)
 
     def _begins(self, entity: Entity) -> bool:
-        """Ask the entity's group whether its callback may start now."""
+        """Return whether the entity's group lets its callback start now."""
         group = entity.callback_group
         if type(group) is MutuallyExclusiveCallbackGroup and group.active is None:
-            group.active = (
-                entity  # what the two questions below come to, for the group that nearly all are in
-            )
+            group.active = entity  # shortcut for the default group, with the result of the two calls below
             return True
         if group is None or (group.can_execute(entity) and group.beginning_execution(entity)):
             return True
-        self._stirred = True  # a group decides anew whenever it is asked
+        self._stirred = True  # a custom group may decide differently each time
         return False
 
     def _look(self) -> bool:
-        """Look for what is ready: timers, and the rest if it may have changed since the last look; tell if any is."""
+        """Collect ready entities: timers, and the others if any may have changed; return whether there are any."""
         if self._stirred:
             self._stirred = False
             self._batch.extend(self._ready())
@@ -196,7 +196,7 @@ class Executor:
         return bool(self._batch)
 
     def _ready(self) -> list[Entity]:
-        """List what is ready in rclpy's order: tasks, then each node's entities, kind by kind."""
+        """Return the ready entities in rclpy's order: tasks, then each node's entities by kind."""
         found: list[Entity] = []
         if self._tasks:
             self._tasks = [task for task in self._tasks if task.pending()]
@@ -231,10 +231,10 @@ class Executor:
         if outcome is not None:
             self._go_on(outcome, work)
         if work.is_ready():
-            self._stirred = True  # it has more to do
+            self._stirred = True  # the coroutine has more to do
 
     def _go_on(self, outcome: Any, work: Entity) -> None:
-        """Drive the coroutine that a callback returned; its group stays occupied until it has returned."""
+        """Continue the coroutine of a callback; its group stays occupied until it returns."""
         if inspect.iscoroutine(outcome):
             going_on = self.create_task(outcome)
             if work.callback_group is not None:
@@ -262,7 +262,7 @@ class EventsExecutor(Executor):
 
 
 class MultiThreadedExecutor(Executor):
-    """Runs callbacks beside each other, as far as their groups allow: one that waits does not hold up the rest."""
+    """Runs callbacks concurrently as far as their groups allow: one that waits does not block the others."""
 
     def __init__(self, num_threads: int | None = None, *, context: Any = None) -> None:
         super().__init__(context=context)
@@ -271,11 +271,11 @@ class MultiThreadedExecutor(Executor):
     def _next_work(self, until: int | None, future: Future | None) -> Entity | None:
         try:
             return super()._next_work(until, future)
-        except ExternalShutdownException:  # rclpy's own swallows it, so that spin returns
+        except ExternalShutdownException:  # spin returns, as in rclpy
             return None
 
     def _run(self, work: Entity) -> None:
-        """Start a callback in a task of its own and let it run until it waits."""
+        """Start a callback in its own task and let it run until it waits."""
         self._active += 1
         self._clock.spawn(self.process, self._run_beside, work)
         self._clock.yield_now()
@@ -291,7 +291,7 @@ class MultiThreadedExecutor(Executor):
 
 
 def _nothing(_: Future) -> None:
-    """Stand for rclpy's waking callback: where the future has an executor, it takes a turn of its own there."""
+    """Take the place of rclpy's waking callback, so that done callbacks take the same number of executor turns."""
 
 
 def _until(now: int, timeout_sec: float | None) -> int | None:

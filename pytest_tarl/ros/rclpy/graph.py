@@ -1,4 +1,4 @@
-"""What a node can ask about the ROS graph: who is there, who publishes, listens and serves what."""
+"""A node's queries about the ROS graph: nodes, publishers, subscriptions, services."""
 
 # ruff: noqa: ARG002 (signatures are rclpy's)
 
@@ -19,7 +19,7 @@ NamesAndTypes = list[tuple[str, list[str]]]
 
 
 class TopicEndpointTypeEnum(IntEnum):
-    """Which end of a topic."""
+    """Which end of a topic: publisher or subscription."""
 
     INVALID = 0
     PUBLISHER = 1
@@ -39,7 +39,7 @@ class TopicEndpointInfo:
 
 
 class NodeGraph:
-    """The part of a node that looks around. The simulated world is no node but counts as publisher and subscriber."""
+    """Mixin of Node: graph queries. The simulated world is not a node, but counts as publisher and subscriber."""
 
     process: Process
 
@@ -48,64 +48,64 @@ class NodeGraph:
         raise NotImplementedError
 
     def count_publishers(self, topic_name: str) -> int:
-        """Return how many publish on a topic. The simulated world counts as one."""
+        """Return the number of publishers on a topic. The simulated world counts as one."""
         return 1 + len(self.process.bus.topic(self.resolve_topic_name(topic_name)).publications)
 
     def count_subscribers(self, topic_name: str) -> int:
-        """Return how many subscribe to a topic. The simulated world counts as one."""
+        """Return the number of subscriptions to a topic. The simulated world counts as one."""
         return 1 + len(self.process.bus.topic(self.resolve_topic_name(topic_name)).subscriptions)
 
     def count_services(self, service_name: str) -> int:
-        """Return how many serve a service: one or none."""
+        """Return the number of servers of a service: one or none."""
         return int(self.resolve_topic_name(service_name) in self.process.ros.services)
 
     def count_clients(self, service_name: str) -> int:
-        """Return how many clients of a service nodes have made."""
+        """Return the number of clients of a service."""
         name = self.resolve_topic_name(service_name)
         return sum(client.srv_name == name for node in self._all() for client in node.clients_)
 
     def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
-        """List topics that nodes publish on or subscribe to."""
+        """Return the topics that nodes publish on or subscribe to, with types."""
         return [(place.name, types) for place in self.process.bus.topics() if (types := _types(place))]
 
     def get_service_names_and_types(self) -> NamesAndTypes:
-        """List services."""
+        """Return the services with types."""
         return [(n, [_service_type(made)]) for n, made in self.process.ros.services.names()]
 
     def get_node_names(self) -> list[str]:
-        """List the nodes of the episode."""
+        """Return the names of the episode's nodes."""
         return [node.get_name() for node in self._all()]
 
     def get_fully_qualified_node_names(self) -> list[str]:
-        """List the nodes of the episode with their namespaces."""
+        """Return the names of the episode's nodes, with namespaces."""
         return [node.get_fully_qualified_name() for node in self._all()]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
-        """List the nodes of the episode and their namespaces."""
+        """Return the names and namespaces of the episode's nodes."""
         return [(node.get_name(), node.get_namespace()) for node in self._all()]
 
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
-        """List what a node publishes."""
+        """Return the topics that a node publishes on, with types."""
         node = self._find(node_name, node_namespace)
         return [(p.topic_name, [_message_type(p.msg_type)]) for p in node.publishers_]
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
-        """List what a node subscribes to."""
+        """Return the topics that a node subscribes to, with types."""
         node = self._find(node_name, node_namespace)
         return [(s.topic_name, [_message_type(s.msg_type)]) for s in node.subscriptions_]
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """List what a node serves."""
+        """Return the services that a node offers, with types."""
         return [
             (s.srv_name, [_service_type(s.srv_type)]) for s in self._find(node_name, node_namespace).services_
         ]
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """List what a node calls."""
+        """Return the services that a node has clients of, with types."""
         return [
             (c.srv_name, [_service_type(c.srv_type)]) for c in self._find(node_name, node_namespace).clients_
         ]
@@ -113,7 +113,7 @@ class NodeGraph:
     def get_publishers_info_by_topic(
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
-        """Describe who publishes on a topic."""
+        """Describe the publishers on a topic."""
         name = self.resolve_topic_name(topic_name)
         return [
             _info(node, publisher, TopicEndpointTypeEnum.PUBLISHER)
@@ -125,7 +125,7 @@ class NodeGraph:
     def get_subscriptions_info_by_topic(
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
-        """Describe who subscribes to a topic."""
+        """Describe the subscriptions to a topic."""
         name = self.resolve_topic_name(topic_name)
         return [
             _info(node, subscription, TopicEndpointTypeEnum.SUBSCRIPTION)
@@ -135,7 +135,7 @@ class NodeGraph:
         ]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
-        """Wait until a node is there; tell whether that was within `timeout` seconds."""
+        """Wait until a node exists; return whether that happened within `timeout` seconds."""
         clock = self.process.scheduler
         until = clock.time + nanoseconds(timeout)
         wanted = "/" + fully_qualified_node_name.lstrip("/")
@@ -162,7 +162,7 @@ class NodeGraph:
 
 
 class NodeNameNonExistentError(RuntimeError):
-    """Nobody has that name."""
+    """No node has that name."""
 
 
 def _types(place: Any) -> list[str]:

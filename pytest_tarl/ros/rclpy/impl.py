@@ -1,4 +1,4 @@
-"""`rclpy.impl`: what nodes import from there are the logger and its levels."""
+"""`rclpy.impl`: the logger and its levels, which nodes import from there."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ from pytest_tarl.ros.missing import refuse
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("rclpy.impl", name)

@@ -1,4 +1,4 @@
-"""rclpy's loggers: through Python's `logging`, so that pytest captures them."""
+"""rclpy's loggers, by Python's `logging`, so that pytest captures them."""
 
 # ruff: noqa: ARG001 (signatures are rclpy's)
 
@@ -15,7 +15,7 @@ from pytest_tarl.ros.rospy.log import LogMemory
 
 
 class LoggingSeverity(IntEnum):
-    """Levels; the values are Python's as well."""
+    """Log levels, with the same values as in Python."""
 
     UNSET = 0
     DEBUG = 10
@@ -37,18 +37,18 @@ class RcutilsLogger:
         return RcutilsLogger(f"{self.name}.{name}" if self.name else name)
 
     def set_level(self, level: int) -> None:
-        """Do nothing: what is shown is pytest's choice (`--log-level`), and the next episode must not see it."""
+        """Do nothing: pytest decides what is shown (`--log-level`), and the level would outlive the episode."""
 
     def get_effective_level(self) -> LoggingSeverity:
-        """Return the level of ROS by default."""
+        """Return the default level of ROS."""
         return LoggingSeverity.INFO
 
     def is_enabled_for(self, severity: int) -> bool:
-        """Tell whether messages of a level are shown by default."""
+        """Return whether messages of a level are shown by default."""
         return severity >= LoggingSeverity.INFO
 
     def log(self, message: Any, severity: int, *, depth: int = 1, **options: Any) -> bool:
-        """Log a message; `once`, `throttle_duration_sec` and `skip_first` hold for the place of the call."""
+        """Log a message; `once`, `throttle_duration_sec` and `skip_first` apply to each call site."""
         if options and not _wanted(sys._getframe(depth), options):
             return False
         if self._logger.isEnabledFor(severity):
@@ -56,25 +56,25 @@ class RcutilsLogger:
         return True
 
     def debug(self, message: Any, **options: Any) -> bool:
-        """Log for developers."""
+        """Log at level DEBUG."""
         return self.log(message, LoggingSeverity.DEBUG, depth=2, **options)
 
     def info(self, message: Any, **options: Any) -> bool:
-        """Log for information."""
+        """Log at level INFO."""
         return self.log(message, LoggingSeverity.INFO, depth=2, **options)
 
     def warning(self, message: Any, **options: Any) -> bool:
-        """Log a warning."""
+        """Log at level WARN."""
         return self.log(message, LoggingSeverity.WARN, depth=2, **options)
 
     warn = warning
 
     def error(self, message: Any, **options: Any) -> bool:
-        """Log an error."""
+        """Log at level ERROR."""
         return self.log(message, LoggingSeverity.ERROR, depth=2, **options)
 
     def fatal(self, message: Any, **options: Any) -> bool:
-        """Log what ends the node."""
+        """Log at level FATAL."""
         return self.log(message, LoggingSeverity.FATAL, depth=2, **options)
 
 
@@ -97,9 +97,9 @@ def get_logger(name: str) -> RcutilsLogger:
 
 
 def set_logger_level(name: str, level: int, detailed_error: bool = False) -> None:
-    """Do nothing: what is shown is pytest's choice."""
+    """Do nothing: pytest decides what is shown."""
 
 
 def get_logger_effective_level(name: str) -> LoggingSeverity:
-    """Return the level of ROS by default."""
+    """Return the default level of ROS."""
     return LoggingSeverity.INFO

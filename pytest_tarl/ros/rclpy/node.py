@@ -36,7 +36,7 @@ _NOT_YET = frozenset(["add_waitable", "remove_waitable", "get_node_names_and_nam
 
 
 class Node(NodeEntities, NodeGraph, NodeParameters):
-    """A node: its name, what it creates and holds, and its parameters (the base classes)."""
+    """A node: its name and the functions that create its entities; base classes add entities, graph, parameters."""
 
     def __init__(
         self,
@@ -99,16 +99,16 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
             executor.add_node(self)
 
     def take_executor(self, executor: Any) -> None:
-        """Take note of who runs this node."""
+        """Set the executor that runs this node."""
         self._executor = executor
 
     def notify(self) -> None:
-        """Tell the executor that something became ready."""
+        """Wake the executor: an entity became ready."""
         if self._executor is not None:
             self._executor.wake()
 
     def parameters_changed(self, parameters: list[Any], known: set[str]) -> None:
-        """Publish what was set on /parameter_events, if anybody listens."""
+        """Publish the changed parameters on /parameter_events if it has subscribers."""
         place = self.process.bus.topic("/parameter_events")
         if place.subscriptions or place.listeners:
             event = parameter_event(self, parameters, known)
@@ -117,7 +117,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
             self._event_publisher.publish(event)
 
     def _overrides(self, given: Any) -> dict[str, Any]:
-        """Pick what is meant for this node: plain names, and those under its own name or `/**`."""
+        """Return the overrides for this node: plain names, and those under its own name or `/**`."""
         chosen: dict[str, Any] = {}
         for key, value in given.items():
             owner = key.strip("/")
@@ -260,7 +260,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         return made
 
     def create_mailbox(self, callback_group: Any = None) -> Mailbox:
-        """Create what an action waits with."""
+        """Create a mailbox for an action."""
         made = Mailbox(self, callback_group or self.default_callback_group)
         self._add(made, self.waitables_)
         return made
@@ -271,7 +271,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         self.notify()
 
     def destroy_node(self) -> None:
-        """Destroy the node and all that it created."""
+        """Destroy the node and all its entities."""
         self.destroy_all()
         if self._executor is not None:
             self._executor.remove_node(self)

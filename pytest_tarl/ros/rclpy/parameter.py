@@ -23,7 +23,7 @@ def parameter_dict_from_yaml_file(
 ) -> dict[str, Any]:
     """Return rcl_interfaces/Parameter messages by name from a YAML file, of all nodes or of `target_nodes`.
 
-    `use_wildcard` adds what stands under `/**`. Raises RuntimeError where the file, or a node in it, is missing.
+    `use_wildcard` adds the parameters under `/**`. Raises RuntimeError if the file or a node in it is missing.
     """
     content = params_files.read(parameter_file)
     wanted = [f"/{name.strip('/')}" for name in target_nodes or ()]
@@ -62,7 +62,7 @@ def _named_values(section: Any, above: str) -> dict[str, Any]:
 
 
 class ParameterType(IntEnum):
-    """The types of parameters, as rcl_interfaces numbers them; written as numbers, which they are there."""
+    """The types of parameters with the numbers of rcl_interfaces/ParameterType."""
 
     def __str__(self) -> str:
         return str(int(self))
@@ -83,12 +83,12 @@ class ParameterType(IntEnum):
 
     @classmethod
     def from_parameter_value(cls, parameter_value: Any) -> ParameterType:
-        """Return the type of a Python value. Raises TypeError for what no parameter can hold."""
+        """Return the type of a Python value. Raises TypeError if no parameter type fits."""
         return type_of(parameter_value)
 
 
 def type_of(value: Any) -> ParameterType:
-    """Return the type that a Python value has as a parameter."""
+    """Return the parameter type of a Python value."""
     if value is None:
         return ParameterType.NOT_SET
     for python_type, plain in _PLAIN:
@@ -118,7 +118,7 @@ _ARRAYS = {
 
 
 class Parameter:
-    """A named value. Immutable."""
+    """A named, immutable value."""
 
     Type = ParameterType
 
@@ -134,24 +134,24 @@ class Parameter:
 
     @property
     def type(self) -> ParameterType:
-        """The parameter's type."""
+        """Return the parameter's type."""
         return self.type_
 
     def get_parameter_value(self) -> Any:
-        """Return it as rcl_interfaces/ParameterValue."""
+        """Convert to rcl_interfaces/ParameterValue."""
         made: Any = find_class("ros2", "rcl_interfaces", "ParameterValue")
         if self.value is None:
             return made(type=int(ParameterType.NOT_SET))
         return made(type=int(self.type_), **{_FIELDS[int(self.type_)]: self.value})
 
     def to_parameter_msg(self) -> Any:
-        """Return it as rcl_interfaces/Parameter."""
+        """Convert to rcl_interfaces/Parameter."""
         made: Any = find_class("ros2", "rcl_interfaces", "Parameter")
         return made(name=self.name, value=self.get_parameter_value())
 
     @classmethod
     def from_parameter_msg(cls, param_msg: Any) -> Parameter:
-        """Make a parameter from rcl_interfaces/Parameter."""
+        """Create a parameter from rcl_interfaces/Parameter."""
         return cls(param_msg.name, value=parameter_value_to_python(param_msg.value))
 
     def __repr__(self) -> str:

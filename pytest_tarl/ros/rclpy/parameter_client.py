@@ -1,4 +1,4 @@
-"""rclpy's client for the parameters of another node."""
+"""rclpy's client for another node's parameters."""
 
 # ruff: noqa: ARG002 (signatures are rclpy's)
 
@@ -22,7 +22,7 @@ Done = Callable[[Future], Any]
 
 
 class AsyncParameterClient:
-    """Asks another node for its parameters and sets them, by the node's six services."""
+    """Reads and sets another node's parameters by its six services."""
 
     def __init__(
         self, node: Node, remote_node_name: str, qos_profile: Any = None, callback_group: Any = None
@@ -35,52 +35,52 @@ class AsyncParameterClient:
         }
 
     def services_are_ready(self) -> bool:
-        """Tell whether the node serves its parameters."""
+        """Return whether the node's parameter services are available."""
         return all(client.service_is_ready() for client in self._clients.values())
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
-        """Wait until the node serves its parameters; tell whether that was within the timeout of each."""
+        """Wait for each of the node's parameter services up to the timeout; return whether all are available."""
         return all(client.wait_for_service(timeout_sec) for client in self._clients.values())
 
     def list_parameters(
         self, prefixes: Sequence[str] | None = None, depth: int | None = None, callback: Done | None = None
     ) -> Future:
-        """Ask for names; the future's result is a ListParameters response."""
+        """Request names; the future's result is a ListParameters response."""
         return self._ask("ListParameters", callback, prefixes=list(prefixes or ()), depth=depth or 0)
 
     def get_parameters(self, names: Iterable[str], callback: Done | None = None) -> Future:
-        """Ask for values."""
+        """Request values."""
         return self._ask("GetParameters", callback, names=list(names))
 
     def get_parameter_types(self, names: Iterable[str], callback: Done | None = None) -> Future:
-        """Ask for types."""
+        """Request types."""
         return self._ask("GetParameterTypes", callback, names=list(names))
 
     def describe_parameters(self, names: Iterable[str], callback: Done | None = None) -> Future:
-        """Ask for descriptors."""
+        """Request descriptors."""
         return self._ask("DescribeParameters", callback, names=list(names))
 
     def set_parameters(self, parameters: Iterable[Any], callback: Done | None = None) -> Future:
-        """Set one by one; takes `Parameter` objects or their messages."""
+        """Set parameters one by one, given as `Parameter` objects or messages."""
         return self._ask("SetParameters", callback, parameters=[_message(one) for one in parameters])
 
     def set_parameters_atomically(self, parameters: Iterable[Any], callback: Done | None = None) -> Future:
-        """Set all or none."""
+        """Set all parameters or none."""
         return self._ask(
             "SetParametersAtomically", callback, parameters=[_message(one) for one in parameters]
         )
 
     def delete_parameters(self, names: Iterable[str], callback: Done | None = None) -> Future:
-        """Have parameters forgotten that the node did not fix the type of."""
+        """Delete parameters that the node declared without a fixed type."""
         return self.set_parameters([Parameter(name, Parameter.Type.NOT_SET) for name in names], callback)
 
     def on_parameter_event(self, callback: Any, qos_profile: Any = 10, **options: Any) -> Any:
-        """Have `callback(event)` called whenever parameters of any node change."""
+        """Call `callback(event)` whenever parameters of any node change."""
         event = find_class("ros2", "rcl_interfaces", "ParameterEvent")
         return self.node.create_subscription(event, "/parameter_events", callback, qos_profile, **options)
 
     def load_parameter_file(self, *_: Any, **__: Any) -> Future:
-        """Refuse: there are no parameter files here."""
+        """Raise UnsupportedApiError: parameter files are not supported here."""
         raise unsupported("AsyncParameterClient.load_parameter_file")
 
     load_parameter_file_atomically = load_parameter_file
@@ -112,5 +112,5 @@ def _message(parameter: Any) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("rclpy.parameter_client", name)

@@ -1,4 +1,4 @@
-"""The six services through which others read and set a node's parameters, made when somebody asks for one."""
+"""The six parameter services of a node, created when one is first requested."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _NAMES = {
 
 
 def offer_parameter_services(node: Node) -> None:
-    """Have `/node/set_parameters` and its sisters served."""
+    """Offer `/node/set_parameters` and the five other services."""
     names = {kind: f"{node.get_fully_qualified_name()}/{name}" for kind, name in _NAMES.items()}
     directory = node.process.ros.services
 
@@ -41,13 +41,13 @@ def offer_parameter_services(node: Node) -> None:
 
 
 class ParameterServices:
-    """Answers for the parameters of a node."""
+    """Handles requests for the parameters of a node."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
 
     def get_parameters(self, request: Any, response: Any) -> Any:
-        """Answer with values; none at all where one is not declared."""
+        """Return values; an empty list if one is not declared."""
         try:
             response.values = [
                 p.get_parameter_value() for p in self._node.get_parameters(list(request.names))
@@ -57,7 +57,7 @@ class ParameterServices:
         return response
 
     def get_parameter_types(self, request: Any, response: Any) -> Any:
-        """Answer with types; none at all where one is not declared."""
+        """Return types; an empty list if one is not declared."""
         try:
             response.types = [int(t) for t in self._node.get_parameter_types(list(request.names))]
         except ParameterException:
@@ -65,22 +65,22 @@ class ParameterServices:
         return response
 
     def set_parameters(self, request: Any, response: Any) -> Any:
-        """Set one by one."""
+        """Set parameters one by one."""
         response.results = [self._set([message]) for message in request.parameters]
         return response
 
     def set_parameters_atomically(self, request: Any, response: Any) -> Any:
-        """Set all or none."""
+        """Set all parameters or none."""
         response.result = self._set(request.parameters)
         return response
 
     def list_parameters(self, request: Any, response: Any) -> Any:
-        """Answer with names."""
+        """Return names."""
         response.result = self._node.list_parameters(list(request.prefixes), request.depth)
         return response
 
     def describe_parameters(self, request: Any, response: Any) -> Any:
-        """Answer with descriptors; none at all where one is not declared."""
+        """Return descriptors; an empty list if one is not declared."""
         try:
             response.descriptors = self._node.describe_parameters(list(request.names))
         except ParameterException:
@@ -96,7 +96,7 @@ class ParameterServices:
 
 
 def parameter_event(node: Node, parameters: list[Parameter], known: set[str]) -> Any:
-    """Make rcl_interfaces/ParameterEvent for what was set; `known` are the names that were there before."""
+    """Create rcl_interfaces/ParameterEvent for changed parameters; `known` are the names declared before."""
     made: Any = find_class("ros2", "rcl_interfaces", "ParameterEvent")
     event = made(stamp=node.get_clock().now().to_msg(), node=node.get_fully_qualified_name())
     for parameter in parameters:

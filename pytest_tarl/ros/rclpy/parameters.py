@@ -1,4 +1,4 @@
-"""The parameters of a node: declared, typed, described, overridden from outside, guarded by callbacks."""
+"""The parameters of a node: declaration, types, descriptors, overrides, callbacks."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ SetCallback = Callable[[list[Parameter]], Any]
 
 
 def outcome(successful: bool, reason: str = "") -> Any:
-    """Make rcl_interfaces/SetParametersResult."""
+    """Create rcl_interfaces/SetParametersResult."""
     made: Any = find_class("ros2", "rcl_interfaces", "SetParametersResult")
     return made(successful=successful, reason=reason)
 
 
 class NodeParameters:
-    """The part of a node that knows its parameters."""
+    """Mixin of Node: parameters."""
 
     def __init__(self, overrides: dict[str, Any], allow_undeclared: bool) -> None:
         self._parameters: dict[str, Parameter] = {}
-        self._descriptors: dict[str, Any] = {}  # without an entry: the type of the value, nothing else
+        self._descriptors: dict[str, Any] = {}  # default: only the type of the value is fixed
         self._parameter_overrides = overrides
         self._allow_undeclared = allow_undeclared
         self._pre_set_callbacks: list[SetCallback] = []
@@ -42,7 +42,7 @@ class NodeParameters:
         self._parameters["use_sim_time"] = Parameter("use_sim_time", value=False)
 
     def declare_all_overrides(self) -> None:
-        """Declare every parameter that was given from outside, of any type from then on."""
+        """Declare every override, with dynamic type."""
         for name, value in self._parameter_overrides.items():
             if name not in self._parameters:
                 self.declare_parameter(name, value, new_descriptor(dynamic_typing=True))
@@ -50,7 +50,7 @@ class NodeParameters:
     def declare_parameter(
         self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
     ) -> Parameter:
-        """Declare a parameter: its value from outside wins over the default; its type stays from then on."""
+        """Declare a parameter: an override takes precedence over the default, and the type is fixed from then on."""
         if not name or not isinstance(name, str):
             raise InvalidParameterException(name)
         if name in self._parameters:
@@ -98,7 +98,7 @@ class NodeParameters:
         return declared
 
     def undeclare_parameter(self, name: str) -> None:
-        """Forget a parameter."""
+        """Undeclare a parameter."""
         if name not in self._parameters:
             raise ParameterNotDeclaredException(name)
         if self.describe_parameter(name).read_only:
@@ -107,7 +107,7 @@ class NodeParameters:
         self._descriptors.pop(name, None)
 
     def has_parameter(self, name: str) -> bool:
-        """Tell whether a parameter is declared."""
+        """Return whether a parameter is declared."""
         return name in self._parameters
 
     def get_parameter(self, name: str) -> Parameter:
@@ -126,14 +126,14 @@ class NodeParameters:
         return [self.get_parameter(name) for name in names]
 
     def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
-        """Return a parameter, or the alternative where it is not declared or has no value."""
+        """Return a parameter, or the alternative if it is not declared or has no value."""
         parameter = self._parameters.get(name)
         if parameter is None or parameter.value is None:
             return alternative_value if alternative_value is not None else Parameter(name)
         return parameter
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """Return the parameters below a prefix, by the rest of their names."""
+        """Return the parameters below a prefix, by the remaining part of their names."""
         start = f"{prefix}." if prefix else ""
         return {name[len(start) :]: p for name, p in self._parameters.items() if name.startswith(start)}
 
@@ -146,7 +146,7 @@ class NodeParameters:
         return [self.get_parameter_type(name) for name in names]
 
     def list_parameters(self, prefixes: list[str], depth: int = 0) -> Any:
-        """List names as rcl_interfaces/ListParametersResult; `depth` 0 is all the way down."""
+        """Return names as rcl_interfaces/ListParametersResult; `depth` 0 is unlimited."""
         made: Any = find_class("ros2", "rcl_interfaces", "ListParametersResult")
         names = [name for name in self._parameters if _below(name, prefixes, depth)]
         parents = {name.rpartition(".")[0] for name in names if "." in name}
@@ -167,7 +167,7 @@ class NodeParameters:
         return [self.describe_parameter(name) for name in names]
 
     def set_descriptor(self, name: str, descriptor: Any, alternative_value: Any = None) -> Any:
-        """Replace a descriptor. Returns the parameter's value. Raises where the value does not fit."""
+        """Replace a descriptor and return the parameter's value; raise if the value does not fit."""
         if self.describe_parameter(name).read_only:
             raise ParameterImmutableException(name)
         described = deepcopy(descriptor)
@@ -193,27 +193,27 @@ class NodeParameters:
         return self._set(list(parameter_list))
 
     def add_pre_set_parameters_callback(self, callback: SetCallback) -> None:
-        """Have `callback` turn a list of parameters into what is really set."""
+        """Register a callback that maps a list of parameters to the list that is set."""
         self._pre_set_callbacks.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: SetCallback) -> None:
-        """Do not ask `callback` any more."""
+        """Remove a callback."""
         self._pre_set_callbacks.remove(callback)
 
     def add_on_set_parameters_callback(self, callback: SetCallback) -> None:
-        """Ask `callback` before parameters change; the newest is asked first."""
+        """Register a callback that can refuse a change; the newest is called first."""
         self._set_callbacks.insert(0, callback)
 
     def remove_on_set_parameters_callback(self, callback: SetCallback) -> None:
-        """Do not ask `callback` any more."""
+        """Remove a callback."""
         self._set_callbacks.remove(callback)
 
     def add_post_set_parameters_callback(self, callback: SetCallback) -> None:
-        """Tell `callback` after parameters have changed."""
+        """Register a callback to be called after parameters have changed."""
         self._post_set_callbacks.insert(0, callback)
 
     def remove_post_set_parameters_callback(self, callback: SetCallback) -> None:
-        """Do not tell `callback` any more."""
+        """Remove a callback."""
         self._post_set_callbacks.remove(callback)
 
     def _require_declared(self, parameters: list[Parameter]) -> None:
@@ -251,7 +251,7 @@ class NodeParameters:
         self.parameters_changed(parameters, changed)
 
     def parameters_changed(self, parameters: list[Parameter], known: set[str]) -> None:
-        """Tell others; `known` are the names that were there before."""
+        """Announce changed parameters; `known` are the names declared before."""
 
     def _ask_callbacks(self, parameters: list[Parameter]) -> Any:
         for callback in tuple(self._set_callbacks):

@@ -1,4 +1,4 @@
-"""Quality-of-service profiles. Depth, history and durability have an effect here; delivery is always reliable."""
+"""Quality-of-service profiles. Only depth, history and durability have an effect: delivery is always reliable."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from pytest_tarl.ros.rclpy.time import Duration
 
 
 class InvalidQoSProfileException(Exception):  # noqa: N818 (named by rclpy)
-    """A profile lacks what it needs."""
+    """A profile lacks a required setting."""
 
     def __init__(self, *args: Any) -> None:
         super().__init__("Invalid QoSProfile", *args)
 
 
 class HistoryPolicy(IntEnum):
-    """What a queue keeps."""
+    """Which messages a queue keeps."""
 
     SYSTEM_DEFAULT = 0
     RMW_QOS_POLICY_HISTORY_SYSTEM_DEFAULT = 0
@@ -54,7 +54,7 @@ class DurabilityPolicy(IntEnum):
 
 
 class LivelinessPolicy(IntEnum):
-    """How a publisher shows that it lives."""
+    """How a publisher asserts that it is alive."""
 
     SYSTEM_DEFAULT = 0
     AUTOMATIC = 1
@@ -70,7 +70,7 @@ QoSLivelinessPolicy = LivelinessPolicy
 
 
 class QoSProfile:
-    """A profile: `depth`, or a history that needs none, must be given."""
+    """A profile; requires `depth` or a history without depth."""
 
     def __init__(self, **given: Any) -> None:
         if "history" not in given and "depth" not in given:
@@ -91,11 +91,11 @@ class QoSProfile:
 
     @property
     def capacity(self) -> int | None:
-        """How many messages a queue of this profile holds; None for any number."""
+        """The number of messages in a queue of this profile; None if unlimited."""
         return None if self.history == HistoryPolicy.KEEP_ALL else max(self.depth, 1)
 
     def satisfies(self, wanted: QoSProfile) -> bool:
-        """Tell whether a publisher of this profile and a subscription of the other one connect."""
+        """Return whether a publisher of this profile connects with a subscription of the other one."""
         lossy = (
             self.reliability == ReliabilityPolicy.BEST_EFFORT
             and wanted.reliability == ReliabilityPolicy.RELIABLE
@@ -113,7 +113,7 @@ class QoSProfile:
 
 
 def as_profile(given: Any) -> QoSProfile:
-    """Return a profile for what nodes pass: a profile or a depth."""
+    """Return a profile for an argument that is a profile or a depth."""
     if isinstance(given, QoSProfile):
         return given
     if isinstance(given, int) and not isinstance(given, bool):
@@ -136,7 +136,7 @@ qos_profile_action_status_default = QoSProfile(depth=1, durability=DurabilityPol
 
 
 class QoSCompatibility(IntEnum):
-    """How two profiles go together."""
+    """Compatibility of two profiles."""
 
     OK = 0
     WARNING = 1
@@ -146,7 +146,7 @@ class QoSCompatibility(IntEnum):
 def qos_check_compatible(
     publisher_qos: QoSProfile, subscription_qos: QoSProfile
 ) -> tuple[QoSCompatibility, str]:
-    """Tell whether a publisher and a subscription connect, and why not."""
+    """Return the compatibility of a publisher and a subscription, and the reason if they do not connect."""
     if publisher_qos.satisfies(subscription_qos):
         return QoSCompatibility.OK, ""
     return QoSCompatibility.ERROR, "ERROR: the publisher offers less than the subscription asks for;"

@@ -1,4 +1,4 @@
-"""rclpy's services and clients: request and response each wait for the executor of the node they reach."""
+"""rclpy's services and clients: request and response wait for the executor of the receiving node."""
 
 from __future__ import annotations
 
@@ -33,16 +33,16 @@ class Service:
         self._directory.add(srv_name, self)
 
     def handle(self, request: Any, answer: Answer) -> None:
-        """Queue a request until the node's executor comes to it."""
+        """Queue a request for the node's executor."""
         self.queue.append((request, answer))
         self.node.notify()
 
     def is_ready(self) -> bool:
-        """Tell whether a request waits."""
+        """Return whether a request waits."""
         return bool(self.queue)
 
     def run(self) -> Any:
-        """Answer the oldest request; a coroutine answers when it has finished."""
+        """Handle the oldest request; a coroutine answers when it has finished."""
         request, answer = self.queue.popleft()
         response = self.callback(request, self.srv_type.Response())
         if inspect.iscoroutine(response):
@@ -78,11 +78,11 @@ class Client:
         self._pending: list[Future] = []
 
     def service_is_ready(self) -> bool:
-        """Tell whether somebody serves it."""
+        """Return whether the service is available."""
         return self.srv_name in self._directory
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
-        """Wait until somebody serves it; tell whether that was within the timeout."""
+        """Wait until the service is available; return whether that happened in time."""
         process = self.node.process
         until = None if timeout_sec is None else process.scheduler.time + nanoseconds(timeout_sec)
         found = self._directory.wait(current_task(), self.srv_name, until, self.node.context.ok)
@@ -115,7 +115,7 @@ class Client:
         return future.result()
 
     def answer(self, future: Future, response: Any) -> None:
-        """Take a response: for a waiting `call` at once, for a future through the executor."""
+        """Handle a response: return it from a waiting `call` at once, complete a future by the executor."""
         if response is not None:
             response = adapted(response, self.srv_type.Response)
         waiting = self._calling.get(future)
@@ -127,7 +127,7 @@ class Client:
         self.node.notify()
 
     def is_ready(self) -> bool:
-        """Tell whether a response waits."""
+        """Return whether a response waits."""
         return bool(self.queue)
 
     def run(self) -> None:
@@ -140,12 +140,12 @@ class Client:
             future.set_result(response)
 
     def remove_pending_request(self, future: Future) -> None:
-        """Give up on a request."""
+        """Discard a request."""
         if future in self._pending:
             self._pending.remove(future)
 
     def destroy(self) -> None:
-        """Give up on all requests."""
+        """Discard all requests."""
         for future in self._pending:
             future.cancel()
         self._pending.clear()

@@ -1,4 +1,4 @@
-"""Futures and coroutines that an executor drives."""
+"""Futures, and coroutines run by an executor."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 class Future:
-    """A result that will be there later."""
+    """A result that becomes available later."""
 
     def __init__(self, *, executor: Any = None) -> None:
         self._done = False
@@ -25,25 +25,25 @@ class Future:
         return self.result()
 
     def done(self) -> bool:
-        """Tell whether there is a result or an exception; being cancelled does not count."""
+        """Return whether there is a result or an exception; false if cancelled."""
         return self._done
 
     def pending(self) -> bool:
-        """Tell whether it is neither done nor cancelled."""
+        """Return whether it is neither done nor cancelled."""
         return not (self._done or self._cancelled)
 
     def cancelled(self) -> bool:
-        """Tell whether it was cancelled."""
+        """Return whether it was cancelled."""
         return self._cancelled
 
     def cancel(self) -> None:
-        """Give up on it."""
+        """Cancel the future."""
         if self.pending():
             self._cancelled = True
             self._finish()
 
     def result(self) -> Any:
-        """Return the result, None where there is none yet; raise the exception where there is one."""
+        """Return the result, or None if there is none yet; raise the exception if there is one."""
         if self._exception is not None:
             raise self._exception
         return self._result
@@ -65,7 +65,7 @@ class Future:
         self._finish()
 
     def add_done_callback(self, callback: Callable[[Future], Any]) -> None:
-        """Have a function called with this future when it is done: by the executor where it has one, else at once."""
+        """Call a function with this future when it is done: by its executor, or at once without one."""
         if self.pending():
             self._callbacks.append(callback)
         elif self._executor is not None:
@@ -74,18 +74,18 @@ class Future:
             callback(self)
 
     def watch(self, watcher: Callable[[], Any]) -> None:
-        """Have a function of ours called as soon as this is done."""
+        """Register an internal callback, called as soon as the future is done."""
         if self.pending():
             self._watchers.append(watcher)
         else:
             watcher()
 
     def belongs_to(self, executor: Any) -> None:
-        """Have the done callbacks run by an executor."""
+        """Set the executor that runs the done callbacks."""
         self._executor = executor
 
     def remove_done_callback(self, callback: Callable[[Future], Any]) -> bool:
-        """Take a function back; tell whether it was there."""
+        """Remove a done callback; return whether it was registered."""
         if callback not in self._callbacks:
             return False
         self._callbacks.remove(callback)
@@ -104,7 +104,7 @@ class Future:
 
 
 class Task(Future):
-    """A function or coroutine that an executor runs when it comes to it."""
+    """A function or coroutine in the queue of an executor."""
 
     def __init__(
         self, handler: Any, args: tuple[Any, ...] = (), kwargs: Any = None, executor: Any = None
@@ -118,21 +118,21 @@ class Task(Future):
         self.callback_group: Any = None
 
     def is_ready(self) -> bool:
-        """Tell whether it can go on."""
+        """Return whether it can continue."""
         return self.pending() and not (self._blocked or self._executing)
 
     def executing(self) -> bool:
-        """Tell whether it is running now."""
+        """Return whether it is running now."""
         return self._executing
 
     def cancel(self) -> None:
-        """Give up on it; a coroutine that has begun is closed."""
+        """Cancel the task; close a coroutine that has begun."""
         if self._coroutine is not None and self.pending():
             self._coroutine.close()
         super().cancel()
 
     def run(self) -> None:
-        """Run on to the end or to the next future that is not done; what it raises, its executor's spin raises."""
+        """Continue to the end or to the next future that is not done; spin raises the task's exception."""
         self._executing = True
         try:
             self._advance()

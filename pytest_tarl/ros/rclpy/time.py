@@ -16,7 +16,7 @@ CONVERSION_CONSTANT = S_TO_NS = NANOSECONDS
 
 
 class ClockType(Enum):
-    """Which clock an instant was read from. It prints by name and is no number, but converts to one."""
+    """The clock of an instant. Prints by name; not an int, but converts to one."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1
@@ -35,7 +35,7 @@ class Duration:
 
     @property
     def nanoseconds(self) -> int:
-        """The whole span in nanoseconds."""
+        """Return the span in nanoseconds."""
         return self._nanoseconds
 
     def __add__(self, other: Any) -> Duration:
@@ -56,14 +56,14 @@ class Duration:
     __rmul__ = __mul__
 
     def to_msg(self) -> Any:
-        """Return it as builtin_interfaces/Duration."""
+        """Convert to builtin_interfaces/Duration."""
         made: Any = find_class("ros2", "builtin_interfaces", "Duration")
         sec, nanosec = divmod(self._nanoseconds, NANOSECONDS)
         return made(sec=sec, nanosec=nanosec)
 
     @classmethod
     def from_msg(cls, msg: Any) -> Duration:
-        """Make a span from builtin_interfaces/Duration."""
+        """Create a span from builtin_interfaces/Duration."""
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec)
 
     def __repr__(self) -> str:
@@ -92,7 +92,7 @@ class Duration:
 
 
 class Time:
-    """An instant in nanoseconds, of one kind of clock; instants of different kinds do not compare."""
+    """An instant in nanoseconds of one clock type; instants of different types cannot be compared."""
 
     def __init__(
         self, *, seconds: float = 0, nanoseconds: int = 0, clock_type: ClockType = ClockType.SYSTEM_TIME
@@ -105,27 +105,27 @@ class Time:
 
     @property
     def nanoseconds(self) -> int:
-        """Nanoseconds since the clock began."""
+        """Return nanoseconds since the clock's epoch."""
         return self._nanoseconds
 
     @property
     def clock_type(self) -> ClockType:
-        """The kind of clock."""
+        """Return the clock type."""
         return self._clock_type
 
     def seconds_nanoseconds(self) -> tuple[int, int]:
-        """Return whole seconds and the nanoseconds beyond them."""
+        """Return whole seconds and remaining nanoseconds."""
         return divmod(self._nanoseconds, NANOSECONDS)
 
     def to_msg(self) -> Any:
-        """Return it as builtin_interfaces/Time."""
+        """Convert to builtin_interfaces/Time."""
         made: Any = find_class("ros2", "builtin_interfaces", "Time")
         sec, nanosec = self.seconds_nanoseconds()
         return made(sec=sec, nanosec=nanosec)
 
     @classmethod
     def from_msg(cls, msg: Any, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
-        """Make an instant from builtin_interfaces/Time."""
+        """Create an instant from builtin_interfaces/Time."""
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec, clock_type=clock_type)
 
     def __repr__(self) -> str:
@@ -191,7 +191,7 @@ class ClockChange(IntEnum):
 
 
 class JumpThreshold:
-    """From which size on a jump of the clock is told."""
+    """The least jump of the clock that is reported."""
 
     def __init__(
         self, *, min_forward: Duration | None, min_backward: Duration | None, on_clock_change: bool = True
@@ -201,10 +201,10 @@ class JumpThreshold:
 
 
 class JumpHandle:
-    """Holds callbacks for jumps."""
+    """Holds callbacks for clock jumps."""
 
     def unregister(self) -> None:
-        """Let go of them."""
+        """Drop the callbacks."""
 
     def __enter__(self) -> JumpHandle:
         return self
@@ -214,7 +214,7 @@ class JumpHandle:
 
 
 class Clock:
-    """Reads the virtual clock, whatever kind it claims to be."""
+    """Reads the virtual clock, for every clock type."""
 
     def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> None:
         self._process = current_process("rclpy.clock.Clock")
@@ -225,13 +225,13 @@ class Clock:
         return self._process.scheduler
 
     def now(self) -> Time:
-        """Return the present instant."""
+        """Return the current time."""
         return Time(nanoseconds=self._scheduler.time, clock_type=self.clock_type)
 
     def create_jump_callback(
         self, threshold: Any, *, pre_callback: Any = None, post_callback: Any = None
     ) -> JumpHandle:
-        """Take callbacks for jumps of the clock; it never jumps."""
+        """Accept callbacks for clock jumps, which never happen here."""
         if pre_callback is None and post_callback is None:
             raise ValueError("One of pre_callback or post_callback must be callable")
         return JumpHandle()
@@ -240,29 +240,29 @@ class Clock:
         return f"Clock(clock_type={self.clock_type.name})"
 
     def sleep_until(self, until: Time, context: Any = None) -> bool:
-        """Wait for an instant; tell whether it was reached before the shutdown."""
+        """Wait until an instant; return whether it was reached before the shutdown."""
         while self._scheduler.time < until.nanoseconds and not self._process.ending:
             self._scheduler.wait(until.nanoseconds)
         return not self._process.ending
 
     def sleep_for(self, rel_time: Duration, context: Any = None) -> bool:
-        """Wait for a span; tell whether it passed before the shutdown."""
+        """Wait for a span; return whether it passed before the shutdown."""
         return self.sleep_until(self.now() + rel_time)
 
 
 class ROSClock(Clock):
-    """The clock of nodes."""
+    """A node's clock."""
 
     def __init__(self) -> None:
         super().__init__(clock_type=ClockType.ROS_TIME)
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Tell that time comes from the simulation, which it does."""
+        """Return True: time comes from the simulation."""
         return True
 
 
 class Infinite:
-    """Stands for a duration without end."""
+    """An infinite duration."""
 
     nanoseconds = 2**63 - 1

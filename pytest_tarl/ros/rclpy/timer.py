@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class TimerInfo:
-    """When a timer's callback should have been called, and when it was."""
+    """The planned and the actual time of a timer's callback."""
 
     expected_call_time: Time
     actual_call_time: Time
 
 
 class Timer:
-    """Becomes ready every `period` nanoseconds; an executor that is late skips what it missed."""
+    """Becomes ready every `period` nanoseconds; a late executor skips missed periods."""
 
     def __init__(
         self, node: Node, period: int, callback: Callable[..., Any] | None, group: Any, clock: Any = None
@@ -39,11 +39,11 @@ class Timer:
         self.due = self._clock.time + period
 
     def is_ready(self) -> bool:
-        """Tell whether it is time."""
+        """Return whether the timer is due."""
         return not self.canceled and self._clock.time >= self.due
 
     def is_canceled(self) -> bool:
-        """Tell whether it was cancelled."""
+        """Return whether it was cancelled."""
         return self.canceled
 
     def cancel(self) -> None:
@@ -51,7 +51,7 @@ class Timer:
         self.canceled = True
 
     def reset(self) -> None:
-        """Start a new period now."""
+        """Start a new period now, also after `cancel`."""
         self.canceled = False
         self.due = self._clock.time + self.timer_period_ns
         self.node.notify()
@@ -61,15 +61,15 @@ class Timer:
         return self._clock.time - self._last
 
     def time_until_next_call(self) -> int | None:
-        """Return nanoseconds until it is ready; None while cancelled."""
+        """Return nanoseconds until the timer is ready; None while cancelled."""
         return None if self.canceled else self.due - self._clock.time
 
     def destroy(self) -> None:
-        """Forget it."""
+        """Stop it for good."""
         self.cancel()
 
     def run(self) -> Any:
-        """Begin the next period that is not over yet and call the callback."""
+        """Begin the next future period and call the callback."""
         expected, self._last = self.due, self._clock.time
         self._begin_period()
         callback = self._callback
@@ -79,7 +79,7 @@ class Timer:
 
     @property
     def callback(self) -> Callable[..., Any] | None:
-        """What is called; a parameter that is annotated as TimerInfo gets one."""
+        """Return the callback; it is called with a TimerInfo if a parameter is annotated so."""
         return self._callback
 
     @callback.setter
@@ -109,7 +109,7 @@ def _told_as(callback: Callable[..., Any]) -> str | None:
 
 
 class Rate:
-    """Keeps a loop at a frequency. Waits by itself, so it works without a second thread that spins."""
+    """Keeps a loop at a frequency in Hz. Needs no second thread that spins, unlike rclpy's."""
 
     def __init__(self, node: Node, frequency: float) -> None:
         self._process = node.process
@@ -128,4 +128,4 @@ class Rate:
             self._due += (1 + (clock.time - self._due) // self._period) * self._period
 
     def destroy(self) -> None:
-        """Forget it."""
+        """Stop it for good."""

@@ -38,13 +38,13 @@ class Publisher:
 
     @property
     def topic_name(self) -> str:
-        """The resolved topic."""
+        """Return the resolved topic name."""
         return self._place.name
 
     topic = topic_name
 
     def publish(self, msg: Any) -> None:
-        """Publish a message. Raises TypeError for one of another type."""
+        """Publish a message. Raises TypeError for a message of another type."""
         if self._destroyed:
             raise InvalidHandle("cannot use Destroyable because destruction was requested")
         if not isinstance(msg, self.msg_type):
@@ -58,11 +58,11 @@ class Publisher:
         """Do nothing: a publisher lives as long as its node."""
 
     def wait_for_all_acked(self, timeout: Any = None) -> bool:
-        """Tell that everything has arrived: nothing is lost here."""
+        """Return True: no message is lost here."""
         return True
 
     def get_subscription_count(self) -> int:
-        """Return how many listen. The simulated world counts as one."""
+        """Return the number of subscriptions. The simulated world counts as one."""
         return 1 + len(self._place.subscriptions)
 
     def destroy(self) -> None:
@@ -74,7 +74,7 @@ class Publisher:
 
 
 class Subscription:
-    """Queues messages, as many as its profile says, until an executor comes to them."""
+    """Queues messages for an executor, up to the depth of its profile."""
 
     def __init__(
         self,
@@ -93,37 +93,39 @@ class Subscription:
         self.callback_group = group
         self.qos_profile = profile
         self.queue: deque[Any] = deque(maxlen=profile.capacity)
-        self.arrived: Callable[[], None] | None = None  # told when a message is there, besides the executor
+        self.arrived: Callable[[], None] | None = (
+            None  # called when a message arrives, in addition to waking the executor
+        )
         self._place = place
         wants_kept = profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
         self.process.bus.attach(self, place, wants_kept=wants_kept)
 
     @property
     def topic_name(self) -> str:
-        """The resolved topic."""
+        """Return the resolved topic name."""
         return self._place.name
 
     topic = topic_name
 
     def deliver(self, message: Any) -> None:
-        """Queue a message, dropping the oldest when full, and tell the node's executor."""
+        """Queue a message, drop the oldest if full, and wake the node's executor."""
         self.queue.append(message)
         self.node.notify()
         if self.arrived is not None:
             self.arrived()
 
     def is_ready(self) -> bool:
-        """Tell whether a message waits."""
+        """Return whether a message waits."""
         return bool(self.queue)
 
     def run(self) -> Any:
-        """Call the callback with the oldest message, and with its times where it takes two arguments."""
+        """Call the callback with the oldest message, and with its times if it takes two arguments."""
         message = self.queue.popleft()
         return self._callback(message, self._info()) if self._wants_info else self._callback(message)
 
     @property
     def callback(self) -> Callable[..., Any]:
-        """What is called with each message."""
+        """Return the callback for messages."""
         return self._callback
 
     @callback.setter
@@ -137,7 +139,7 @@ class Subscription:
                 "reception_sequence_number": None}  # fmt: skip
 
     def get_publisher_count(self) -> int:
-        """Return how many publish. The simulated world counts as one."""
+        """Return the number of publishers. The simulated world counts as one."""
         return 1 + len(self._place.publications)
 
     def destroy(self) -> None:
@@ -151,7 +153,7 @@ def _wants_info(callback: Callable[..., Any]) -> bool:
     code = getattr(callback, "__code__", None) or getattr(
         getattr(callback, "__func__", None), "__code__", None
     )
-    if code is not None and not code.co_flags & _VARIADIC:  # the usual case, without the cost of a signature
+    if code is not None and not code.co_flags & _VARIADIC:  # fast path: inspect.signature is slow
         defaults = len(getattr(callback, "__defaults__", None) or ())
         needed = code.co_argcount - defaults - hasattr(callback, "__self__")
         return bool(needed == 2)

@@ -1,4 +1,4 @@
-"""rclpy.utilities: what programs ask about their surroundings."""
+"""rclpy.utilities: the context, ROS arguments, the middleware's name."""
 
 # ruff: noqa: ARG001 (signatures are rclpy's)
 
@@ -23,30 +23,30 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
 
 
 def ok(*, context: Any = None) -> bool:
-    """Tell whether ROS is up."""
+    """Return whether ROS is up."""
     return this_context("ok").ok()
 
 
 def shutdown(*, context: Any = None, uninstall_handlers: bool | None = None) -> None:
-    """Bring ROS down. Raises RuntimeError if it is."""
+    """Shut ROS down. Raises RuntimeError if it is not up."""
     this_context("shutdown").shutdown()
 
 
 def try_shutdown(*, context: Any = None, uninstall_handlers: bool | None = None) -> None:
-    """Bring ROS down unless it is."""
+    """Shut ROS down unless it is down already."""
     this_context("try_shutdown").try_shutdown()
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
-    """Return a command line without what ROS takes from it."""
+    """Return a command line without ROS arguments."""
     return list(names.parse_ros2(current_process("rclpy.utilities").argv if args is None else args).rest)
 
 
 def get_rmw_implementation_identifier() -> str:
-    """Return a name: there is no middleware here."""
+    """Return a dummy name: there is no middleware."""
     return "rmw_tarl_inprocess"
 
 
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
-    """Return nanoseconds; -1 for no timeout."""
+    """Convert a timeout to nanoseconds; None becomes -1."""
     return -1 if timeout_sec is None or timeout_sec < 0 else int(float(timeout_sec) * 1_000_000_000)

@@ -13,7 +13,7 @@ __all__ = ["wait_for_message"]
 def wait_for_message(
     msg_type: Any, node: Any, topic: str, *, qos_profile: Any = 1, time_to_wait: float = -1
 ) -> tuple[bool, Any]:
-    """Wait for the next message on a topic, without an executor; (False, None) when none came in time."""
+    """Wait for the next message on a topic, without an executor; return (False, None) after the timeout."""
     clock, task = node.process.scheduler, current_task()
     until = None if time_to_wait < 0 else clock.time + nanoseconds(time_to_wait)
     subscription = node.create_subscription(msg_type, topic, lambda _: None, qos_profile)

@@ -1,4 +1,4 @@
-"""What executors can run besides topics, services and timers: guard conditions, and letters for actions."""
+"""Entities besides topics, services and timers: guard conditions, and mailboxes for actions."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class GuardCondition:
-    """Has its callback run by the executor after `trigger`, however often it was triggered."""
+    """Makes the executor run its callback once after any number of `trigger` calls."""
 
     def __init__(self, node: Node, callback: Callable[[], Any] | None, group: Any) -> None:
         self.node = node
@@ -20,12 +20,12 @@ class GuardCondition:
         self._triggered = False
 
     def trigger(self) -> None:
-        """Ask for the callback."""
+        """Request the callback."""
         self._triggered = True
         self.node.notify()
 
     def is_ready(self) -> bool:
-        """Tell whether it was triggered since the callback last ran."""
+        """Return whether it was triggered since the last run of the callback."""
         return self._triggered
 
     def run(self) -> Any:
@@ -39,7 +39,7 @@ class GuardCondition:
 
 
 class Mailbox:
-    """Jobs that others ask of a node; its executor does them one by one, in the order in which they came."""
+    """A queue of jobs for a node; its executor runs them one by one, first in, first out."""
 
     def __init__(self, node: Node, group: Any) -> None:
         self.node = node
@@ -47,19 +47,19 @@ class Mailbox:
         self._jobs: deque[tuple[Callable[..., Any], tuple[Any, ...]]] = deque()
 
     def post(self, job: Callable[..., Any], *args: Any) -> None:
-        """Ask for a job."""
+        """Queue a job."""
         self._jobs.append((job, args))
         self.node.notify()
 
     def is_ready(self) -> bool:
-        """Tell whether a job waits."""
+        """Return whether a job is queued."""
         return bool(self._jobs)
 
     def run(self) -> Any:
-        """Do the oldest job."""
+        """Run the oldest job."""
         job, args = self._jobs.popleft()
         return job(*args)
 
     def destroy(self) -> None:
-        """Forget all jobs."""
+        """Discard all jobs."""
         self._jobs.clear()

@@ -85,7 +85,7 @@ from pytest_tarl.ros.rospy.topics import (
 
 
 def get_master() -> Any:
-    """Return who knows nodes, topics and parameters; it answers with (code, status, value)."""
+    """Return a proxy of the master, which answers with (code, status, value)."""
     from pytest_tarl.ros.tools.rosgraph import MasterProxy
 
     return MasterProxy()
@@ -95,7 +95,7 @@ __version__ = "1.16.0"
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("rospy", name)
 
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 
 class ROSException(Exception):  # noqa: N818 (these names are rospy's)
-    """Base of what rospy raises."""
+    """Base of rospy's exceptions."""
 
 
 class ROSSerializationException(ROSException):
-    """A message cannot be sent."""
+    """A message cannot be serialised."""
 
 
 class ROSInternalException(Exception):  # noqa: N818
-    """Base of what rospy raises about itself."""
+    """Base of rospy's internal errors."""
 
 
 class ROSInitException(ROSException):
-    """Something was used before `init_node`."""
+    """A function was called before `init_node`."""
 
 
 class TransportException(ROSInternalException):
@@ -24,7 +24,7 @@ class TransportException(ROSInternalException):
 
 
 class TransportTerminated(TransportException):
-    """A connection went away."""
+    """A connection was closed."""
 
 
 class TransportInitError(TransportException):
@@ -34,11 +34,11 @@ class TransportInitError(TransportException):
 class ROSInterruptException(ROSException, KeyboardInterrupt):
     """A blocking call was interrupted by the node's shutdown."""
 
-    tarl_shutdown = True  # the ordinary end of a node, nothing to report
+    tarl_shutdown = True  # the normal end of a node, not reported
 
 
 class ROSTimeMovedBackwardsException(ROSInterruptException):
-    """The clock jumped back; it never does here."""
+    """The clock jumped back; never raised here."""
 
     def __init__(self, time: float = 0.0) -> None:
         super().__init__("ROS time moved backwards")

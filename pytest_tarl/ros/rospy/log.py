@@ -1,4 +1,4 @@
-"""rospy's logging: through Python's `logging`, logger `rosout`, so that pytest captures it."""
+"""rospy's logging by Python's logger `rosout`, so that pytest captures it."""
 
 # ruff: noqa: ARG001 (signatures are rospy's)
 
@@ -17,20 +17,20 @@ Log = Callable[..., None]
 
 
 class LogMemory:
-    """What `_once` and `_throttle` remember of a process, by place of the call."""
+    """State of the `_once` and `_throttle` functions in a process, by call site."""
 
     def __init__(self, process: Process) -> None:
         self._clock = process.scheduler
         self._seen: dict[Any, int] = {}
 
     def first(self, key: Any) -> bool:
-        """Tell whether this is the first time."""
+        """Return whether this is the first call from this site."""
         new = key not in self._seen
         self._seen[key] = self._clock.time
         return new
 
     def due(self, key: Any, period: float) -> bool:
-        """Tell whether `period` seconds have gone by since this last was due."""
+        """Return whether `period` seconds have passed since the call was last due."""
         last = self._seen.get(key)
         if last is not None and self._clock.time - last < nanoseconds(period):
             return False

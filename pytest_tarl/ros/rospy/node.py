@@ -1,4 +1,4 @@
-"""The node of a process: its name, its life, its end."""
+"""The node of a process: name, initialisation, shutdown."""
 
 # ruff: noqa: ARG001 (signatures are rospy's)
 
@@ -18,7 +18,7 @@ ShutdownHook = Callable[[], Any]
 
 
 class RospyNode:
-    """What rospy keeps in the interpreter of one process."""
+    """rospy's global state in one process."""
 
     def __init__(self, process: Process) -> None:
         self.process = process
@@ -36,7 +36,7 @@ class RospyNode:
         return names.resolve(name, self.name, self.remappings)
 
     def initialise(self, name: str, *, anonymous: bool) -> None:
-        """Take the name, then the private parameters from test and command line."""
+        """Set the name, then the private parameters from the test and the command line."""
         name = self.command_line.name or name
         if anonymous and self.command_line.name is None:
             name = f"{name}_{len(self.process.ros.processes)}_{self.process.scheduler.time // 1_000_000}"
@@ -55,7 +55,7 @@ class RospyNode:
             raise ROSInitException("time is not initialized. Have you called init_node()?")
 
     def run_hooks(self) -> None:
-        """Call the shutdown hooks, in a task of this process; one that fails does not keep the next from running."""
+        """Call the shutdown hooks in a task of this process; all run even if one fails."""
         if self.in_hooks:
             return
         self.in_hooks = True
@@ -80,7 +80,7 @@ class RospyNode:
 
 
 def this_node(api: str) -> RospyNode:
-    """Return the node whose program is running."""
+    """Return the node of the running program."""
     return current_process(f"rospy.{api}").part(RospyNode)
 
 
@@ -111,12 +111,12 @@ def init_node(
 
 
 def is_shutdown() -> bool:
-    """Tell whether the node is being shut down."""
+    """Return whether the node is being shut down."""
     return current_process("rospy.is_shutdown").ending
 
 
 def signal_shutdown(reason: str) -> None:
-    """Begin the node's shutdown: hooks now, then every wait of the node is interrupted."""
+    """Shut the node down: call hooks now, then interrupt every wait of the node."""
     process = current_process("rospy.signal_shutdown")
     if not process.ending:
         process.part(RospyNode)
@@ -124,14 +124,14 @@ def signal_shutdown(reason: str) -> None:
 
 
 def on_shutdown(h: ShutdownHook) -> None:
-    """Register a function to be called when the node shuts down."""
+    """Register a function to be called at shutdown."""
     if not callable(h):
         raise TypeError(f"shutdown hook [{h}] must be a function or callable object: {type(h)}")
     this_node("on_shutdown").hooks.append(h)
 
 
 def spin() -> None:
-    """Wait until the node is shut down; callbacks run meanwhile."""
+    """Wait until the node is shut down; callbacks run in the meantime."""
     node = this_node("spin")
     if not node.initialised:
         raise ROSInitException("client code must call rospy.init_node() first")
@@ -156,7 +156,7 @@ def get_namespace() -> str:
 
 
 def resolve_name(name: str, caller_id: str | None = None) -> str:
-    """Resolve a name as the node would."""
+    """Resolve a name in the node's namespace."""
     node = this_node("resolve_name")
     return names.resolve(name, caller_id or node.name, node.remappings)
 
@@ -165,16 +165,16 @@ remap_name = resolve_name
 
 
 def myargv(argv: Sequence[str] | None = None) -> list[str]:
-    """Return the command line without what ROS takes from it."""
+    """Return the command line without ROS arguments."""
     process = current_process("rospy.myargv")
     return [argument for argument in (process.argv if argv is None else argv) if ":=" not in argument]
 
 
 def get_node_uri() -> str:
-    """Return an address; there is no network behind it."""
+    """Return a dummy address: there is no network."""
     return "http://localhost:0/"
 
 
 def get_ros_root(required: bool = False, env: Any = None) -> str | None:
-    """Return nothing: no ROS installation is involved."""
+    """Return None: no ROS installation is used."""
     return None

@@ -1,4 +1,4 @@
-"""`numpy_msg(Type)`: messages of the type arrive with numpy arrays for their arrays of numbers."""
+"""`numpy_msg(Type)`: received messages hold numpy arrays in place of tuples of numbers."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ def set_param(param_name: str, param_value: Any) -> None:
 
 
 def has_param(param_name: str) -> bool:
-    """Tell whether a parameter is set."""
+    """Return whether a parameter is set."""
     node, server = _server("has_param")
     return server.get(node.resolve(param_name), _NOTHING) is not _NOTHING
 
@@ -62,5 +62,5 @@ def search_param(param_name: str) -> str | None:
 
 
 def get_param_names() -> list[str]:
-    """List all parameters."""
+    """Return the names of all parameters."""
     return _server("get_param_names")[1].names()

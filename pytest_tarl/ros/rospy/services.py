@@ -1,4 +1,4 @@
-"""rospy's services: a call is handled in a task of the serving node while the caller waits."""
+"""rospy's services: a task of the serving node handles a call while the caller waits."""
 
 # ruff: noqa: ARG002 (signatures are rospy's)
 
@@ -24,12 +24,12 @@ from pytest_tarl.ros.scheduler import current_task
 from pytest_tarl.ros.services import Answer, adapted
 
 _LOGGER = logging.getLogger("rosout")
-_POLL = 0.3  # seconds between two looks of `wait_for_service`
+_POLL = 0.3  # s, polling period of `wait_for_service`
 _NO_RESPONSE = "service cannot process request: service handler returned None"
 
 
 class Refusal:
-    """Stands for the response of a handler that failed."""
+    """Takes the place of a response if the handler failed."""
 
     def __init__(self, reason: str) -> None:
         self.reason = reason
@@ -69,11 +69,11 @@ class Service:
             self.process.scheduler.wait()
 
     def handle(self, request: Any, answer: Answer) -> None:
-        """Handle a request in a task of this node; `answer` gets the response, None where the handler gave none."""
+        """Handle a request in a task of this node; `answer` gets the response, or None if the handler returned none."""
         self.process.scheduler.spawn(self.process, self._serve, request, answer)
 
     def _serve(self, request: Any, answer: Answer) -> None:
-        """Handle a request; as in rospy, an exception of the handler is the caller's failure, not the node's end."""
+        """Handle a request; as in rospy, an exception of the handler fails the call but does not end the node."""
         try:
             response = self._as_response(self.handler(request))
             response = None if response is None else snapshot(response)
@@ -140,12 +140,12 @@ class ServiceProxy:
     def _response(self, answered: Any) -> Any:
         if answered is None or isinstance(answered, Refusal):
             reason = _NO_RESPONSE if answered is None else answered.reason
-            said = reason.encode()  # rospy shows the bytes that came over the network
+            said = reason.encode()  # rospy shows the received bytes
             raise ServiceException(f"service [{self.resolved_name}] responded with an error: {said!r}")
         return adapted(answered, self.response_class)
 
     def wait_for_service(self, timeout: float | None = None) -> None:
-        """Wait until the service is there. Raises ROSException after `timeout` seconds."""
+        """Wait until the service is available. Raises ROSException after `timeout` seconds."""
         wait_for_service(self.resolved_name, timeout)
 
     def close(self) -> None:
@@ -153,13 +153,13 @@ class ServiceProxy:
 
 
 def wait_for_service(service: str, timeout: Any = None) -> None:
-    """Wait until a service is there. Raises ROSException after `timeout` seconds."""
+    """Wait until a service is available. Raises ROSException after `timeout` seconds."""
     node = this_node("wait_for_service")
     name = node.resolve(service)
     seconds = getattr(timeout, "to_sec", lambda: timeout)()
     if seconds == 0.0:
         raise ValueError("timeout must be non-zero")
-    polls = None if timeout is None else max(ceil(seconds / _POLL), 0)  # rospy looks at the time only then
+    polls = None if timeout is None else max(ceil(seconds / _POLL), 0)  # rospy checks the time once per poll
     until = None if polls is None else node.process.scheduler.time + polls * nanoseconds(_POLL)
     directory = node.process.ros.services
     if directory.wait(current_task(), name, until, lambda: not node.process.ending):

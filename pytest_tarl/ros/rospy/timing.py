@@ -1,4 +1,4 @@
-"""rospy's time: instants, durations, rates, sleeping, timers, all on the virtual clock."""
+"""rospy's instants, durations, rates, sleep and timers, all on the virtual clock."""
 
 # ruff: noqa: ARG002 (signatures are rospy's)
 
@@ -34,24 +34,24 @@ class Time(times.Time):
 
     @staticmethod
     def now() -> Time:
-        """Return the present instant."""
+        """Return the current time."""
         return get_rostime()
 
     @classmethod
     def from_seconds(cls, float_secs: float) -> Time:
-        """Make an instant from float seconds."""
+        """Create an instant from float seconds."""
         return cls(float(float_secs))
 
 
 def get_rostime() -> Time:
-    """Return the present instant. Raises ROSInitException before init_node."""
+    """Return the current time. Raises ROSInitException before init_node."""
     node = this_node("get_rostime")
     node.require()
     return Time(*divmod(node.process.scheduler.time, NANOSECONDS))
 
 
 def get_time() -> float:
-    """Return the present instant in float seconds."""
+    """Return the current time in float seconds."""
     node = this_node("get_time")
     node.require()
     return seconds(node.process.scheduler.time)
@@ -70,7 +70,7 @@ def _sleep_until(node: RospyNode, until: int) -> None:
     if process.ending:
         process.refuse_to_wait()
     if process.ending and node.in_hooks:
-        return  # time stands still by then
+        return  # virtual time no longer moves then
     if until >= process.scheduler.time and not process.ending:
         process.scheduler.wait(until)
     if process.ending:
@@ -90,20 +90,20 @@ class Rate:
 
     @property
     def sleep_dur(self) -> Duration:
-        """Length of a cycle."""
+        """The length of a cycle."""
         return Duration(0, self._period)
 
     @property
     def last_time(self) -> Time:
-        """When the present cycle began."""
+        """The beginning of the current cycle."""
         return Time(0, self._last)
 
     def remaining(self) -> Duration:
-        """Return what is left of the present cycle."""
+        """Return the rest of the current cycle."""
         return Duration(0, self._period - (self._clock.time - self._last))
 
     def sleep(self) -> None:
-        """Wait for the end of the present cycle; cycles that took too long are made up for, up to two."""
+        """Wait for the end of the current cycle; catch up on late cycles, at most two."""
         began = self._clock.time
         until = self._last + self._period
         if until > began:
@@ -118,7 +118,7 @@ class Rate:
 
 @dataclass
 class TimerEvent:
-    """What a timer's callback is told; times are rospy.Time, `last_duration` float seconds."""
+    """The argument of a timer's callback; times are rospy.Time, `last_duration` is in float seconds."""
 
     last_expected: Time | None
     last_real: Time | None
@@ -155,11 +155,11 @@ class Timer:
         self._node.process.scheduler.wake(self._task)
 
     def is_alive(self) -> bool:
-        """Tell whether the timer is still running."""
+        """Return whether the timer is still running."""
         return not self._task.done and not self._stopped
 
     def join(self, timeout: float | None = None) -> None:
-        """Wait for the timer's end, as for a thread."""
+        """Wait until the timer has ended, as for a thread."""
         clock = self._node.process.scheduler
         until = None if timeout is None else clock.time + to_nanoseconds(timeout)
         while self.is_alive() and not self._node.process.ending and (until is None or clock.time < until):
@@ -176,7 +176,7 @@ class Timer:
         duration: float | None = None
         while not (self._stopped or process.ending):
             if due > clock.time and clock.wait(due):
-                continue  # woken early: shut down
+                continue  # woken early by a shutdown
             began = clock.time
             now_expected, now_real = Time(0, due), Time(0, began)
             self._callback(TimerEvent(expected, real, now_expected, now_real, duration))
@@ -189,5 +189,5 @@ class Timer:
 
 
 def wallclock() -> float:
-    """Return the present instant in float seconds; there is one clock here."""
+    """Return the current virtual time in float seconds: there is no other clock."""
     return get_time()

@@ -20,7 +20,7 @@ Callback = tuple[Callable[..., Any], Any]
 
 
 class AnyMsg:
-    """Subscribe with this class to get whatever is published, as messages of their own class."""
+    """A type for subscriptions to topics of any type; messages arrive in their own class."""
 
     _type = "*"
     _md5sum = "*"
@@ -28,7 +28,7 @@ class AnyMsg:
 
 
 class Inbox:
-    """All subscriptions of one process to one topic: messages are handled one after the other, as by one thread."""
+    """All subscriptions of one process to one topic; handles one message at a time, as rospy's thread does."""
 
     def __init__(self, process: Process, message_type: type | None) -> None:
         self.process = process
@@ -39,7 +39,7 @@ class Inbox:
         self._busy = False
 
     def deliver(self, message: Any) -> None:
-        """Run the callbacks, or queue the message while they still work on an earlier one."""
+        """Run the callbacks, or queue the message if they are still handling an earlier one."""
         if self.process.ending:
             return
         if not self._busy:
@@ -76,7 +76,7 @@ class Inboxes:
     def open(
         self, topic: str, message_type: type | None, callback: Callback | None, capacity: int | None
     ) -> Inbox:
-        """Add a callback to the inbox of a topic, connecting it at first use."""
+        """Add a callback to the inbox of a topic; connect the inbox at first use."""
         inbox = self._by_topic.get(topic)
         new = inbox is None
         if inbox is None:
@@ -90,7 +90,7 @@ class Inboxes:
 
 
 class Topic:
-    """What publishers and subscribers have in common."""
+    """Common base of publishers and subscribers."""
 
     def __init__(self, name: str, data_class: Any, api: str) -> None:
         if not name or not isinstance(name, str):
@@ -106,11 +106,11 @@ class Topic:
 
     @property
     def closed(self) -> bool:
-        """Tell whether it was unregistered or its node is gone."""
+        """Return whether it was unregistered or its node has ended."""
         return self._closed or (self._process.ending and not self._node.in_hooks)
 
     def get_num_connections(self) -> int:
-        """Return how many are connected. The simulated world counts as one: it hears and feeds every topic."""
+        """Return the number of connections. The simulated world counts as one, on every topic."""
         return 1 + len(self._peers())
 
     def _peers(self) -> list[Any]:
@@ -146,7 +146,7 @@ class Publisher(Topic):
         self._process.bus.advertise(self, self._place)
 
     def publish(self, *args: Any, **kwds: Any) -> None:
-        """Publish a message, or one made from its fields by position or by keyword."""
+        """Publish a message, or create one from fields given by position or keyword."""
         if self._closed:
             raise ROSException("publish() to an unregistered() handle")
         if not self._node.initialised:
@@ -162,7 +162,7 @@ class Publisher(Topic):
             raise ROSSerializationException(f"{error} (publishing {self.type} on {self.name})") from error
 
     def peers_changed(self, subscription: Any, *, joined: bool) -> None:
-        """Tell the listener who came and who went, while its node waits."""
+        """Notify the subscribe listener of new and lost peers, while its node waits."""
         listener = self._listener
         if listener is None or self.closed:
             return
@@ -185,7 +185,7 @@ class Publisher(Topic):
             self._place.kept.pop(self, None)
 
     def _make(self, args: tuple[Any, ...], kwds: dict[str, Any]) -> Any:
-        """Make the message; an argument that is a message itself has to fit the first field."""
+        """Create the message from the arguments; a single message argument must fit the first field."""
         if args and kwds:
             raise TypeError("publish() can be called with arguments or keywords, but not both.")
         if len(args) == 1 and is_message(args[0]):
@@ -199,7 +199,7 @@ class Publisher(Topic):
 
 
 class Subscriber(Topic):
-    """Has `callback(message)`, or `callback(message, callback_args)`, called for every message on a topic."""
+    """Calls `callback(message)` or `callback(message, callback_args)` for every message on a topic."""
 
     def __init__(
         self,
@@ -228,7 +228,7 @@ class Subscriber(Topic):
 
 
 class SubscribeListener:
-    """Base class for those who want to know about nodes that subscribe; the simulated world is not announced."""
+    """Base class for listeners to subscriptions by nodes; the simulated world is not announced."""
 
     def peer_subscribe(self, topic_name: str, topic_publish: Any, peer_publish: Any) -> None:
         """Do nothing by default."""
@@ -263,7 +263,7 @@ def wait_for_message(topic: str, topic_type: Any, timeout: float | None = None) 
 
 
 def get_published_topics(namespace: str = "/") -> list[list[str]]:
-    """List topics that nodes publish on, with their types."""
+    """Return the topics that nodes publish on, with their types."""
     bus = this_node("get_published_topics").process.bus
     return [[place.name, place.publications[0].type] for place in bus.topics() if place.publications
             and place.name.startswith(namespace)]  # fmt: skip

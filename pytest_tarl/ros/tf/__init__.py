@@ -37,7 +37,7 @@ Parts = tuple[float, ...]
 
 
 class TransformerROS:
-    """Answers questions about frames in tuples: (x, y, z) and (x, y, z, w)."""
+    """Looks up transforms and returns tuples: (x, y, z) and (x, y, z, w)."""
 
     def __init__(self, interpolate: bool = True, cache_time: Any = None) -> None:  # noqa: ARG002
         self._buffer = Buffer(cache_time)
@@ -45,13 +45,13 @@ class TransformerROS:
     def lookupTransform(
         self, target_frame: str, source_frame: str, time: Any
     ) -> tuple[list[float], list[float]]:
-        """Return translation and rotation of one frame in another."""
+        """Return translation and rotation of the source frame in the target frame."""
         found = self._buffer.lookup_transform(clean(target_frame), clean(source_frame), time).transform
         move, turn = found.translation, found.rotation
         return [move.x, move.y, move.z], [turn.x, turn.y, turn.z, turn.w]
 
     def canTransform(self, target_frame: str, source_frame: str, time: Any) -> bool:
-        """Tell whether a look-up would succeed."""
+        """Return whether a look-up would succeed."""
         return bool(self._buffer.can_transform(clean(target_frame), clean(source_frame), time))
 
     def waitForTransform(
@@ -62,7 +62,7 @@ class TransformerROS:
         timeout: Any,
         polling_sleep_duration: Any = None,  # noqa: ARG002
     ) -> None:
-        """Wait until a look-up would succeed. Raises tf.Exception when the time is over."""
+        """Wait until a look-up would succeed. Raises tf.Exception after the timeout."""
         found, reason = self._buffer.can_transform(
             clean(target_frame), clean(source_frame), time, timeout, True
         )
@@ -74,7 +74,7 @@ class TransformerROS:
         return self._buffer.get_latest_common_time(clean(source_frame), clean(dest_frame))
 
     def frameExists(self, frame_id: str) -> bool:
-        """Tell whether a frame was heard of."""
+        """Return whether a frame is known."""
         return self._buffer.frame_exists(frame_id)
 
     def getFrameStrings(self) -> list[str]:
@@ -125,7 +125,7 @@ class TransformerROS:
 
 
 class TransformListener(TransformerROS):
-    """Hears /tf and /tf_static."""
+    """Subscribes to /tf and /tf_static."""
 
     def __init__(self, interpolate: bool = True, cache_time: Any = None) -> None:
         super().__init__(interpolate, cache_time)
@@ -133,13 +133,13 @@ class TransformListener(TransformerROS):
 
 
 class TransformBroadcaster:
-    """Tells where frames are."""
+    """Publishes transforms."""
 
     def __init__(self, queue_size: int = 100) -> None:  # noqa: ARG002
         self._broadcaster = Tf2Broadcaster()
 
     def sendTransform(self, translation: Parts, rotation: Parts, time: Any, child: str, parent: str) -> None:
-        """Send one transform."""
+        """Publish one transform."""
         message: Any = message_type("geometry_msgs/TransformStamped")()
         message.header.frame_id, message.header.stamp, message.child_frame_id = parent, time, child
         move, turn = message.transform.translation, message.transform.rotation
@@ -148,10 +148,10 @@ class TransformBroadcaster:
         self.sendTransformMessage(message)
 
     def sendTransformMessage(self, transform: Any) -> None:
-        """Send geometry_msgs/TransformStamped."""
+        """Publish geometry_msgs/TransformStamped."""
         self._broadcaster.sendTransform(transform)
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("tf", name)

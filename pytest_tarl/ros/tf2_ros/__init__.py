@@ -29,7 +29,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Return a message class that tf2_ros's own modules import; name what is missing."""
+    """Return a message class that tf2_ros exposes; raise for a name that the stand-in lacks."""
     package = {"TransformStamped": "geometry_msgs", "TFMessage": "tf2_msgs"}.get(name)
     if package is not None:
         from pytest_tarl.ros.install import kind_of_caller

@@ -24,20 +24,20 @@ def _publisher(node: Any, topic: str, *, static: bool) -> Any:
 
 
 class TransformBroadcaster:
-    """Tells where frames are: `TransformBroadcaster()` in ROS 1, `TransformBroadcaster(node)` in ROS 2."""
+    """Publishes transforms: `TransformBroadcaster()` in ROS 1, `TransformBroadcaster(node)` in ROS 2."""
 
     def __init__(self, node: Any = None, qos: Any = None) -> None:
         self._publisher = _publisher(node, "/tf", static=False)
         self._message = message_type("tf2_msgs/TFMessage" if node is None else "tf2_msgs/msg/TFMessage")
 
     def sendTransform(self, transform: Any) -> None:  # noqa: N802 (tf2_ros's name)
-        """Send one transform or a list of them."""
+        """Publish one transform or a list of them."""
         several = list(transform) if isinstance(transform, list | tuple) else [transform]
         self._publisher.publish(self._message(transforms=several))
 
 
 class StaticTransformBroadcaster:
-    """Tells where frames are that never move; those who come later hear it too."""
+    """Publishes constant transforms, also to later subscribers."""
 
     def __init__(self, node: Any = None, qos: Any = None) -> None:
         self._publisher = _publisher(node, "/tf_static", static=True)
@@ -45,7 +45,7 @@ class StaticTransformBroadcaster:
         self._sent: dict[str, Any] = {}
 
     def sendTransform(self, transform: Any) -> None:  # noqa: N802 (tf2_ros's name)
-        """Send one transform or a list of them, and again all that were sent before."""
+        """Publish one transform or a list of them, together with all earlier ones."""
         for one in list(transform) if isinstance(transform, list | tuple) else [transform]:
             self._sent[one.child_frame_id] = one
         self._publisher.publish(self._message(transforms=list(self._sent.values())))
@@ -60,7 +60,7 @@ class TransformListener:
         self._subscriptions = [self._listen("/tf", self._take), self._listen("/tf_static", self._take_static)]
 
     def unregister(self) -> None:
-        """Stop listening."""
+        """Unsubscribe."""
         for subscription in self._subscriptions:
             if self.node is None:
                 subscription.unregister()

@@ -1,4 +1,4 @@
-"""tf2_ros's Buffer: look-ups with waiting, and transforming of stamped messages."""
+"""tf2_ros's Buffer: look-ups with a timeout, and transformation of stamped messages."""
 
 # ruff: noqa: ARG002 (signatures are tf2_ros's)
 
@@ -11,25 +11,25 @@ from typing import Any
 from pytest_tarl.ros.process import current_process
 from pytest_tarl.ros.transforms import DEFAULT_CACHE, TransformException, TransformTree, clean
 
-_LOOK = 10_000_000  # nanoseconds between two looks of a waiting look-up
+_LOOK = 10_000_000  # ns, polling period of a waiting look-up
 
 
 class TypeException(Exception):  # noqa: N818 (tf2_ros's name)
-    """Nobody knows how to transform a type."""
+    """No transformation is registered for a type."""
 
 
 class TransformRegistration:
-    """Who transforms which message class; importing tf2_geometry_msgs adds the geometry ones."""
+    """Transformations by message class; importing tf2_geometry_msgs adds those for geometry."""
 
     def __init__(self) -> None:
         self._converters: dict[Any, Callable[[Any, Any], Any]] = {}
 
     def add(self, key: Any, callback: Callable[[Any, Any], Any]) -> None:
-        """Add a type."""
+        """Register a type."""
         self._converters[key] = callback
 
     def get(self, key: Any) -> Callable[[Any, Any], Any]:
-        """Return who transforms a type. Raises TypeException."""
+        """Return the transformation of a type. Raises TypeException if there is none."""
         if key in self._converters:
             return self._converters[key]
         geometry = import_module("pytest_tarl.ros.tf2_geometry_msgs")
@@ -40,26 +40,26 @@ class TransformRegistration:
 
 
 class BufferInterface:
-    """What both kinds of buffers offer on top of look-ups."""
+    """Methods of both kinds of buffers that use look-ups."""
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = None) -> Any:
-        """Return how one frame lies in another."""
+        """Return the transform from the source frame to the target frame."""
         raise NotImplementedError
 
     def transform(
         self, object_stamped: Any, target_frame: str, timeout: Any = None, new_type: Any = None
     ) -> Any:
-        """Return a stamped message in another frame."""
+        """Transform a stamped message into another frame."""
         header = object_stamped.header
         found = self.lookup_transform(target_frame, header.frame_id, header.stamp, timeout)
         return self.registration.get(type(object_stamped))(object_stamped, found)
 
 
 class Buffer(BufferInterface):
-    """Keeps what was heard of frames and answers questions about them."""
+    """Stores received transforms and answers look-ups."""
 
     def __init__(self, cache_time: Any = None, debug: Any = True, node: Any = None) -> None:
         super().__init__()
@@ -73,12 +73,15 @@ class Buffer(BufferInterface):
         self._answer()
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Add one that holds for ever."""
+        """Add a constant transform."""
         self._tree.add(transform, nanoseconds_of(transform.header.stamp), static=True, authority=authority)
         self._answer()
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = None) -> Any:
-        """Return how `source_frame` lies in `target_frame`, waiting up to `timeout`. Raises TransformException."""
+        """Return the transform from `source_frame` to `target_frame`; wait up to `timeout`.
+
+        Raises TransformException if there is none.
+        """
         self.can_transform(target_frame, source_frame, time, timeout)
         return self._message(target_frame, source_frame, nanoseconds_of(time))
 
@@ -91,7 +94,7 @@ class Buffer(BufferInterface):
         fixed_frame: str,
         timeout: Any = None,
     ) -> Any:
-        """Return how `source_frame` lay at one time in `target_frame` at another, by way of a frame at rest."""
+        """Return the transform from `source_frame` at one time to `target_frame` at another, via a fixed frame."""
         self.can_transform(fixed_frame, source_frame, source_time, timeout)
         inner, _ = self._tree.look_up(fixed_frame, source_frame, nanoseconds_of(source_time))
         outer, when = self._tree.look_up(target_frame, fixed_frame, nanoseconds_of(target_time))
@@ -105,7 +108,7 @@ class Buffer(BufferInterface):
         timeout: Any = None,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Tell whether a look-up would succeed, waiting up to `timeout` for it."""
+        """Return whether a look-up would succeed; wait up to `timeout`."""
         clock = self.process.scheduler
         span = nanoseconds_of(timeout) if timeout is not None else 0
         until = clock.time + span
@@ -116,7 +119,7 @@ class Buffer(BufferInterface):
         return (not reason, reason) if return_debug_tuple else not reason
 
     async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """Return how one frame lies in another, as soon as it is known (ROS 2)."""
+        """Return the transform between two frames as soon as it is known (ROS 2)."""
         await self.wait_for_transform_async(target_frame, source_frame, time)
         return self.lookup_transform(target_frame, source_frame, time)
 
@@ -140,7 +143,7 @@ class Buffer(BufferInterface):
         return "\n".join(f"{c}:\n  parent: '{e.parent}'" for c, e in sorted(self._tree.edges.items()))
 
     def clear(self) -> None:
-        """Forget everything that moves."""
+        """Discard all transforms that are not static."""
         for child in [child for child, edge in self._tree.edges.items() if not edge.static]:
             del self._tree.edges[child]
 
@@ -150,7 +153,7 @@ class Buffer(BufferInterface):
         return _stamp(when)
 
     def frame_exists(self, frame: str) -> bool:
-        """Tell whether a frame was heard of."""
+        """Return whether a frame was heard of."""
         return clean(frame) in self._tree.edges or any(
             e.parent == clean(frame) for e in self._tree.edges.values()
         )

@@ -1,4 +1,4 @@
-"""tf2_ros's buffer in another node: a server that answers look-ups, and clients that ask it."""
+"""tf2_ros's buffer server, which answers look-ups of other nodes, and its client."""
 
 # ruff: noqa: ARG002 (signatures are tf2_ros's)
 
@@ -12,18 +12,18 @@ from pytest_tarl.ros.process import Network, current_process
 from pytest_tarl.ros.tf2_ros.buffer import Buffer, BufferInterface, nanoseconds_of
 from pytest_tarl.ros.transforms import TimeoutException
 
-_LOOK = nanoseconds(0.01)  # between two looks for the server
+_LOOK = nanoseconds(0.01)  # ns, polling period while waiting for the server
 
 
 class BufferServers:
-    """The buffers of an episode that others may ask, by the name of their server."""
+    """The served buffers of an episode by server name."""
 
     def __init__(self, _ros: Network) -> None:
         self.by_name: dict[str, Buffer] = {}
 
 
 class BufferServer:
-    """Lets clients of other nodes look up in a buffer, under a name."""
+    """Serves a buffer to other nodes under a name."""
 
     def __init__(self, buffer: Any, ns: str, auto_start: bool = True) -> None:
         self.buffer, self.ns = buffer, ns
@@ -31,13 +31,13 @@ class BufferServer:
             self.start()
 
     def start(self) -> None:
-        """Begin to answer."""
+        """Start answering."""
         process = current_process("tf2_ros.BufferServer")
         process.ros.part(BufferServers).by_name[absolute(self.ns)] = self.buffer
 
 
 class BufferClient(BufferInterface):
-    """Looks up in the buffer of a server, waiting up to the timeout of a look-up and `timeout_padding` for it."""
+    """Looks up transforms in a server's buffer; waits up to the look-up's timeout plus `timeout_padding`."""
 
     def __init__(
         self, ns: str, check_frequency: float | None = None, timeout_padding: Any = 2.0, **_: Any
@@ -48,12 +48,12 @@ class BufferClient(BufferInterface):
         self._padding = nanoseconds_of(timeout_padding)
 
     def wait_for_server(self, timeout: Any = None) -> bool:
-        """Wait until there is a server; tell whether that was within the timeout (none or zero: for ever)."""
+        """Wait until there is a server; return whether that happened in time. No timeout if None or zero."""
         span = 0 if timeout is None else nanoseconds_of(timeout)
         return self._server(None if not span else self.process.scheduler.time + span) is not None
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = None) -> Any:
-        """Return how `source_frame` lies in `target_frame`. Raises TransformException."""
+        """Return the transform from `source_frame` to `target_frame`. Raises TransformException."""
         return self._buffer(timeout).lookup_transform(target_frame, source_frame, time, self._left(timeout))
 
     def lookup_transform_full(
@@ -65,13 +65,13 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Any = None,
     ) -> Any:
-        """Return how `source_frame` lay at one time in `target_frame` at another, by way of a frame at rest."""
+        """Return the transform from `source_frame` at one time to `target_frame` at another, via a fixed frame."""
         return self._buffer(timeout).lookup_transform_full(
             target_frame, target_time, source_frame, source_time, fixed_frame, self._left(timeout)
         )
 
     def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = None) -> bool:
-        """Tell whether a look-up would succeed, waiting up to `timeout` for it."""
+        """Return whether a look-up would succeed; wait up to `timeout`."""
         buffer = self._buffer(timeout)
         return bool(buffer.can_transform(target_frame, source_frame, time, self._left(timeout)))
 

@@ -1,1 +1,1 @@
-"""What ROS 1 nodes ask of the command line tools' libraries: rosgraph, rosnode, rostopic, rosservice, rosparam."""
+"""Libraries of the ROS 1 command line tools, as nodes use them: rosgraph, rosnode, rostopic, and more."""

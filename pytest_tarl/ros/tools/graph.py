@@ -1,4 +1,4 @@
-"""Who is there and does what, as a ROS master would know it. The simulated world is no node of it."""
+"""The ROS graph as a master sees it. The simulated world does not appear as a node."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from pytest_tarl.ros.process import Process, current_process
 from pytest_tarl.ros.rospy.node import RospyNode, this_node
 from pytest_tarl.ros.services import ServiceDirectory
 
-Entry = tuple[str, list[str]]  # a topic or service and its nodes
+Entry = tuple[str, list[str]]  # (topic or service, its nodes)
 
 
 def resolved(name: str) -> str:
-    """Return a name as the node that runs would resolve it."""
+    """Resolve a name in the namespace of the running node."""
     return this_node("resolve_name").resolve(name)
 
 
 def nodes() -> dict[str, Process]:
-    """Return the rospy nodes that run, by name."""
+    """Return the running rospy nodes by name."""
     processes = [one for one in current_process("rosgraph").ros.processes if not one.ended]
     found = [(one.part(RospyNode), one) for one in processes]
     return {node.name: process for node, process in found if node.initialised}
 
 
 def ends() -> tuple[list[Entry], list[Entry], list[Entry]]:
-    """Return publishers, subscribers and services with the names of their nodes."""
+    """Return the publishers, subscribers and services, each with the names of its nodes."""
     process = current_process("rosgraph")
     publishers: list[Entry] = []
     subscribers: list[Entry] = []
@@ -55,7 +55,7 @@ def services() -> dict[str, Any]:
 
 
 def directory() -> ServiceDirectory:
-    """Return who serves what."""
+    """Return the service directory."""
     return current_process("rosservice").ros.services
 
 
@@ -65,7 +65,7 @@ def parameters() -> ParameterServer:
 
 
 def below(name: str, namespace: str | None) -> bool:
-    """Tell whether a name lies in a namespace; every name does in none."""
+    """Return whether a name lies in a namespace; always true for an empty namespace."""
     inside = "/" + (namespace or "").strip("/")
     return inside == "/" or name == inside or name.startswith(inside + "/")
 

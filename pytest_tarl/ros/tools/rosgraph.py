@@ -1,4 +1,4 @@
-"""rosgraph: what a node asks the master."""
+"""rosgraph: queries to the master."""
 
 # ruff: noqa: ARG001, N802 (the signatures are the master's)
 
@@ -19,11 +19,11 @@ _NOTHING = object()
 
 
 class MasterException(Exception):  # noqa: N818 (these names are rosgraph's)
-    """The master could not be asked."""
+    """The master could not be reached."""
 
 
 class MasterError(MasterException):
-    """The master says no."""
+    """The master refused a request."""
 
 
 MasterFailure = MasterError
@@ -31,22 +31,22 @@ Error = MasterError
 
 
 class Master:
-    """Answers for the episode, whoever asks."""
+    """Answers queries about the episode."""
 
     def __init__(self, caller_id: str, master_uri: str | None = None) -> None:
         self.caller_id = caller_id
         self.master_uri = master_uri or URI
 
     def is_online(self) -> bool:
-        """Tell that it is there."""
+        """Return True."""
         return True
 
     def getUri(self) -> str:
-        """Return an address; there is no network behind it."""
+        """Return a dummy address: there is no network."""
         return self.master_uri
 
     def getPid(self) -> int:
-        """Return the number of a process that nobody can find."""
+        """Return a dummy process id."""
         return 1
 
     def getSystemState(self) -> list[list[list[Any]]]:
@@ -54,7 +54,7 @@ class Master:
         return [[[name, labels] for name, labels in entries] for entries in graph.ends()]
 
     def getPublishedTopics(self, subgraph: str = "") -> list[list[str]]:
-        """Return topics that are published, with their types."""
+        """Return published topics with their types."""
         types = graph.topic_types()
         published = [name for name, _ in graph.ends()[0] if graph.below(name, subgraph)]
         return [[name, types[name]] for name in published]
@@ -64,23 +64,23 @@ class Master:
         return [[name, kind] for name, kind in graph.topic_types().items()]
 
     def lookupNode(self, node_name: str) -> str:
-        """Return the address of a node. Raises MasterError for one that is not there."""
+        """Return the address of a node. Raises MasterError for an unknown node."""
         if names.absolute(node_name) not in graph.nodes():
             raise MasterError(f"unknown node [{node_name}]")
         return "http://localhost:0/"
 
     def lookupService(self, service: str) -> str:
-        """Return the address of a service. Raises MasterError for one that nobody serves."""
+        """Return the address of a service. Raises MasterError for a service that no node offers."""
         if self._full(service) not in graph.directory():
             raise MasterError("no provider")
         return "rosrpc://localhost:0"
 
     def hasParam(self, key: str) -> bool:
-        """Tell whether a parameter is set."""
+        """Return whether a parameter is set."""
         return graph.parameters().get(self._full(key), _NOTHING) is not _NOTHING
 
     def getParam(self, key: str) -> Any:
-        """Return a parameter. Raises MasterError for one that is not set."""
+        """Return a parameter. Raises MasterError if it is not set."""
         value = graph.parameters().get(self._full(key), _NOTHING)
         if value is _NOTHING:
             raise MasterError(f"Parameter [{self._full(key)}] is not set")
@@ -91,7 +91,7 @@ class Master:
         graph.parameters().set(self._full(key), value)
 
     def deleteParam(self, key: str) -> None:
-        """Remove a parameter. Raises MasterError for one that is not set."""
+        """Remove a parameter. Raises MasterError if it is not set."""
         if not graph.parameters().delete(self._full(key)):
             raise MasterError(f"parameter [{self._full(key)}] is not set")
 
@@ -113,7 +113,7 @@ class Master:
 
 
 class MasterProxy:
-    """What `rospy.get_master()` returns: the same answers as (code, status, value)."""
+    """The result of `rospy.get_master()`: answers queries with (code, status, value)."""
 
     target = Master("/rospy")
 
@@ -130,20 +130,20 @@ class MasterProxy:
 
 
 def is_master_online(master_uri: str | None = None) -> bool:
-    """Tell that there is a master."""
+    """Return True."""
     return True
 
 
 def get_master_uri() -> str:
-    """Return an address; there is no network behind it."""
+    """Return a dummy address: there is no network."""
     return URI
 
 
 def myargv(argv: Sequence[str] | None = None) -> list[str]:
-    """Return the command line without what ROS takes from it."""
+    """Return the command line without ROS arguments."""
     return node.myargv(argv)
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("rosgraph", name)

@@ -1,4 +1,4 @@
-"""rosnode: which nodes are there."""
+"""rosnode: list, ping and end nodes."""
 
 # ruff: noqa: ARG001 (signatures are rosnode's)
 
@@ -14,27 +14,27 @@ __all__ = ["ROSNodeException", "ROSNodeIOException", "get_node_names", "kill_nod
 
 
 class ROSNodeException(Exception):  # noqa: N818 (these names are rosnode's)
-    """A node could not be asked."""
+    """A node could not be reached."""
 
 
 class ROSNodeIOException(ROSNodeException):
-    """The master could not be asked."""
+    """The master could not be reached."""
 
 
 def get_node_names(namespace: str | None = None) -> list[str]:
-    """List the nodes, of one namespace where that is given."""
+    """Return the names of the nodes, optionally of one namespace."""
     return sorted(name for name in graph.nodes() if graph.below(name, namespace))
 
 
 def rosnode_ping(
     node_name: str, max_count: int | None = None, verbose: bool = False, skip_cache: bool = False
 ) -> bool:
-    """Tell whether a node is there."""
+    """Return whether a node runs."""
     return absolute(node_name) in graph.nodes()
 
 
 def kill_nodes(node_names: list[str]) -> tuple[list[str], list[str]]:
-    """Ask nodes to end; return those that were there and those that were not."""
+    """Ask nodes to end; return the names of those that ran and those that did not."""
     there = graph.nodes()
     killed = [name for name in node_names if absolute(name) in there]
     for name in killed:
@@ -43,5 +43,5 @@ def kill_nodes(node_names: list[str]) -> tuple[list[str], list[str]]:
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("rosnode", name)

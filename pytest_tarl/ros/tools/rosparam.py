@@ -1,4 +1,4 @@
-"""rosparam: parameters in files, and some under other names."""
+"""rosparam: parameter files, and functions to get, set and delete parameters."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class RosParamException(Exception):  # noqa: N818 (these names are rosparam's)
 
 
 class RosParamIOException(RosParamException):
-    """The master could not be asked."""
+    """The master could not be reached."""
 
 
 def load_file(filename: str, default_namespace: str | None = None, verbose: bool = False) -> Loaded:
-    """Read a YAML file of parameters. Raises RosParamException where it cannot be read."""
+    """Read a YAML file of parameters. Raises RosParamException if it cannot be read."""
     path = Path(filename)
     if not path.is_file():
         raise RosParamException(f"file [{filename}] does not exist")
@@ -37,7 +37,7 @@ def load_file(filename: str, default_namespace: str | None = None, verbose: bool
 
 
 def load_str(text: str, filename: str, default_namespace: str | None = None, verbose: bool = False) -> Loaded:
-    """Read parameters as YAML; return them with the namespace that they belong to, document by document."""
+    """Parse parameters from YAML; return (parameters, namespace) for each document."""
     try:
         import yaml
     except ModuleNotFoundError:
@@ -68,7 +68,7 @@ def upload_params(ns: str, values: Any, verbose: bool = False) -> None:
 
 
 def get_param(param_name: str) -> Any:
-    """Return a parameter. Raises RosParamException for one that is not set."""
+    """Return a parameter. Raises RosParamException if it is not set."""
     value = graph.parameters().get(graph.resolved(param_name), _NOTHING)
     if value is _NOTHING:
         raise RosParamException(f"Parameter [{param_name}] is not set")
@@ -76,12 +76,12 @@ def get_param(param_name: str) -> Any:
 
 
 def set_param(param: str, value: str, verbose: bool = False) -> None:
-    """Set a parameter to what a text means as YAML."""
+    """Set a parameter to a value given as YAML text."""
     upload_params(param, parse_value(value), verbose)
 
 
 def delete_param(param: str, verbose: bool = False) -> None:
-    """Remove a parameter. Raises RosParamException for one that is not set."""
+    """Remove a parameter. Raises RosParamException if it is not set."""
     if not graph.parameters().delete(graph.resolved(param)):
         raise RosParamException(f"Parameter [{param}] is not set")
     if verbose:
@@ -94,5 +94,5 @@ def list_params(ns: str) -> list[str]:
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("rosparam", name)

@@ -1,4 +1,4 @@
-"""rosservice: which services are there, and calling them."""
+"""rosservice: list and call services."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ __all__ = [
 
 
 class ROSServiceException(Exception):  # noqa: N818 (these names are rosservice's)
-    """A service could not be asked about."""
+    """A query about a service failed."""
 
 
 class ROSServiceIOException(ROSServiceException):
-    """The master could not be asked."""
+    """The master could not be reached."""
 
 
 def get_service_list(node: str | None = None, namespace: str | None = None) -> list[str]:
-    """List services, of one node or one namespace where that is given."""
+    """Return the names of services, optionally of one node or namespace."""
     entries = [(name, nodes) for name, nodes in graph.ends()[2] if graph.below(name, namespace)]
     return sorted(name for name, nodes in entries if node is None or graph.resolved(node) in nodes)
 
 
 def get_service_type(service_name: str) -> str | None:
-    """Return the type of a service, None for an unknown one."""
+    """Return the type of a service; None if it is unknown."""
     found = graph.services().get(graph.resolved(service_name))
     return None if found is None else str(found._type)
 
 
 def get_service_class_by_name(service_name: str) -> Any:
-    """Return the class of a service. Raises ROSServiceException for an unknown one."""
+    """Return the class of a service. Raises ROSServiceException if it is unknown."""
     found = graph.services().get(graph.resolved(service_name))
     if found is None:
         raise ROSServiceException(f"Service [{service_name}] is not available.")
@@ -43,12 +43,12 @@ def get_service_class_by_name(service_name: str) -> Any:
 
 
 def get_service_node(service_name: str) -> str | None:
-    """Return who serves it."""
+    """Return the node that offers a service."""
     return next((nodes[0] for name, nodes in graph.ends()[2] if name == graph.resolved(service_name)), None)
 
 
 def call_service(service_name: str, service_args: Any, service_class: Any = None) -> tuple[Any, Any]:
-    """Call a service with a list of values or a mapping of fields; return request and response."""
+    """Call a service with a list of values or a dict of fields; return request and response."""
     made = service_class or get_service_class_by_name(service_name)
     if isinstance(service_args, list) and len(service_args) == 1 and isinstance(service_args[0], dict):
         service_args = service_args[0]
@@ -58,5 +58,5 @@ def call_service(service_name: str, service_args: Any, service_class: Any = None
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("rosservice", name)

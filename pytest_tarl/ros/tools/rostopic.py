@@ -1,4 +1,4 @@
-"""rostopic: what a topic carries."""
+"""rostopic: types and classes of topics."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from pytest_tarl.sensors import field_value
 __all__ = ["ROSTopicException", "ROSTopicIOException", "get_topic_class", "get_topic_type"]
 
 Evaluate = Callable[[Any], Any] | None
-_LOOK = nanoseconds(0.1)  # between two looks of a blocking question
+_LOOK = nanoseconds(0.1)  # ns, polling period of a blocking query
 
 
 class ROSTopicException(Exception):  # noqa: N818 (these names are rostopic's)
-    """A topic could not be asked about."""
+    """A query about a topic failed."""
 
 
 class ROSTopicIOException(ROSTopicException):
-    """The master could not be asked."""
+    """The master could not be reached."""
 
 
 def get_topic_type(topic: str, blocking: bool = False) -> tuple[str | None, str | None, Evaluate]:
-    """Return type, name and a function that picks the field where `topic` names one of a message; None for unknown."""
+    """Return type, topic name, and a function that picks the field if `topic` names one; None if unknown."""
     process = current_process("rostopic.get_topic_type")
     while True:
         found = _known(topic)
@@ -37,7 +37,10 @@ def get_topic_type(topic: str, blocking: bool = False) -> tuple[str | None, str 
 
 
 def get_topic_class(topic: str, blocking: bool = False) -> tuple[Any, str | None, Evaluate]:
-    """Return message class, name and the function of `get_topic_type`. Raises ROSTopicException for unknown types."""
+    """Return message class, topic name, and the function of `get_topic_type`.
+
+    Raises ROSTopicException if the type is unknown.
+    """
     kind, name, evaluate = get_topic_type(topic, blocking)
     if kind is None:
         return None, None, None
@@ -59,5 +62,5 @@ def _known(topic: str) -> tuple[str | None, str | None, Evaluate]:
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("rostopic", name)

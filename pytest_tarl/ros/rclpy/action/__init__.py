@@ -13,5 +13,5 @@ __all__ = ["ActionClient", "ActionServer", "CancelResponse", "GoalResponse"]
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("rclpy.action", name)

@@ -14,7 +14,7 @@ from pytest_tarl.ros.scheduler import current_task
 if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.node import Node
 
-_LOOK = nanoseconds(0.25)  # how often rclpy looks whether the server is there
+_LOOK = nanoseconds(0.25)  # rclpy's polling period while waiting for the server
 
 
 class ActionClient:
@@ -32,11 +32,11 @@ class ActionClient:
         self._handles: dict[bytes, ClientGoalHandle] = {}
 
     def server_is_ready(self) -> bool:
-        """Tell whether somebody serves the action."""
+        """Return whether the action has a server."""
         return self._name in self._directory.servers
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Wait until somebody serves the action; tell whether that was within the timeout."""
+        """Wait until the action has a server; return whether that happened in time."""
         process = self._node.process
         clock = process.scheduler
         until = None if timeout_sec is None else clock.time + nanoseconds(timeout_sec)
@@ -51,7 +51,7 @@ class ActionClient:
     def send_goal_async(
         self, goal: Any, feedback_callback: Callable[[Any], Any] | None = None, goal_uuid: Any = None
     ) -> Future:
-        """Send a goal; the future's result is a goal handle. Raises TypeError for another type's goal."""
+        """Send a goal; the future's result is a goal handle. Raises TypeError for a goal of another type."""
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError(f"Expected goal type ({self._action_type.Goal}) but received ({type(goal)})")
         goal_id = goal_uuid if goal_uuid is not None else self._directory.new_goal_id()
@@ -64,20 +64,20 @@ class ActionClient:
         return future
 
     def send_goal(self, goal: Any, **options: Any) -> Any:
-        """Send a goal and wait for its result, while something else spins."""
+        """Send a goal and wait for its result; another task must spin."""
         handle = self.block_on(self.send_goal_async(goal, **options))
         return self.block_on(self.result_of(handle))
 
     def result_of(self, handle: ClientGoalHandle) -> Future:
-        """Ask the server for the result of a goal."""
+        """Request the result of a goal from the server."""
         return self._ask("result_wanted", handle)
 
     def cancel(self, handle: ClientGoalHandle) -> Future:
-        """Ask the server to end a goal."""
+        """Ask the server to cancel a goal."""
         return self._ask("cancel_arrives", handle)
 
     def block_on(self, future: Future) -> Any:
-        """Wait in this task until a future is done."""
+        """Block this task until a future is done."""
         clock, task = self._node.process.scheduler, current_task()
         future.watch(lambda: clock.wake(task))
         while not future.done() and self._node.context.ok():
@@ -87,28 +87,28 @@ class ActionClient:
         return future.result()
 
     def answer_arrives(self, future: Future, goal_id: Any, accepted: bool, stamp: Any) -> None:
-        """Take the server's answer to a goal."""
+        """Handle the server's answer to a goal."""
         handle = ClientGoalHandle(self, goal_id, accepted=accepted, stamp=stamp)
         if accepted:
             self._handles[goal_key(goal_id)] = handle
         self.complete(future, handle)
 
     def feedback_arrives(self, message: Any) -> None:
-        """Take feedback."""
+        """Handle feedback."""
         callback = self._feedback.get(goal_key(message.goal_id))
         if callback is not None:
             self._mailbox.post(callback, message)
 
     def status_arrives(self, goal_id: Any, status: int) -> None:
-        """Take a goal's new state."""
+        """Handle a goal's new state."""
         self._mailbox.post(self._take_status, goal_key(goal_id), status)
 
     def complete(self, future: Future, result: Any) -> None:
-        """Have the executor complete a future."""
+        """Complete a future by the executor."""
         self._mailbox.post(self._complete, future, result)
 
     def destroy(self) -> None:
-        """Forget everything."""
+        """Discard all goals."""
         self._mailbox.destroy()
         self._feedback.clear()
 

@@ -1,4 +1,4 @@
-"""A goal as its server and as its client hold it, and where the two meet."""
+"""Goal handles of server and client, and the directory that connects them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pytest_tarl.ros.rclpy.task import Future
 
 UNKNOWN, ACCEPTED, EXECUTING, CANCELING, SUCCEEDED, CANCELED, ABORTED = range(7)  # action_msgs/GoalStatus
-_NEXT = {  # what may follow a state
+_NEXT = {  # valid successors of a state
     ACCEPTED: (EXECUTING, CANCELING),
     EXECUTING: (CANCELING, SUCCEEDED, ABORTED),
     CANCELING: (SUCCEEDED, CANCELED, ABORTED),
@@ -25,21 +25,21 @@ _NEXT = {  # what may follow a state
 
 
 class GoalResponse(Enum):
-    """What a goal callback says."""
+    """The result of a goal callback."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class CancelResponse(Enum):
-    """What a cancel callback says."""
+    """The result of a cancel callback."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class ActionDirectory:
-    """Who serves which action, in one episode, and how many goals there were."""
+    """The action servers of one episode, and the number of goals so far."""
 
     def __init__(self, ros: Network) -> None:
         self.servers: dict[str, ActionServer] = {}
@@ -47,14 +47,14 @@ class ActionDirectory:
         self._goals = 0
 
     def new_goal_id(self) -> Any:
-        """Return a fresh unique_identifier_msgs/UUID; they are numbered, so that runs are the same."""
+        """Return a new unique_identifier_msgs/UUID; they are consecutive numbers, so that runs are reproducible."""
         self._goals += 1
         made: Any = find_class("ros2", "unique_identifier_msgs", "UUID")
         return made(uuid=list(self._goals.to_bytes(16, "big")))
 
 
 def goal_key(goal_id: Any) -> bytes:
-    """Return a goal's id as a dictionary key."""
+    """Return a goal's id as a hashable key."""
     return bytes(int(part) for part in goal_id.uuid)
 
 
@@ -71,16 +71,16 @@ class ServerGoalHandle:
 
     @property
     def is_active(self) -> bool:
-        """Tell whether it has not ended."""
+        """Return whether the goal has not ended."""
         return self.status in _NEXT
 
     @property
     def is_cancel_requested(self) -> bool:
-        """Tell whether the client wants it to end and the server has agreed."""
+        """Return whether the server has accepted a cancel request."""
         return self.status == CANCELING
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
-        """Have the execute callback run."""
+        """Schedule the execute callback."""
         if not self.is_cancel_requested:
             self.move_to(EXECUTING)
         self.action_server.notify_execute(self, execute_callback)
@@ -94,23 +94,23 @@ class ServerGoalHandle:
         self.client.feedback_arrives(carrier)
 
     def succeed(self) -> None:
-        """End as a success."""
+        """End the goal as succeeded."""
         self.move_to(SUCCEEDED)
 
     def abort(self) -> None:
-        """End as a failure."""
+        """End the goal as aborted."""
         self.move_to(ABORTED)
 
     def canceled(self) -> None:
-        """End as cancelled."""
+        """End the goal as canceled."""
         self.move_to(CANCELED)
 
     def destroy(self) -> None:
-        """Forget it."""
+        """Discard the handle."""
         self.status = UNKNOWN
 
     def move_to(self, status: int) -> None:
-        """Change the state. Raises RCLError where ROS would not allow it."""
+        """Change the state. Raises RCLError for a transition that ROS does not allow."""
         if status not in _NEXT.get(self.status, ()):
             raise RCLError(
                 f"Failed to update goal state: goal_handle attempted invalid transition from state {self.status} "
@@ -121,7 +121,7 @@ class ServerGoalHandle:
 
 
 class ClientGoalHandle:
-    """A goal that a client has sent and the server has answered."""
+    """A goal sent by a client and answered by the server."""
 
     def __init__(self, client: ActionClient, goal_id: Any, *, accepted: bool, stamp: Any) -> None:
         self._client = client
@@ -134,17 +134,17 @@ class ClientGoalHandle:
         return f"ClientGoalHandle <id={goal_key(self.goal_id).hex()}, accepted={self.accepted}, status={self.status}>"
 
     def get_result_async(self) -> Future:
-        """Ask for the result; the future's result has `status` and `result`."""
+        """Request the result; the future's result has `status` and `result`."""
         return self._client.result_of(self)
 
     def get_result(self) -> Any:
-        """Wait for the result, while something else spins."""
+        """Wait for the result; another task must spin."""
         return self._client.block_on(self.get_result_async())
 
     def cancel_goal_async(self) -> Future:
-        """Ask the server to end it; the future's result is action_msgs/CancelGoal's response."""
+        """Ask the server to cancel the goal; the future's result is an action_msgs/CancelGoal response."""
         return self._client.cancel(self)
 
     def cancel_goal(self) -> Any:
-        """Wait for the answer, while something else spins."""
+        """Ask the server to cancel the goal and wait for its answer; another task must spin."""
         return self._client.block_on(self.cancel_goal_async())

@@ -46,7 +46,7 @@ def default_goal_callback(goal_request: Any) -> GoalResponse:
 
 
 def default_cancel_callback(goal_handle: Any) -> CancelResponse:
-    """Refuse to cancel."""
+    """Reject the cancel request."""
     return CancelResponse.REJECT
 
 
@@ -80,39 +80,39 @@ class ActionServer:
         self.register_cancel_callback(cancel_callback)
 
     def register_execute_callback(self, execute_callback: Any) -> None:
-        """Replace what executes goals."""
+        """Replace the execute callback."""
         if not callable(execute_callback):
             raise TypeError("Failed to register goal execution callback: not callable")
         self._execute_callback: Callable[[ServerGoalHandle], Any] = execute_callback
 
     def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
-        """Replace what accepts or refuses goals."""
+        """Replace the goal callback, which accepts or rejects goals."""
         self._goal_callback = goal_callback or default_goal_callback
 
     def register_handle_accepted_callback(self, callback: Callable[[ServerGoalHandle], Any] | None) -> None:
-        """Replace what begins accepted goals."""
+        """Replace the callback for accepted goals."""
         self._handle_accepted_callback = callback or default_handle_accepted_callback
 
     def register_cancel_callback(self, cancel_callback: Callable[[Any], Any] | None) -> None:
-        """Replace what agrees to cancel."""
+        """Replace the cancel callback, which accepts or rejects cancel requests."""
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def goal_arrives(self, client: ActionClient, goal_id: Any, goal: Any, future: Future) -> None:
-        """Take a goal."""
+        """Post a goal request to the server's executor."""
         self._mailbox.post(self._take_goal, client, goal_id, goal, future)
 
     def cancel_arrives(self, goal_id: Any, client: ActionClient, future: Future) -> None:
-        """Take the wish to end a goal."""
+        """Post a cancel request to the server's executor."""
         self._mailbox.post(self._take_cancel, goal_id, client, future)
 
     def result_wanted(self, goal_id: Any, client: ActionClient, future: Future) -> None:
-        """Take the wish for a result."""
+        """Post a result request to the server's executor."""
         self._mailbox.post(self._send_result, goal_id, client, future)
 
     def notify_execute(
         self, goal: ServerGoalHandle, callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Have the node's executor execute a goal."""
+        """Post the execution of a goal to the node's executor."""
         self._node.executor.create_task(self._execute, callback or self._execute_callback, goal)
 
     def destroy(self) -> None:

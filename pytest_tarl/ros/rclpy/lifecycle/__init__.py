@@ -1,4 +1,4 @@
-"""rclpy's lifecycle nodes: a state machine that a test, a manager or the node itself drives."""
+"""rclpy's lifecycle nodes: a state machine driven by a test, a manager or the node itself."""
 
 from __future__ import annotations
 
@@ -23,5 +23,5 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Name what is missing."""
+    """Raise for a name that the stand-in lacks."""
     raise refuse("rclpy.lifecycle", name)

@@ -1,4 +1,4 @@
-"""What a lifecycle node manages: things that work only while it is active, publishers among them."""
+"""Managed entities of a lifecycle node, such as publishers, which work only while it is active."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ _SUCCESS = TransitionCallbackReturn.SUCCESS
 
 
 class ManagedEntity:
-    """Is told of every transition; agrees by default."""
+    """Takes part in every transition; each callback returns SUCCESS by default."""
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002 (for those who derive)
-        """Agree."""
+        """Return SUCCESS."""
         return _SUCCESS
 
     on_cleanup = on_shutdown = on_activate = on_deactivate = on_error = on_configure
 
 
 class SimpleManagedEntity(ManagedEntity):
-    """Is enabled while its node is active."""
+    """An entity that is enabled while its node is active."""
 
     def __init__(self) -> None:
         self._enabled = False
@@ -40,12 +40,12 @@ class SimpleManagedEntity(ManagedEntity):
 
     @property
     def is_activated(self) -> bool:
-        """Tell whether it is enabled."""
+        """Return whether it is enabled."""
         return self._enabled
 
     @staticmethod
     def when_enabled(wrapped: Any = None, *, when_not_enabled: Callable[[], Any] | None = None) -> Any:
-        """Decorate a method to do nothing, or call something else, while disabled."""
+        """Decorate a method so that it does nothing, or calls another function, while disabled."""
 
         def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
             @wraps(method)
@@ -61,7 +61,7 @@ class SimpleManagedEntity(ManagedEntity):
 
 
 class LifecyclePublisher(SimpleManagedEntity, Publisher):
-    """Publishes while its node is active, and drops everything else."""
+    """Publishes while its node is active; drops messages otherwise."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         SimpleManagedEntity.__init__(self)

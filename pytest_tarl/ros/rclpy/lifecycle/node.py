@@ -31,7 +31,7 @@ _SERVICES = {
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """The part of a node that has a state. Its default callbacks ask what it manages."""
+    """Mixin of LifecycleNode: states and transitions. By default, callbacks run those of the managed entities."""
 
     def __init__(self, *, enable_communication_interface: bool = True, **_: Any) -> None:
         self._state = UNCONFIGURED
@@ -41,30 +41,30 @@ class LifecycleNodeMixin(ManagedEntity):
             self._serve()
 
     def trigger_configure(self) -> TransitionCallbackReturn:
-        """Make the transition, calling `on_configure`."""
+        """Trigger the transition, which calls `on_configure`."""
         return self._change(1)
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
-        """Make the transition, calling `on_cleanup`."""
+        """Trigger the transition, which calls `on_cleanup`."""
         return self._change(2)
 
     def trigger_activate(self) -> TransitionCallbackReturn:
-        """Make the transition, calling `on_activate`."""
+        """Trigger the transition, which calls `on_activate`."""
         return self._change(3)
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
-        """Make the transition, calling `on_deactivate`."""
+        """Trigger the transition, which calls `on_deactivate`."""
         return self._change(4)
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
-        """Make the transition, calling `on_shutdown`. Raises RCLError in a state that has none."""
+        """Trigger the transition, which calls `on_shutdown`. Raises RCLError in a state without that transition."""
         for transition in TRANSITIONS:
             if transition.label == "shutdown" and transition.start == self._state:
                 return self._change(transition.number)
         raise RCLError("Shutdown transtion not possible")
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Have something told of all transitions."""
+        """Add an entity that takes part in all transitions. Raises TypeError if it is not a ManagedEntity."""
         if not isinstance(entity, ManagedEntity):
             raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
         self._managed_entities.append(entity)
@@ -78,34 +78,34 @@ class LifecycleNodeMixin(ManagedEntity):
         return publisher
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:
-        """Destroy such a publisher."""
+        """Destroy a lifecycle publisher."""
         if publisher in self._managed_entities:
             self._managed_entities.remove(publisher)
         destroyed: bool = self.destroy_publisher(publisher)  # type: ignore[attr-defined]
         return destroyed
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Ask what is managed."""
+        """Run this callback of every managed entity; return the first result that is not SUCCESS."""
         return self._ask_managed("on_configure", state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Ask what is managed."""
+        """Run this callback of every managed entity; return the first result that is not SUCCESS."""
         return self._ask_managed("on_cleanup", state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Ask what is managed."""
+        """Run this callback of every managed entity; return the first result that is not SUCCESS."""
         return self._ask_managed("on_shutdown", state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Ask what is managed."""
+        """Run this callback of every managed entity; return the first result that is not SUCCESS."""
         return self._ask_managed("on_activate", state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Ask what is managed."""
+        """Run this callback of every managed entity; return the first result that is not SUCCESS."""
         return self._ask_managed("on_deactivate", state)
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Ask what is managed."""
+        """Run this callback of every managed entity; return the first result that is not SUCCESS."""
         return self._ask_managed("on_error", state)
 
     def _ask_managed(self, name: str, previous: LifecycleState) -> TransitionCallbackReturn:
@@ -156,7 +156,7 @@ class LifecycleNodeMixin(ManagedEntity):
             self._announce.publish(event)
 
     def _serve(self) -> None:
-        """Create the services that managers call, and the topic of transitions."""
+        """Create the services for lifecycle managers, and the topic of transition events."""
         made: Any = find_class("ros2", "lifecycle_msgs", "TransitionEvent")
         self._announce = self.create_publisher(made, "~/transition_event", 10)  # type: ignore[attr-defined]
         for kind, name in _SERVICES.items():
@@ -199,7 +199,7 @@ class LifecycleNodeMixin(ManagedEntity):
 
 
 class LifecycleNode(LifecycleNodeMixin, Node):
-    """A node with a state."""
+    """A node with a lifecycle."""
 
     def __init__(
         self, node_name: str, *, enable_communication_interface: bool = True, **options: Any

@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 
 class LifecycleState(NamedTuple):
-    """A state as callbacks are told it."""
+    """A state, as passed to callbacks."""
 
     label: str
     state_id: int
 
 
 class TransitionCallbackReturn(Enum):
-    """What a transition's callback says."""
+    """The result of a transition's callback."""
 
     SUCCESS = 97
     FAILURE = 98
@@ -22,7 +22,7 @@ class TransitionCallbackReturn(Enum):
 
 
 class Transition(NamedTuple):
-    """One arrow: by which request, from where, through which state, and where each answer leads."""
+    """One transition: its request, its start, the intermediate state, and the goal for each result."""
 
     number: int
     label: str
