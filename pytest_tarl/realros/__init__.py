@@ -1,5 +1,5 @@
-"""Run the same tests on a real ROS: real names, messages, topics and clocks, in lock-step with the simulation.
+"""Run the same tests on an installed ROS, in lock-step with the simulation.
 
-Tests see the `Ros` of `pytest_tarl.ros`; what differs is what carries the messages and whose rospy or rclpy a node
-imports. Nothing of ROS is imported until an episode asks for it.
+Tests use the interface of `pytest_tarl.ros.Ros`; nodes import the installed rospy or rclpy, which transports the
+messages. ROS is imported when an episode needs it.
 """

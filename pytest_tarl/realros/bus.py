@@ -1,4 +1,4 @@
-"""What the two real ROS generations have in common: the world's end of the topics, and the episode."""
+"""Common base of real rospy and rclpy: the bus of the world, and the episode."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from pytest_tarl.ros.scheduler import Program, running_task
 from pytest_tarl.ros.threads import threads_as_tasks
 
 _SWITCH_INTERVAL = (
-    0.0002  # seconds: threads of the client library hand every message on, each waiting for its turn
+    0.0002  # s; Python's default of 0.005 s delays every message, which passes through several threads
 )
 
 
 class RealBus(Bus):
-    """What the world publishes and hears, through a node of its own."""
+    """The bus of the world, which uses its own node."""
 
     kind: Kind
 
@@ -35,7 +35,7 @@ class RealBus(Bus):
         scheduler.collect = self.collect
 
     def publish(self, topic: str, message: Any, *, latch: bool = False) -> None:
-        """Publish from the world; every subscriber has it before this returns, if it can take it now."""
+        """Publish from the world; every idle subscriber gets the message before this returns."""
         place = self.topic(topic)
         message = self._own_class(message, place.name)
         stamp_if_unset(message, self._scheduler.time)
@@ -45,18 +45,18 @@ class RealBus(Bus):
         self._run(self._publish, place, message, latch)
 
     def disconnect(self, process: Program) -> None:
-        """Do nothing: a process that has ended takes nothing any more."""
+        """Do nothing: an ended process receives no messages."""
 
     def collect(self) -> bool:
-        """Take in one message that is under way; return whether there was one."""
+        """Receive one message in transit; return whether there was one."""
         raise NotImplementedError
 
     def send(self, place: Topic, message: Any, latch: bool) -> None:
-        """Hand a message to the real ROS. Raise RecordingError if a subscriber wants another type."""
+        """Publish a message on the real ROS. Raise RecordingError if a subscriber has another type."""
         raise NotImplementedError
 
     def heard(self, topic: str, message: Any) -> None:
-        """Take note of what a node has published."""
+        """Record a message that a node has published."""
         place = self.topic(topic)
         self.published[place.name] += 1
         place.latest = message
@@ -71,7 +71,7 @@ class RealBus(Bus):
         self.send(place, message, latch)
 
     def _own_class(self, message: Any, topic: str) -> Any:
-        """Return the message in the class that the installed ROS has for it."""
+        """Return the message as an object of the installed ROS' class."""
         own = type(message)
         package, _, short = type_name(own).partition("/")
         wanted = find_class(self.kind, package, short) if short else None
@@ -84,7 +84,7 @@ class RealBus(Bus):
 
 
 class RealRos(Ros):
-    """An episode whose nodes import the ROS that is installed."""
+    """An episode whose nodes import the installed ROS."""
 
     def __init__(self, *, parameters: Mapping[str, Any] | None = None, **options: Any) -> None:
         super().__init__(parameters=parameters, **options)
@@ -93,17 +93,17 @@ class RealRos(Ros):
         self.lockstep.enter = self.enter
 
     def launch(self, given: Given) -> None:
-        """Give all nodes the parameters of a launch file: on a real ROS they have no names before they run."""
+        """Set a launch file's parameters for all nodes: on a real ROS a node has no name before it runs."""
         super().launch(given)
         for name, value in {**given.shared, **{f"~{key}": one for key, one in given.private.items()}}.items():
             self.parameters.setdefault(name, value)
 
     def enter(self, process: Process) -> None:
-        """Prepare for a task of a process to go on."""
+        """Prepare to resume a task of a process."""
         raise NotImplementedError
 
     def installed(self) -> AbstractContextManager[None]:
-        """Let nodes see the virtual clock, and their threads be tasks."""
+        """Show nodes the virtual clock, and run their threads as tasks."""
         return self._installed()
 
     @contextmanager
@@ -118,7 +118,7 @@ class RealRos(Ros):
 
 
 def refused(topic: str, published: Any, receiver: str, wanted: Any) -> RecordingError:
-    """Say that a node subscribes with another type than is published."""
+    """Return the error for a subscription with another type than the published one."""
     return RecordingError(
         f"{topic} carries {type_name(published)}, but node {receiver!r} subscribes to it as {type_name(wanted)}."
     )

@@ -1,4 +1,4 @@
-"""Which ROS an episode runs on: the embedded one, or the real one that the nodes import."""
+"""Select the ROS of an episode: the embedded one, or the installed one that the nodes import."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _INSTALL = {
 
 
 def make_ros(kind: str, nodes: Iterable[Path]) -> Ros:
-    """Return the ROS of an episode. Raise SettingsError if the real one is asked for and is not there."""
+    """Return the ROS of an episode. Raise SettingsError if a real one is required but not installed."""
     if kind == "embedded":
         return Ros()
     wanted = libraries(nodes)
@@ -36,7 +36,7 @@ def make_ros(kind: str, nodes: Iterable[Path]) -> Ros:
 
 
 def check_kind(kind: str) -> str:
-    """Return the kind. Raise SettingsError for one that is not known."""
+    """Return the kind. Raise SettingsError if it is unknown."""
     if kind not in KINDS:
         raise SettingsError(
             f"--tarl-ros does not know {kind!r}; it takes {', '.join(KINDS[:-1])} or {KINDS[-1]}."
@@ -45,7 +45,7 @@ def check_kind(kind: str) -> str:
 
 
 def libraries(nodes: Iterable[Path]) -> tuple[Library, ...]:
-    """Return the client libraries that the files import, in the order in which they are named."""
+    """Return the client libraries that the files import, in order of appearance."""
     found: dict[Library, None] = {}
     for node in nodes:
         for file in sorted(node.rglob("*.py")) if node.is_dir() else [node]:
@@ -57,7 +57,7 @@ def _imported(file: Path) -> list[Library]:
     try:
         tree = ast.parse(file.read_bytes())
     except (OSError, SyntaxError, ValueError):
-        return []  # whoever runs it says so
+        return []  # reported when the file is run
     found: list[Library] = []
     for node in ast.walk(tree):
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []

@@ -1,4 +1,4 @@
-"""Private copies of a package that keeps its state in its modules: one ROS node each, several in one process."""
+"""Private copies of a package with module-level state, so that several ROS nodes can run in one process."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ Modules = dict[str, ModuleType]
 
 
 def load_copy(package: str, parts: Sequence[str], argv: Sequence[str]) -> Modules:
-    """Import a package and these parts of it anew; what others have imported of it stays as it is.
+    """Import a new copy of a package and some of its modules; other importers keep theirs.
 
-    `argv` is the command line that the package reads while it is imported.
+    `argv` is the command line that the package reads on import.
     """
     with _hidden(package), command_line(argv):
         for name in (package, *(f"{package}.{part}" for part in parts)):
@@ -25,13 +25,13 @@ def load_copy(package: str, parts: Sequence[str], argv: Sequence[str]) -> Module
 
 
 def present(package: str) -> Modules:
-    """Return the modules of a package that imports find at present."""
+    """Return the modules of a package in `sys.modules`."""
     inner = f"{package}."
     return {name: module for name, module in sys.modules.items() if name == package or name.startswith(inner)}
 
 
 def show(package: str, modules: Modules) -> None:
-    """Let imports of the package find these modules and no others."""
+    """Replace the modules of a package in `sys.modules`."""
     for name in present(package):
         del sys.modules[name]
     sys.modules.update(modules)

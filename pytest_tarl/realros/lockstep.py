@@ -1,7 +1,7 @@
-"""Lock-step: count sent messages, and let no node continue before all have arrived.
+"""Lock-step: count sent messages, and resume nodes only after all have arrived.
 
-Messages travel by a real network, in threads of the client library; this is where they come back into the one
-sequence that the scheduler plays.
+Messages travel by a real network and arrive in threads of the client library. Here they are put back into the
+deterministic order of the scheduler.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ from pytest_tarl.errors import RecordingError
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Scheduler, Task
 
-PATIENCE = 10.0  # seconds of wall time for something to cross the loopback device
+PATIENCE = 10.0  # s of wall time for a message to cross the loopback device
 
 
 class Way(NamedTuple):
-    """One connection: what is sent on it arrives in order."""
+    """One connection; its messages arrive in order."""
 
     topic: str
     sender: str
@@ -27,7 +27,7 @@ class Way(NamedTuple):
 
 
 class Wire:
-    """Messages under way. `expect` and `take` belong to the test's thread, `arrived` to any."""
+    """Messages in transit. Call `expect` and `take` in the test's thread, `arrived` in any."""
 
     def __init__(self) -> None:
         self._arrival = threading.Condition()
@@ -35,17 +35,20 @@ class Wire:
         self._expected: deque[Way] = deque()
 
     def expect(self, way: Way) -> None:
-        """Note that a message was sent."""
+        """Count a sent message."""
         self._expected.append(way)
 
     def arrived(self, way: Way, message: Any) -> None:
-        """Take in a message."""
+        """Store a received message."""
         with self._arrival:
             self._boxes.setdefault(way, deque()).append(message)
             self._arrival.notify()
 
     def take(self) -> tuple[Way, Any] | None:
-        """Return what was sent first, as soon as it is here; None when nothing is under way. Raises RecordingError."""
+        """Wait for the message that was sent first and return it; None if no message is in transit.
+
+        Raises RecordingError if it does not arrive within PATIENCE.
+        """
         if not self._expected:
             return None
         way = self._expected.popleft()
@@ -58,14 +61,14 @@ class Wire:
             return way, self._boxes[way].popleft()
 
     def wait_for_all(self, way: Way) -> None:
-        """Wait until everything that was sent this way is here, so that no queue on the way can overflow."""
+        """Wait until all messages sent on a connection have arrived, so that no queue overflows."""
         count = self._expected.count(way)
         if count:
             with self._arrival:
                 self._arrival.wait_for(lambda: len(self._boxes.get(way, ())) >= count, PATIENCE)
 
     def forget(self) -> None:
-        """Drop everything under way: the episode is over."""
+        """Discard all messages in transit, at the end of an episode."""
         while self._expected:
             self.take()
         with self._arrival:
@@ -73,21 +76,21 @@ class Wire:
 
 
 class WireScheduler(Scheduler):
-    """A scheduler that settles only when nothing is under way any more."""
+    """A scheduler that settles only when no message is in transit."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.collect: Callable[[], bool] = bool  # takes in one message; tells whether there was one
-        self.enter: Callable[[Process], None] | None = None  # called before a task of a process goes on
+        self.collect: Callable[[], bool] = bool  # receives one message; returns whether there was one
+        self.enter: Callable[[Process], None] | None = None  # called before a task of a process resumes
 
     def settle(self) -> None:
-        """Run everything that is ready now and everything that arrives from it."""
+        """Run all ready tasks and those made ready by arriving messages, until no message is in transit."""
         super().settle()
         while self.failure is None and self.collect():
             super().settle()
 
     def sent(self) -> None:
-        """Have the scheduler settle once more before time goes on."""
+        """Make the scheduler settle once more before time advances."""
         self.later(_nothing)
 
     def _resume(self, task: Task, woken: bool) -> None:
@@ -97,4 +100,4 @@ class WireScheduler(Scheduler):
 
 
 def _nothing() -> None:
-    """Do nothing: that something was sent is all there is to tell."""
+    """Do nothing; queued only to make the scheduler settle again."""

@@ -1,4 +1,4 @@
-"""A ROS 1 master of our own, on a free port of the loopback device."""
+"""Start a private ROS 1 master on a free port of the loopback device."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from time import monotonic, sleep
 from pytest_tarl.errors import RecordingError
 
 _ATTEMPTS = 3
-_PATIENCE = 20.0  # seconds of wall time for a master to answer
+_PATIENCE = 20.0  # s of wall time for a master to answer
 _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 
 class Master:
-    """`rosmaster --core`, and the environment in which nodes find it. Stopped by `close`, or with this process."""
+    """`rosmaster --core`, and environment variables that lead nodes to it. Stopped by `close`, or with this process."""
 
     def __init__(self) -> None:
         self._open = ExitStack()
@@ -37,7 +37,7 @@ class Master:
 
     @property
     def answers(self) -> bool:
-        """Return whether it is there."""
+        """Return whether the master answers."""
         try:
             with xmlrpc.client.ServerProxy(self.uri) as server:
                 return bool(server.getPid("/tarl")[0] == 1)  # type: ignore[index]
@@ -45,7 +45,7 @@ class Master:
             return False
 
     def close(self) -> None:
-        """Stop the master and put the environment back."""
+        """Stop the master and restore the environment."""
         self._open.close()
 
     def _started(self) -> subprocess.Popen[bytes]:
@@ -73,7 +73,7 @@ class Master:
             env=environment,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
-            start_new_session=True,  # Ctrl-C is for pytest, which stops it
+            start_new_session=True,  # Ctrl-C goes to pytest, which stops the master
             preexec_fn=_die_with_parent,
         )
 
@@ -124,6 +124,6 @@ _LIBC = ctypes.CDLL(None, use_errno=True) if os.name == "posix" else None
 
 
 def _die_with_parent() -> None:
-    """Have the kernel end the master when pytest is killed. Runs in the child, before its program."""
+    """Make the kernel end the master when pytest is killed. Called in the child before exec."""
     if _LIBC is not None and hasattr(_LIBC, "prctl"):
         _LIBC.prctl(_DIE_WITH_PARENT, signal.SIGTERM)

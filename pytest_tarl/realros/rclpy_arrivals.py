@@ -1,4 +1,4 @@
-"""Which subscriptions of real rclpy hold a message that nobody has taken yet."""
+"""Find the subscriptions of real rclpy with a message that is not taken yet."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def silent(rclpy: Any, context: Any, subscriptions: Sequence[Any]) -> list[Any]:
-    """Return those of the subscriptions in which no message has arrived; nothing is taken."""
+    """Return the subscriptions without an arrived message; takes no message."""
     make = rclpy.impl.implementation_singleton.rclpy_implementation.WaitSet
     with ExitStack() as open_:
         for one in (*(subscription.handle for subscription in subscriptions), context.handle):

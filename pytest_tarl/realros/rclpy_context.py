@@ -1,4 +1,4 @@
-"""The rclpy context of a node under test: up and down as it likes, while the participant behind it stays."""
+"""The rclpy context of a node under test: `init` and `shutdown` keep the shared DDS participant."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from pytest_tarl.ros.scheduler import running_task
 if TYPE_CHECKING:
     from pytest_tarl.realros.rclpy_network import RclpyNetwork
 
-_HANDLE = "_Context__context"  # where rclpy's own class keeps it
+_HANDLE = "_Context__context"  # name-mangled attribute of rclpy's class
 _NODES = "_Context__node_weak_ref_list"
 
 
 class SharedParticipant:
-    """A context as rclpy.init makes one, to be mixed into rclpy's own class."""
+    """Mixin for rclpy's Context with rclpy's interface and a shared participant."""
 
     network: RclpyNetwork
     error: Any  # rclpy's RCLError
@@ -34,7 +34,7 @@ class SharedParticipant:
         self.network.contexts.append(self)
 
     def init(self, args: Any = None, **_: Any) -> None:
-        """Bring ROS up. Raises RuntimeError if it was up before."""
+        """Initialise the context. Raises RuntimeError if it was initialised before."""
         if self.handle is not None:
             raise RuntimeError("Context.init() must only be called once")
         if args is not None:
@@ -43,14 +43,14 @@ class SharedParticipant:
         self._up = True
 
     def ok(self) -> bool:
-        """Return whether ROS is up."""
+        """Return whether the context is initialised."""
         return self._up and not (self.process is not None and self.process.ending)
 
     def destroy(self) -> None:
-        """Do nothing: the participant is not ours to destroy."""
+        """Do nothing: other contexts share the participant."""
 
     def shutdown(self) -> None:
-        """Bring ROS down. Raises RuntimeError before `init`, RCLError where it is down."""
+        """Shut the context down. Raises RuntimeError before `init`, RCLError if it is already down."""
         if self.handle is None:
             raise RuntimeError("Context must be initialized before it can be shutdown")
         if not self.ok():
@@ -60,12 +60,12 @@ class SharedParticipant:
         self._cleanup()
 
     def try_shutdown(self) -> None:
-        """Bring ROS down unless it is."""
+        """Shut the context down unless it already is."""
         if self.ok():
             self._cleanup()
 
     def on_shutdown(self, callback: Any) -> None:
-        """Have a function called when ROS goes down."""
+        """Register a callback for the shutdown."""
         if not callable(callback):
             raise TypeError("callback should be a callable, got {}", type(callback))
         if self.handle is not None and not self.ok():
@@ -76,7 +76,7 @@ class SharedParticipant:
             )
 
     def stop(self) -> None:
-        """Go down as on Ctrl-C: nodes stay until their program destroys them."""
+        """Shut down as on Ctrl-C: nodes stay until their program destroys them."""
         if self._up:
             self._up = False
             self._call_on_shutdown_callbacks()

@@ -1,4 +1,4 @@
-"""The ROS 2 network of a test run: one participant, kept between episodes; the world's node; messages under way."""
+"""The ROS 2 network of a test run: one participant for all episodes, the world's node, messages in transit."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Task
 
 WORLD = "tarl_world"
-_DOMAINS = range(1, 100)  # all of whose ports are below those that the kernel hands out
-_PAUSE = 0.0001  # seconds of wall time between two looks for a message that was sent
+_DOMAINS = range(1, 100)  # their ports are below the kernel's ephemeral range
+_PAUSE = 0.0001  # s of wall time, polling period for a sent message
 
 
 class RclpyNetwork:
-    """One per test run. Everything is in one process and one participant, so that nothing has to be discovered."""
+    """The network, one per test run. All nodes share one process and participant, so that no discovery is needed."""
 
     def __init__(self) -> None:
         self._environment = _own_domain()
@@ -37,13 +37,13 @@ class RclpyNetwork:
         self.scheduler = WireScheduler()
         self.parameters: Mapping[str, Any] = {}
         self.arguments: tuple[str, ...] = ()
-        self.listening: list[Task] = []  # tasks that any arrival may concern
+        self.listening: list[Task] = []  # tasks to wake at every arrival
         self.nodes: list[tuple[Process, Any]] = []
         self.clocks: list[Any] = []
         self.contexts: list[Any] = []
-        self.expected: Counter[Any] = Counter()  # messages under way, by subscription of a node
-        self.kept: Counter[Any] = Counter()  # messages that publishers keep for late comers
-        self.for_world: deque[Any] = deque()  # subscriptions of the world, once for each message under way
+        self.expected: Counter[Any] = Counter()  # messages in transit, by subscription of a node
+        self.kept: Counter[Any] = Counter()  # messages that publishers keep for late subscribers
+        self.for_world: deque[Any] = deque()  # subscriptions of the world, once for each message in transit
         self.node_publishes: Callable[[str, Any, Any], None] | None = None
         self.node_subscribes: Callable[[str], None] | None = None
         self._state: dict[Process, dict[str, Any]] = {}
@@ -65,7 +65,7 @@ class RclpyNetwork:
         self._told = -1
 
     def end(self) -> None:
-        """Destroy what the episode's nodes have left behind."""
+        """Destroy the remaining entities of the episode's nodes."""
         for _, node in self.nodes:
             node.destroy_node()
         for entity in (*self.world.subscriptions, *self.world.publishers):
@@ -79,7 +79,7 @@ class RclpyNetwork:
         self._state.clear()
 
     def enter(self, process: Process, before: Process | None) -> None:
-        """Give a process the default context and executor that are its own."""
+        """Set rclpy's default context and executor to those of a process."""
         if before is not None:
             self._state[before] = self._globals()
         state = self._state.pop(process, {"context": None, "executor": None})
@@ -87,7 +87,7 @@ class RclpyNetwork:
         self.rclpy.__dict__["__executor"] = state["executor"]
 
     def stop_contexts(self, process: Process) -> Callable[[], None]:
-        """Return what takes ROS down in a process."""
+        """Return a function that shuts ROS down in a process."""
 
         def stop() -> None:
             for context in tuple(self.contexts):
@@ -107,13 +107,13 @@ class RclpyNetwork:
             clock.set_ros_time_override(self.rclpy.time.Time(nanoseconds=now, clock_type=clock.clock_type))
 
     def wake_listening(self) -> None:
-        """Let tasks look again whether what they wait for has come."""
+        """Wake tasks that wait for a message."""
         tasks, self.listening = self.listening, []
         for task in tasks:
             self.scheduler.wake(task)
 
     def sent(self, publisher: Any) -> None:
-        """Note that a message is under way to everybody who is matched with its publisher."""
+        """Count a sent message as in transit to every matched subscription."""
         if publisher.qos_profile.durability.name == "TRANSIENT_LOCAL":
             self.kept[publisher] = min(self.kept[publisher] + 1, capacity(publisher.qos_profile))
         for subscription in self.matched(publisher):
@@ -127,9 +127,9 @@ class RclpyNetwork:
         self.wake_listening()
 
     def joined(self, subscription: Any) -> None:
-        """Note that what publishers keep for late comers is under way to a new subscription.
+        """Count kept messages as in transit to a new subscription.
 
-        All of it is sent before this returns: taken one by one meanwhile, a short queue would hold older messages.
+        Waits until all of them are sent: if they were taken meanwhile, a short queue would keep older messages.
         """
         if subscription.qos_profile.durability.name != "TRANSIENT_LOCAL":
             return
@@ -140,14 +140,14 @@ class RclpyNetwork:
                 self.expected[subscription] = min(self.expected[subscription] + kept, most)
 
     def taken(self, subscription: Any) -> None:
-        """Note that an executor takes a message."""
+        """Count a message that an executor takes."""
         if self.expected[subscription] > 0:
             self.expected[subscription] -= 1
 
     def under_way(self, executor: Any) -> bool:
-        """Return whether something was sent to a node of the executor that it could take and that is not here yet.
+        """Return whether a message to a node of the executor is still in transit.
 
-        It must not choose among what is here before: which of two topics comes first would be a matter of threads.
+        The executor must wait for it: otherwise thread timing would decide which of two topics comes first.
         """
         expecting = [
             subscription
@@ -158,7 +158,10 @@ class RclpyNetwork:
         return bool(expecting and silent(self.rclpy, executor.context, expecting))
 
     def take_for_world(self) -> tuple[str, Any] | None:
-        """Return topic and message of what nodes have sent first; None when nothing is under way."""
+        """Wait for the message that nodes sent first to the world; return (topic, message), or None if there is none.
+
+        Raises RecordingError if it does not arrive within PATIENCE.
+        """
         if not self.for_world:
             return None
         subscription = self.for_world.popleft()
@@ -170,12 +173,12 @@ class RclpyNetwork:
                 return subscription.topic_name, found[0]
             pause()
         raise RecordingError(
-            f"A message on {subscription.topic_name} did not reach the world within {PATIENCE:g} s: look whether the "
-            "network of this machine lets processes talk on 127.0.0.1."
+            f"A message on {subscription.topic_name} did not reach the world within {PATIENCE:g} s: check that "
+            "processes on this machine can communicate through 127.0.0.1."
         )
 
     def matched(self, publisher: Any) -> list[Any]:
-        """Return the subscriptions that get what a publisher sends."""
+        """Return the subscriptions that match a publisher."""
         topic = publisher.topic_name
         return [
             subscription
@@ -187,7 +190,7 @@ class RclpyNetwork:
         ]
 
     def compatible(self, offered: Any, requested: Any) -> bool:
-        """Return whether the middleware connects two profiles."""
+        """Return whether the middleware connects two QoS profiles."""
         answer, _ = self.rclpy.qos.qos_check_compatible(offered, requested)
         return bool(answer != self.rclpy.qos.QoSCompatibility.ERROR)
 
@@ -199,22 +202,22 @@ class RclpyNetwork:
 
 
 def capacity(profile: Any) -> int:
-    """Return how many messages a subscription holds."""
+    """Return the number of messages in a subscription's queue."""
     keeps_all = profile.history.name == "KEEP_ALL"
     return 1_000_000 if keeps_all else max(1, int(profile.depth))
 
 
 def pause(_sleep: Any = sleep) -> None:
-    """Let the threads of the middleware run for a while of wall time."""
+    """Sleep for a moment of wall time to let the middleware's threads run."""
     _sleep(_PAUSE)
 
 
 def _own_domain() -> dict[str, str | None]:
-    """Keep to this machine and to a domain of our own; return what the environment said before."""
+    """Restrict ROS to this machine and a random domain; return the environment variables' former values."""
     wanted = {
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "ROS_DOMAIN_ID": str(random.SystemRandom().choice(_DOMAINS)),
-        "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",  # nothing is left in /dev/shm, whatever ends this process
+        "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",  # shared memory would leave files in /dev/shm after a crash
     }
     before = {name: os.environ.get(name) for name in wanted}
     os.environ.update(wanted)

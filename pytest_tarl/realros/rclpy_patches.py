@@ -1,7 +1,7 @@
-"""What is replaced in rclpy: where it waits, its clocks, the context, and the note that something was sent.
+"""Patches of rclpy: its waits, clocks and context, and hooks for sent messages.
 
-Executors, callbacks, parameters, profiles, messages and the middleware stay what they are. Every replacement asks
-which task is running: outside of all nodes the original is called.
+Executors, callbacks, parameters, profiles, messages and the middleware stay unchanged. Every replacement checks the
+running task and calls the original outside of nodes.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def patch(network: RclpyNetwork) -> None:
-    """Make rclpy run in lock-step, for as long as the process lives."""
+    """Patch rclpy to run in lock-step, until the process exits."""
     _patch_context(network)
     _patch_nodes(network)
     _patch_clocks(network)
@@ -74,7 +74,7 @@ def _patch_nodes(network: RclpyNetwork) -> None:
 
 
 def ros_arguments(argv: tuple[str, ...]) -> list[str]:
-    """Return what a command line holds between `--ros-args` and `--`."""
+    """Return the arguments between `--ros-args` and `--`."""
     found, inside = [], False
     for argument in argv:
         if argument == "--ros-args":
@@ -87,7 +87,7 @@ def ros_arguments(argv: tuple[str, ...]) -> list[str]:
 
 
 def _parameters(network: RclpyNetwork, name: str, options: dict[str, Any]) -> list[Any]:
-    """Return the parameters that the test gives to a node: those for all, and those that name it."""
+    """Return the test's parameters for a node: those for all nodes, and those for its name."""
     own = absolute(f"{options.get('namespace') or ''}/{name}") + "/"
     found = {}
     for key, value in network.parameters.items():
@@ -134,7 +134,7 @@ def _patch_timers(network: RclpyNetwork) -> None:
         if running_task() is not None:
             options.pop(
                 "clock", None
-            )  # there is one clock: a steady one would run on while the simulation stands
+            )  # one virtual clock for all clock types: a steady one would run on while the simulation pauses
         return create(self, *args, **options)
 
     node_class.create_timer = create_timer
@@ -203,7 +203,7 @@ def _raise_if_ended(executor: Any, task: Task, executors: Any) -> None:
 
 
 def _earliest(executor: Any, now: int, until: int | None) -> int | None:
-    """Return when the next timer of the executor's nodes falls due, `until` if that is earlier."""
+    """Return when the next timer of the executor's nodes is due, at most `until`."""
     due = [] if until is None else [until]
     for node in executor.get_nodes():
         for timer in node.timers:
@@ -214,13 +214,13 @@ def _earliest(executor: Any, now: int, until: int | None) -> int | None:
 
 
 class TaskPool:
-    """What a multi-threaded executor hands callbacks to: tasks instead of threads."""
+    """The pool of a multi-threaded executor, with tasks instead of threads."""
 
     def __init__(self, network: RclpyNetwork) -> None:
         self._network = network
 
     def submit(self, handler: Callable[[], Any]) -> None:
-        """Run a callback beside the executor."""
+        """Run a callback in its own task."""
         task = running_task()
         if task is None:
             handler()
@@ -228,7 +228,7 @@ class TaskPool:
         self._network.scheduler.spawn(task.process, self._run, handler)
 
     def shutdown(self, wait: bool = True) -> None:
-        """Do nothing: tasks end with their process."""
+        """Do nothing: tasks end with the process."""
 
     def _run(self, handler: Callable[[], Any]) -> None:
         try:
@@ -258,7 +258,7 @@ def _patch_topics(network: RclpyNetwork) -> None:
 
 
 def _of_node(topic: str) -> bool:
-    """Tell what the node's own program makes from what rclpy makes for every node."""
+    """Return whether the node's program created an entity, rather than rclpy, which creates some for every node."""
     return running_task() is not None and topic not in ("/rosout", "/parameter_events", "/clock")
 
 

@@ -15,11 +15,11 @@ from pytest_tarl.ros.bus import Topic
 from pytest_tarl.ros.messages.definitions import Kind
 from pytest_tarl.ros.process import Process
 
-_DEPTH = 1_000  # messages of the world that a reader may fall behind
+_DEPTH = 1_000  # queue depth of the world's publishers and subscriptions
 
 
 class RclpyBus(RealBus):
-    """What the world publishes and hears, through an rclpy node of its own."""
+    """The bus of the world, which uses its own rclpy node."""
 
     kind: Kind = "ros2"
 
@@ -37,7 +37,7 @@ class RclpyBus(RealBus):
         self._publisher(place.name, type(message), latch).publish(message)
 
     def listen(self, topic: str, message_class: Any, profile: Any) -> None:
-        """Have the world hear what a node is about to publish."""
+        """Subscribe the world to a topic on which a node is about to publish."""
         world, qos = self._network.world, self._network.rclpy.qos
         if all(one.topic_name != topic for one in world.subscriptions):
             own = qos.QoSProfile(
@@ -46,7 +46,7 @@ class RclpyBus(RealBus):
             world.create_subscription(message_class, topic, _nothing, own)
 
     def collect(self) -> bool:
-        """Take in one message for the world; return whether there was one."""
+        """Receive one message for the world; return whether there was one."""
         taken = self._network.take_for_world()
         if taken is None:
             return False
@@ -54,7 +54,7 @@ class RclpyBus(RealBus):
         return True
 
     def _publisher(self, topic: str, message_class: Any, latch: bool) -> Any:
-        """Return the world's publisher; one that latches, or that a reader wants kept messages of, keeps the last."""
+        """Return the world's publisher; transient local with depth 1 if it latches or a subscription requires it."""
         qos = self._network.rclpy.qos
         wanted = [
             subscription.qos_profile
@@ -102,7 +102,7 @@ class RclpyRos(RealRos):
         super().start(run, name=name, argv=[*argv, *extra])
 
     def enter(self, process: Process) -> None:
-        """Let the process find its own default context, and the time."""
+        """Set the process's default context, and the clocks."""
         if process is not self._shown:
             self.network.enter(process, self._shown)
             self._shown = process
@@ -112,7 +112,7 @@ class RclpyRos(RealRos):
         self.network.tell_time()
 
     def close(self) -> None:
-        """End every node, then forget the episode."""
+        """End every node, then discard the episode."""
         if self.closed:
             return
         try:
@@ -123,20 +123,20 @@ class RclpyRos(RealRos):
 
 @cache
 def rclpy_network() -> RclpyNetwork:
-    """Return the network of this run, started at first use."""
+    """Return the network of this test run; start it at first use."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # of what rclpy imports; not the user's to mend
+        warnings.simplefilter("ignore", DeprecationWarning)  # from rclpy's imports, which the user cannot fix
         network = RclpyNetwork()
         patch(network)
     return network
 
 
 def close_network() -> None:
-    """Leave the network."""
+    """Shut the network down."""
     if rclpy_network.cache_info().currsize:
         rclpy_network().close()
         rclpy_network.cache_clear()
 
 
 def _nothing(_message: Any) -> None:
-    """Take nothing: the world's messages are taken one by one."""
+    """Do nothing: `collect` takes the world's messages one by one."""

@@ -1,4 +1,4 @@
-"""One real rospy node: a private copy of rospy that is initialised once and keeps its connections between episodes."""
+"""One real rospy node: a private copy of rospy, initialised once, whose connections outlive episodes."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ _PARTS = ("client", "core", "names", "rostime", "timer", "topics", "service", "n
 
 
 class RospyCopy:
-    """A rospy of its own. `process` is the node that uses it in the present episode, None for the world's."""
+    """A private copy of rospy. `process` is its user in the current episode; None for the world's copy."""
 
     def __init__(self, argv: Sequence[str]) -> None:
         self.argv = tuple(argv)
         self.modules: Modules = load_copy("rospy", _PARTS, argv)
         self.process: Process | None = None
         self.name = ""  # set by init_node
-        self.real: dict[str, Callable[..., Any]] = {}  # what patches have replaced
-        self.services: list[Any] = []  # of the present episode
+        self.real: dict[str, Callable[..., Any]] = {}  # originals of patched functions
+        self.services: list[Any] = []  # services of the current episode
 
     def __getattr__(self, part: str) -> ModuleType:
         """Return a module of this copy: `copy.core`, `copy.topics`."""
@@ -35,21 +35,21 @@ class RospyCopy:
 
     @property
     def rospy(self) -> ModuleType:
-        """What `import rospy` gives."""
+        """The copy's `rospy` module."""
         return self.modules["rospy"]
 
     @property
     def tcp_services(self) -> ModuleType:
-        """Where services live."""
+        """The copy's module `rospy.impl.tcpros_service`."""
         return self.modules["rospy.impl.tcpros_service"]
 
     @property
     def topic_manager(self) -> Any:
-        """What knows the connections of this node."""
+        """The copy's topic manager, which holds the node's connections."""
         return self.modules["rospy.impl.registration"].get_topic_manager()
 
     def show(self) -> None:
-        """Let `import rospy` find this copy."""
+        """Make `import rospy` return this copy."""
         show("rospy", self.modules)
 
     def register(self, name: str, arguments: dict[str, Any]) -> None:
@@ -58,7 +58,7 @@ class RospyCopy:
         self.name = self.names.get_caller_id()
 
     def begin(self, process: Process) -> None:
-        """Look like a process that was just started. Connections stay."""
+        """Reset to the state of a new process, but keep connections."""
         self.process = process
         self.core.__dict__.update(_client_shutdown_hooks=[])
         self.rostime.__dict__.update(_rostime_initialized=False, _rostime_current=None)
@@ -73,7 +73,7 @@ class RospyCopy:
             publisher.subscriber_listeners.clear()
 
     def end(self) -> None:
-        """Let go of the episode: no callback of it is called any more."""
+        """End the episode: drop its callbacks and services."""
         for service in self.services:
             service.shutdown("")
         self.services.clear()
@@ -82,7 +82,7 @@ class RospyCopy:
         self.process = None
 
     def close(self) -> None:
-        """Shut the real node down."""
+        """Shut the node down."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             self.real["signal_shutdown"]("the test run is over")

@@ -1,4 +1,4 @@
-"""The ROS 1 network of a test run: a master, the world's node, the nodes under test, kept from episode to episode."""
+"""The ROS 1 network of a test run: a master, the world's node and the nodes under test, kept between episodes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ _BASE = frozenset({"/run_id", "/rosdistro", "/rosversion"})
 
 
 class RospyNetwork:
-    """One per test run. The episode sets `scheduler` and the two callbacks. `patch` makes a copy run in lock-step."""
+    """The network, one per test run.
+
+    The episode sets `scheduler` and the two callbacks. `patch` makes a copy of rospy run in lock-step.
+    """
 
     def __init__(self, patch: Callable[[RospyCopy, RospyNetwork], None]) -> None:
         self._patch = patch
@@ -33,7 +36,7 @@ class RospyNetwork:
         self.wire = Wire()
         self.scheduler = WireScheduler()
         self.calls = ServiceCalls(self.scheduler)
-        self.listening: list[Task] = []  # tasks that any arrival may concern
+        self.listening: list[Task] = []  # tasks to wake at every arrival
         self.in_hooks = False
         self.parameters: Mapping[str, Any] = {}
         self.node_publishes: Callable[[str, Any], None] | None = None
@@ -64,19 +67,19 @@ class RospyNetwork:
                 self.world.rospy.set_param(absolute(name), value)
 
     def end(self) -> None:
-        """Let go of an episode."""
+        """End an episode."""
         for copy in self._copies.values():
             copy.end()
         self._copies.clear()
         self.wire.forget()
 
     def enter(self, process: Process) -> None:
-        """Give a process that starts its rospy, the same one as in the last episode."""
+        """Assign a copy of rospy to a starting process, the same one as in the last episode."""
         if process in self._copies:
             return
         key, number = process.argv, 0
         while (copy := self._kept.get((*key, str(number)))) is not None and copy.process is not None:
-            number += 1  # the same program twice in one episode
+            number += 1  # second process of the same program in one episode
         if copy is None:
             copy = self._kept[(*key, str(number))] = self._made(key)
         copy.begin(process)
@@ -84,13 +87,13 @@ class RospyNetwork:
         process.at_end(lambda: self._run_hooks(copy, process))
 
     def copy_of(self, process: Process) -> RospyCopy:
-        """Return the rospy of a process."""
+        """Return the copy of rospy of a process."""
         return self._copies[process]
 
     def initialise(self, copy: RospyCopy, name: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> None:
-        """Do what `init_node` does; a node that is kept only looks as if it were new."""
+        """Do the work of `init_node`; a kept node is reset to look like a new one."""
         if copy.core.is_initialized():
-            copy.real["init_node"](name, *args, **kwargs)  # raises where the arguments differ
+            copy.real["init_node"](name, *args, **kwargs)  # raises if the arguments differ
             return
         given = dict(zip(("argv", "anonymous", "log_level"), args, strict=False)) | dict(kwargs)
         if not copy.name:
@@ -118,7 +121,7 @@ class RospyNetwork:
         self.connect(impl.resolved_name)
 
     def connect(self, topic: str) -> None:
-        """Wait until everybody who publishes on a topic is connected with everybody who subscribes to it."""
+        """Wait until every publisher of a topic is connected with every subscriber."""
         deadline = monotonic() + PATIENCE
         for sender, publisher in self._ends(topic, "pubs"):
             for receiver, subscriber in self._ends(topic, "subs"):
@@ -133,17 +136,17 @@ class RospyNetwork:
         WATCHDOG.beat()
 
     def subscribers(self, topic: str) -> list[tuple[RospyCopy, Any]]:
-        """Return who subscribes to a topic, with the end of the connection."""
+        """Return the subscribers of a topic, each with its connection."""
         return [end for end in self._ends(topic, "subs") if end[0] is not self.world]
 
     def sent(self, way: Way) -> None:
-        """Note that a message is under way."""
+        """Count a message as in transit."""
         if way.receiver in {copy.name for copy in (self.world, *self._kept.values())}:
             self.wire.expect(way)
             self.scheduler.sent()
 
     def latched(self, copy: RospyCopy, subscriber: Any, callback: Any, arguments: Any) -> None:
-        """Hand a new callback what others have latched on its topic."""
+        """Deliver latched messages of a topic to a new callback."""
         if copy.process is None:
             return
         for _, publisher in self._ends(subscriber.resolved_name, "pubs"):
@@ -152,7 +155,7 @@ class RospyNetwork:
                 self.scheduler.later(job)
 
     def wake_listening(self) -> None:
-        """Let tasks look again whether what they wait for has come."""
+        """Wake tasks that wait for a message."""
         tasks, self.listening = self.listening, []
         for task in tasks:
             self.scheduler.wake(task)
@@ -216,18 +219,18 @@ def spawn_callback(process: Process, callback: Any, message: Any, arguments: Any
 
 
 def mismatch(publisher: Any, subscriber: Any) -> bool:
-    """Return whether two ends of a topic are of different types."""
+    """Return whether a publisher and a subscriber have different types."""
     sums = (publisher.data_class._md5sum, subscriber.data_class._md5sum)
     return "*" not in sums and sums[0] != sums[1]
 
 
 def sleep_really(duration: float, _sleep: Callable[[float], None] = sleep) -> None:
-    """Let other threads run for a while of wall time."""
+    """Sleep for a moment of wall time to let other threads run."""
     _sleep(duration)
 
 
 def quiet_publisher(copy: RospyCopy, topic: str, message_class: Any) -> Any:
-    """Return a publisher that sends in the caller's thread; rospy would advise against it."""
+    """Return a publisher that sends in the caller's thread, without rospy's warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SyntaxWarning)
         return copy.rospy.Publisher(topic, message_class)

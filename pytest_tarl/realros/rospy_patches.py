@@ -1,7 +1,7 @@
-"""What is replaced in a node's copy of rospy: where it waits, where messages enter and leave, how it begins and ends.
+"""Patches of a node's copy of rospy: waits, sent and received messages, initialisation and shutdown.
 
-Names, parameters, messages, connections and everything else stay rospy's own. Every replacement asks which task is
-running: in threads of rospy itself, and in the copy that the world uses, the original is called.
+Everything else stays rospy's own. Every replacement checks the running task: in threads of rospy, and in the world's
+copy, it calls the original.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ if TYPE_CHECKING:
     from pytest_tarl.realros.rospy_copy import RospyCopy
     from pytest_tarl.realros.rospy_network import RospyNetwork
 
-REAL_TIME = SimpleNamespace(  # bound now: nodes may see a virtual clock under the same names
+REAL_TIME = SimpleNamespace(  # bound now, before nodes see the virtual clock under these names
     time=time.time, sleep=time.sleep, monotonic=time.monotonic, perf_counter=time.perf_counter,
     strftime=time.strftime, localtime=time.localtime, gmtime=time.gmtime)  # fmt: skip
 _ON_REAL_TIME = ("core", "topics", "impl.init", "impl.registration", "impl.tcpros_base", "impl.tcpros_pubsub")
 
 
 def patch(copy: RospyCopy, network: RospyNetwork) -> None:
-    """Make a copy of rospy run in lock-step."""
+    """Patch a copy of rospy to run in lock-step."""
     for part in _ON_REAL_TIME:
         copy.modules[f"rospy.{part}"].__dict__["time"] = REAL_TIME
-    copy.core.__dict__["configure_logging"] = lambda *_, **__: None  # pytest's own handlers stay as they are
+    copy.core.__dict__["configure_logging"] = lambda *_, **__: None  # keeps pytest's logging handlers
     _patch_clock(copy)
     _patch_waits(copy, network)
     _patch_timers(copy)
@@ -43,7 +43,7 @@ def patch(copy: RospyCopy, network: RospyNetwork) -> None:
 
 
 def _replace(copy: RospyCopy, part: str, name: str, make: Callable[[Callable[..., Any]], Any]) -> None:
-    """Replace a function in a module and where `rospy` itself shows it."""
+    """Replace a function in a module and in the `rospy` namespace."""
     module = copy.modules[f"rospy.{part}"]
     original = copy.real[name] = getattr(module, name)
     module.__dict__[name] = made = make(original)
@@ -103,7 +103,7 @@ def _sleep(copy: RospyCopy, network: RospyNetwork, process: Process, until: int)
     if process.ending:
         process.refuse_to_wait()
         if network.in_hooks:
-            return  # time stands still by then
+            return  # virtual time no longer moves then
     elif until >= process.scheduler.time:
         process.scheduler.wait(until)
     if process.ending:
@@ -177,9 +177,7 @@ def _patch_sending(copy: RospyCopy, network: RospyNetwork) -> None:
 
     def publish(self: Any, message: Any, connection_override: Any = None) -> Any:
         if connection_override is not None and message is self.latch:
-            return (
-                None  # what is latched is handed on by `latched`, to connections that are kept as to new ones
-            )
+            return None  # `latched` delivers latched messages, for kept connections and new ones alike
         connections = self.connections if connection_override is None else [connection_override]
         ways = [Way(self.resolved_name, copy.name, connection.endpoint_id) for connection in connections]
         for way in ways:
@@ -188,7 +186,7 @@ def _patch_sending(copy: RospyCopy, network: RospyNetwork) -> None:
             result = original(self, message, connection_override)
         except (
             BaseException
-        ):  # rospy leaves half a message in its buffer, and its next one would break the connection
+        ):  # rospy leaves a partial message in its buffer, and the next one would break the connection
             self.buff.seek(0)
             self.buff.truncate(0)
             raise
@@ -211,7 +209,7 @@ def _patch_receiving(copy: RospyCopy, network: RospyNetwork) -> None:
         connections, self.connections = (
             self.connections,
             [],
-        )  # what was latched comes in its turn, not at once
+        )  # latched messages arrive in their turn, not at once
         try:
             add_callback(self, callback, arguments)
         finally:
@@ -220,7 +218,7 @@ def _patch_receiving(copy: RospyCopy, network: RospyNetwork) -> None:
 
     def init(self: Any, name: str, data_class: Any) -> None:
         make(self, name, data_class)
-        self.tcp_nodelay = True  # else two small messages in a row wait for each other
+        self.tcp_nodelay = True  # without it, Nagle's algorithm delays the second of two small messages
 
     subscriber.receive_callback, subscriber.add_callback, subscriber.__init__ = receive_callback, add, init
 
@@ -233,7 +231,7 @@ def _patch_connecting(copy: RospyCopy, network: RospyNetwork) -> None:
         known = self.pubs if kind == copy.modules["rospy.impl.registration"].Registration.PUB else self.subs
         new = name not in known
         impl = acquire(self, kind, name, data_class)
-        impl.ref_count += new  # one reference of our own: connections outlive the episode
+        impl.ref_count += new  # an extra reference, so that connections outlive the episode
         network.joined(copy, impl, publishes=known is self.pubs)
         return impl
 

@@ -21,7 +21,7 @@ from pytest_tarl.ros.process import Process
 
 
 class RospyBus(RealBus):
-    """What the world publishes and hears, through a rospy node of its own."""
+    """The bus of the world, which uses its own rospy node."""
 
     kind: Kind = "ros1"
 
@@ -49,7 +49,7 @@ class RospyBus(RealBus):
             publisher.impl.is_latch, publisher.impl.latch = kept is not None, kept
 
     def collect(self) -> bool:
-        """Take in one message that is under way; return whether there was one."""
+        """Receive one message in transit; return whether there was one."""
         taken = self._network.wire.take()
         if taken is None:
             return False
@@ -71,7 +71,7 @@ class RospyBus(RealBus):
         return self._publishers[topic]
 
     def _listen(self, topic: str, message_class: Any) -> None:
-        """Have the world hear what a node is about to publish."""
+        """Subscribe the world to a topic on which a node is about to publish."""
         self._network.world.rospy.Subscriber(topic, message_class)
 
     def _lane(self, process: Process, topic: str, subscriber: Any) -> Lane:
@@ -82,7 +82,7 @@ class RospyBus(RealBus):
 
 
 class Lane:
-    """The callbacks of a node for one topic: one message after the other, as in the thread that rospy has for it."""
+    """The callbacks of a node for one topic; handles one message at a time, as rospy's thread does."""
 
     def __init__(self, process: Process, subscriber: Any) -> None:
         self._process = process
@@ -91,7 +91,7 @@ class Lane:
         self._busy = False
 
     def deliver(self, message: Any) -> None:
-        """Run the callbacks, or queue the message while they still work on an earlier one."""
+        """Run the callbacks, or queue the message if they are still handling an earlier one."""
         if self._process.ending:
             return
         self._waiting.append(message)
@@ -135,14 +135,14 @@ class RospyRos(RealRos):
         super().start(run, name=name, argv=[*argv, *remapped])
 
     def enter(self, process: Process) -> None:
-        """Let `import rospy` find the rospy of this process."""
+        """Make `import rospy` return the copy of this process."""
         if process is not self._shown:
             self.network.enter(process)
             self.network.copy_of(process).show()
             self._shown = process
 
     def close(self) -> None:
-        """End every node, then forget the episode."""
+        """End every node, then discard the episode."""
         if self.closed:
             return
         try:
@@ -162,18 +162,18 @@ class RospyRos(RealRos):
 
 @cache
 def rospy_network() -> RospyNetwork:
-    """Return the network of this run, started at first use."""
+    """Return the network of this test run; start it at first use."""
     return RospyNetwork(patch)
 
 
 def close_network() -> None:
-    """Stop all processes and nodes of the run."""
+    """Stop all processes and nodes of the test run."""
     if rospy_network.cache_info().currsize:
         rospy_network().close()
         rospy_network.cache_clear()
 
 
 def _silence_rospy() -> None:
-    """Let warnings about rospy's own code stay warnings: under `-W error` they would end its threads."""
+    """Ignore warnings in rospy's code: under `-W error` they would end its threads."""
     for module in ("rospy", "rosgraph", "roslib", "genpy"):
         warnings.filterwarnings("ignore", category=DeprecationWarning, module=rf"{module}(\.|$)")

@@ -1,6 +1,6 @@
-"""Service calls of rospy in lock-step: each is on the wire, or in a handler that plays in virtual time.
+"""Service calls of rospy in lock-step: each is in transit, or in a handler that runs in virtual time.
 
-Time stands still while any call is on the wire. What has come off it goes on in an order that does not depend on the
+Virtual time stands still while a call is in transit. Arrivals are handled in an order that does not depend on the
 network: answers in the order of the calls, then requests by service and content.
 """
 
@@ -16,19 +16,19 @@ from pytest_tarl.realros.lockstep import PATIENCE
 from pytest_tarl.ros.process import Process
 from pytest_tarl.ros.scheduler import Scheduler, Task
 
-Outcome = Callable[[], Any]  # returns what a call returned, raises what it raised
+Outcome = Callable[[], Any]  # returns the result of a call or raises its exception
 Order = tuple[int, int, str]
 
 
 class Arrival(NamedTuple):
-    """What has come off the wire, with its place among what comes at the same time."""
+    """A received request or answer, with its order among simultaneous ones."""
 
     order: Order
     goes_on: Callable[[], None]
 
 
 class ServiceCalls:
-    """The calls of one episode. Everything but `_arrived` belongs to the test's thread."""
+    """The calls of one episode. Only `_arrived` is accessed outside of the test's thread, under `_arrival`."""
 
     def __init__(self, scheduler: Scheduler) -> None:
         self._scheduler = scheduler
@@ -38,7 +38,7 @@ class ServiceCalls:
         self._on_wire = 0
 
     def served(self, process: Process, service: str, handler: Callable[[Any], Any]) -> Callable[[Any], Any]:
-        """Return a service's handler that runs as a task of its node, whoever's thread calls it."""
+        """Return a handler that can be called in any thread and runs in a task of its node."""
 
         def handle(request: Any) -> Any:
             answer: list[Outcome] = []
@@ -52,7 +52,7 @@ class ServiceCalls:
         return handle
 
     def call(self, task: Task, call: Outcome) -> Any:
-        """Run a blocking call of rospy in a thread; meanwhile nodes run, the calling task waits."""
+        """Run a blocking rospy call in a thread; the calling task waits while other nodes run."""
         outcome: list[Outcome] = []
         self._made += 1
         order = (0, self._made, "")
@@ -82,7 +82,7 @@ class ServiceCalls:
         self._scheduler.wake(task)
 
     def _sent(self) -> None:
-        """Note that a request or an answer goes onto the wire, and see to it that it is waited for."""
+        """Count a request or answer as in transit, and schedule the wait for it."""
         self._on_wire += 1
         self._scheduler.later(self._attend)
 
@@ -92,14 +92,14 @@ class ServiceCalls:
             self._arrival.notify()
 
     def _attend(self) -> None:
-        """Wait for all that is on the wire, then let it go on. Raise RecordingError on failure."""
+        """Wait for everything in transit, then handle it in order. Raises RecordingError after PATIENCE."""
         if not self._on_wire:
             return
         with self._arrival:
             if not self._arrival.wait_for(lambda: len(self._arrived) >= self._on_wire, PATIENCE):
                 raise RecordingError(
-                    f"A service call or its answer did not arrive within {PATIENCE:g} s: look whether the network "
-                    "of this machine lets processes talk on 127.0.0.1, and whether the service is a node of the test."
+                    f"A service call or its answer did not arrive within {PATIENCE:g} s: check that processes "
+                    "on this machine can communicate through 127.0.0.1, and that a node of the test serves it."
                 )
             arrived, self._arrived = sorted(self._arrived, key=lambda one: one.order), []
         self._on_wire -= len(arrived)
