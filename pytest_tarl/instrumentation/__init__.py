@@ -1,1 +1,1 @@
-"""Instrument code: from taint lists to numbered sites, instrumented code, and one trace per episode."""
+"""Instrument nodes: number the sites of taint lists, transform the code, and record one trace per episode."""

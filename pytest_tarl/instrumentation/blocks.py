@@ -1,4 +1,4 @@
-"""Find the entry points of blocks, and the parameters of functions."""
+"""Find the first code of blocks, and the parameters of functions."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def first_evaluated_in(body: list[ast.stmt]) -> ast.expr | ast.stmt:
-    """Return what runs first in the body of a branch or loop."""
+    """Return the first node that runs in the body of a branch or loop."""
     return _first_part(next((statement for statement in body if not _is_declaration(statement)), body[0]))
 
 
 def entry_of(node: Function) -> Where:
-    """Return where the body of a function begins to run; its head when nothing runs in it."""
+    """Return the first node that runs in a function's body; the function itself if nothing runs in it."""
     at = _entry(node)
     return start_of(_first_part(node.body[at]) if at < len(node.body) else node)
 
 
 def enter(node: Function | ast.ClassDef, statement: ast.stmt) -> None:
-    """Put a statement at the entry of a function or class, behind its docstring and declarations."""
+    """Insert a statement at the entry of a function or class, after its docstring and declarations."""
     node.body.insert(_entry(node), statement)
 
 
@@ -32,7 +32,7 @@ def parameters(arguments: ast.arguments) -> list[ast.arg]:
 
 
 def message_parameter(node: Function, *, in_class: bool) -> str | None:
-    """Name the parameter that receives the message: the first one, behind `self` or `cls`."""
+    """Return the name of the parameter that receives the message: the first one after `self` or `cls`."""
     static = any(isinstance(d, ast.Name) and d.id == "staticmethod" for d in node.decorator_list)
     positional = [parameter.arg for parameter in (*node.args.posonlyargs, *node.args.args)]
     named = positional[1:] if in_class and not static else positional
@@ -55,6 +55,6 @@ def _first_part(node: ast.stmt) -> ast.expr | ast.stmt:
 
 
 def _is_declaration(node: ast.stmt) -> bool:
-    """Return whether no code runs for a statement: global, nonlocal, bare annotation."""
+    """Return whether a statement runs no code: global, nonlocal, bare annotation."""
     bare = isinstance(node, ast.AnnAssign) and node.value is None
     return bare or isinstance(node, (ast.Global, ast.Nonlocal))

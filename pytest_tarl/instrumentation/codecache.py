@@ -18,8 +18,8 @@ from pathlib import Path
 from types import CodeType
 
 FORMAT = b"tarl-code-1\n"
-KEPT = 8  # entries a file may have: one for each of its site plans, roughly
-REMEMBERED = 256  # entries in memory: a repair tries many edited texts
+KEPT = 8  # entries per file; about one for each site plan
+REMEMBERED = 256  # entries in memory; a repair tries many edited texts
 _HEADER = len(FORMAT) + len(MAGIC_NUMBER) + hashlib.sha256().digest_size
 
 
@@ -31,7 +31,7 @@ class CodeCache:
         self._codes: dict[str, CodeType] = {}
 
     def load(self, name: str) -> CodeType | None:
-        """Return what was stored under this name, None when there is nothing usable."""
+        """Return the code stored under this name; None if there is no valid entry."""
         code = self._codes.get(name)
         if code is None and self._directory is not None:
             code = _read(self._directory / name)
@@ -40,7 +40,7 @@ class CodeCache:
         return code
 
     def store(self, name: str, code: CodeType, *, keep: bool = True) -> None:
-        """Keep code under a name made by `entry_name`; with `keep=False` in this process only."""
+        """Store code under a name from `entry_name`; with `keep=False` in this process only."""
         self._remember(name, code)
         if keep and self._directory is not None and not sys.dont_write_bytecode:
             with contextlib.suppress(OSError):
@@ -53,7 +53,7 @@ class CodeCache:
 
 
 def entry_name(path: Path, depends_on: Iterable[object]) -> str:
-    """Name the code of a file after what it was compiled from; each part must have a faithful `repr`."""
+    """Return the name of a file's code, a digest of its inputs; each part needs an unambiguous `repr`."""
     digest = hashlib.sha256(repr(tuple(depends_on)).encode()).hexdigest()
     return f"{path.stem}-{_place(path)}-{digest[:32]}.pyc"
 
@@ -93,7 +93,7 @@ def _header(payload: bytes) -> bytes:
 
 
 def _forget_old(entry: Path) -> None:
-    """Remove all but the newest entries of the same file."""
+    """Remove all but the KEPT newest entries of the same file."""
     same = entry.parent.glob(f"{entry.name[:-37]}-*.pyc")
     by_age = sorted(same, key=lambda path: path.stat().st_mtime_ns, reverse=True)
     for old in by_age[KEPT:]:

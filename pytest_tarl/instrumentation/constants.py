@@ -1,7 +1,7 @@
-"""What instrumented code records with: constants of its code objects, put there when it is about to run.
+"""Give instrumented code its hook and buffer as constants of its code objects, just before it runs.
 
 As globals they would show in `vars(module)`, in `globals()` and in class bodies with a namespace of their own. The
-transform leaves marks, which compile to constants and are stored with the code; `bound` replaces them.
+transform inserts marks, which compile to constants and are cached with the code; `bound` replaces them.
 """
 
 from __future__ import annotations
@@ -11,24 +11,24 @@ from collections.abc import Callable, Mapping
 from types import CodeType
 from typing import Any
 
-Mark = bytes  # a constant that no program holds by accident
+Mark = bytes  # a digest, which no program contains by accident
 
 
 def _mark(name: str) -> Mark:
     return hashlib.sha256(f"pytest_tarl.instrumentation {name}".encode()).digest()
 
 
-HOOK = _mark("hook")  # hook(number, value) gives value back
+HOOK = _mark("hook")  # hook(number, value) returns value
 BUFFER = _mark("buffer")  # the list of events
-TYPE = _mark("type")  # the builtins, which the program may have hidden
+TYPE = _mark("type")  # builtins, which the program may have shadowed
 FLOAT = _mark("float")
 _BUILTINS: Mapping[Mark, Any] = {TYPE: type, FLOAT: float}
 
 
 def bound(code: CodeType, hook: Callable[[int, Any], Any], buffer: list[Any] | None = None) -> CodeType:
-    """Return code that records by `hook` and, where it was instrumented with `inline`, to `buffer`.
+    """Return code that records with `hook` and, if instrumented with `inline`, into `buffer`.
 
-    Both become keys wherever code objects do, so they must be hashable.
+    Both must be hashable, since code objects are used as keys.
     """
     return _replaced(code, {**_BUILTINS, HOOK: hook, BUFFER: buffer})
 

@@ -1,4 +1,4 @@
-"""Replace the text of files read as data by a test or a node: parameters in YAML, launch and .cfg files."""
+"""Replace the text of data files that a test or node reads: YAML parameters, launch and .cfg files."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _SUFFIXES = (".yaml", ".yml", ".json", ".toml", ".xml", ".launch", ".cfg", ".lau
 
 
 def is_data(path: Path) -> bool:
-    """Return whether a file holds parameters rather than a program of the node."""
+    """Return whether a file holds parameters rather than code of the node."""
     return path.name.endswith(_SUFFIXES)
 
 
 @contextmanager
 def reading(overlay: Mapping[Path, str]) -> Iterator[None]:
-    """Give readers of these files the replacement text, without changing the files on disk."""
+    """Make readers of these files get the replacement text; files on disk stay unchanged."""
     if not overlay:
         yield
         return

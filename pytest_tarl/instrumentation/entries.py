@@ -1,4 +1,4 @@
-"""The list that instrumented code appends events to, a constant of its code objects."""
+"""The list to which instrumented code appends events, a constant of its code objects."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import Any
 
 
 class Entries(list[Any]):
-    """Events of the one thread that runs the program: methods of `list`, which CPython calls without a frame.
+    """Events of a single-threaded program; has the methods of `list`, which CPython calls without a frame.
 
-    Code objects are compared, hashed, shown and pickled with their constants; so this one is equal to itself alone,
-    has a short `repr`, and a copy in another process records nothing.
+    Code objects are compared, hashed, shown and pickled with their constants. So this list is equal only to itself,
+    has a short `repr`, and its copy in another process records nothing.
     """
 
     __slots__ = ("own",)
@@ -18,7 +18,7 @@ class Entries(list[Any]):
 
     def __init__(self, own: Callable[[], list[Any]]) -> None:
         super().__init__()
-        self.own = own  # returns the entries of the running thread
+        self.own = own  # returns the running thread's entries
 
     def __eq__(self, other: object) -> bool:
         """Compare by identity."""
@@ -29,18 +29,18 @@ class Entries(list[Any]):
         return self is not other
 
     def __repr__(self) -> str:
-        """Show no event."""
+        """Return a short text without the events."""
         return "<events>"
 
     def __reduce__(self) -> tuple[type[Unheard], tuple[()]]:
-        """Pickle as what drops every event."""
+        """Pickle as an object that drops every event."""
         return Unheard, ()
 
 
 class SharedEntries(Entries):
-    """The same once several threads run the program: an event goes to the entries of the running one.
+    """Events of a multi-threaded program: appends to the entries of the running thread.
 
-    A list becomes this by its `__class__`, in one step, so that code which holds it need not change.
+    An `Entries` list is converted by assigning `__class__`, so code that holds it needs no change.
     """
 
     __slots__ = ()
@@ -56,7 +56,7 @@ class SharedEntries(Entries):
 
 
 class Unheard:
-    """Stands for the events where nobody asks for them."""
+    """Drops all events, in a process that does not record."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""Convert flat buffers of events to columns, vectorised."""
+"""Convert flat event buffers to columns, with numpy."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Pairs = tuple[Ints, Floats, Starts]
 
 
 def paired(entries: list[Any]) -> Pairs:
-    """Split `[site, value, site, value, …]` into site, value and where each event starts; shape (events,).
+    """Split `[site, value, site, value, …]` into site, value and start index, each of shape (events,).
 
-    A signal handler that raises (a time-out, Ctrl-C) can leave a site without its value: such half events
-    are dropped.
+    A signal handler that raises (a timeout, Ctrl-C) can leave a site without its value; such incomplete events are
+    dropped.
     """
     if len(entries) % 2 == 0 and set(map(type, entries[1::2])) <= {float}:
         even: Starts = np.arange(0, len(entries), 2)
@@ -31,7 +31,7 @@ def paired(entries: list[Any]) -> Pairs:
 
 
 def joined(parts: Sequence[Pairs]) -> Pairs:
-    """Return several pieces as one, in order."""
+    """Concatenate pieces in order; each result has shape (events,)."""
     if len(parts) == 1:
         return parts[0]
     site, flow, starts = zip(*parts, strict=True)
@@ -39,13 +39,13 @@ def joined(parts: Sequence[Pairs]) -> Pairs:
 
 
 def sizes(flow: Floats) -> Floats:
-    """Return the magnitudes of plain floats, as `magnitude` gives them, shape as `flow`."""
+    """Return the magnitudes of plain floats, as `magnitude` does; shape (events,), as `flow`."""
     flow = np.minimum(np.abs(flow), np.where(np.isinf(flow), np.inf, LIMIT))
     flow[~np.isfinite(flow)] = 0.0
     return flow
 
 
 def _whole(entries: list[Any]) -> list[int]:
-    """Return where whole events start: a site, which is an int, before a value, which is a float."""
+    """Return the start indices of complete events: a site (int) followed by a value (float)."""
     pairs = enumerate(pairwise(entries))
     return [start for start, (site, value) in pairs if type(site) is int and type(value) is float]

@@ -1,7 +1,7 @@
 """Build the syntax nodes that record values, with their source positions.
 
-Every new node takes the place of code that runs at the same moment, so that line events, tracebacks and
-carets stay those of the program as written.
+Every new node gets the position of code that runs at the same moment, so that line events, tracebacks and carets are
+those of the original program.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _FIRST = {
 
 
 class Where(TypedDict):
-    """The four coordinates of a node."""
+    """The position of an ast node: first and last line and column."""
 
     lineno: int
     col_offset: int
@@ -45,7 +45,7 @@ class Where(TypedDict):
 
 
 def where(node: ast.expr | ast.stmt | ast.keyword) -> Where:
-    """Return the coordinates of `node`, to build another one in its place."""
+    """Return the position of `node`, for a new node in its place."""
     return Where(
         lineno=node.lineno,
         col_offset=node.col_offset,
@@ -55,31 +55,31 @@ def where(node: ast.expr | ast.stmt | ast.keyword) -> Where:
 
 
 def start_of(node: ast.expr | ast.stmt) -> Where:
-    """Return where the part of `node` that runs first begins, an empty range.
+    """Return the beginning of the part of `node` that runs first, as an empty range.
 
-    A range over several lines would not do: the call of a method stands where its attribute ends.
+    It is empty because CPython places a method call that spans several lines at the end of its attribute.
     """
     return collapsed(where(first_evaluated(node) if isinstance(node, ast.expr) else node))
 
 
 def collapsed(at: Where) -> Where:
-    """Return the empty range at the start of another."""
+    """Return the empty range at the start of a range."""
     line, column = at["lineno"], at["col_offset"]
     return Where(lineno=line, col_offset=column, end_lineno=line, end_col_offset=column)
 
 
 def end_of(node: ast.expr, then: Where) -> Where:
-    """Return where code stands that runs right after an expression, and before code that stands at `then`.
+    """Return the position of code that runs right after an expression and before the code at `then`.
 
-    Of an expression with branches over several lines nobody knows on which line it ends. (Code without a
-    line is no way out: CPython 3.13.0 copies such blocks and then runs both copies.)
+    An expression with branches over several lines has no single last line, so this takes `then`. (Code without a line
+    number is not an alternative: CPython 3.13.0 copies such blocks and then runs both copies.)
     """
     several = node.end_lineno != node.lineno
     return collapsed(then) if several and isinstance(node, _BRANCHING) else where(node)
 
 
 def first_evaluated(node: ast.expr) -> ast.expr:
-    """Return the part of an expression that runs first: where a debugger would stop."""
+    """Return the part of an expression that runs first, where a debugger stops."""
     while True:
         if INLINED_COMPREHENSIONS and isinstance(node, (ast.ListComp, ast.SetComp, ast.DictComp)):
             node = node.generators[0].iter
@@ -93,7 +93,7 @@ def first_evaluated(node: ast.expr) -> ast.expr:
 
 
 def recorded(value: ast.expr, number: int, then: Where | None = None) -> ast.Call:
-    """Build `hook(number, value)`, which gives `value` back to what stands at `then`."""
+    """Build `hook(number, value)`, which returns `value` to the code at `then`."""
     start = start_of(value)
     return ast.Call(
         func=_marked(HOOK, start),
@@ -115,7 +115,7 @@ def note(name: str, number: int, at: Where, *, inline: bool) -> ast.stmt:
 
 
 def note_constant(value: float, number: int, at: Where, *, inline: bool) -> list[ast.stmt]:
-    """Build the statements that record a value known beforehand: a truth value, or 0 for nothing."""
+    """Build the statements that record a known value: a boolean, or 0."""
     constant = ast.Constant(value, **at)
     if inline:
         return _appended(constant, number, at)
@@ -123,7 +123,7 @@ def note_constant(value: float, number: int, at: Where, *, inline: bool) -> list
 
 
 def note_all(events: Iterable[tuple[str, int]], at: Where) -> ast.stmt:
-    """Build the statement that records names which hold floats, with their numbers, in one go."""
+    """Build one statement that records several names that hold floats, with their site numbers."""
     entries: list[ast.expr] = []
     for name, number in events:
         entries += [ast.Constant(number, **at), ast.Name(name, ast.Load(), **at)]
@@ -132,13 +132,13 @@ def note_all(events: Iterable[tuple[str, int]], at: Where) -> ast.stmt:
 
 
 def all_floats(inputs: Iterable[str], at: Where) -> ast.expr:
-    """Build the condition that all these names hold floats, of no subclass."""
+    """Build the condition that all names hold floats, not instances of a subclass."""
     tests: list[ast.expr] = [_is_float(name, at) for name in inputs]
     return tests[0] if len(tests) == 1 else ast.BoolOp(ast.And(), tests, **at)
 
 
 def truth(test: ast.expr) -> ast.expr:
-    """Build the truth value of a condition, asking each operand once, as a jump does."""
+    """Build the truth value of a condition; evaluates each operand once, as a jump does."""
     if isinstance(test, ast.Compare) and len(test.ops) == 1:
         return test
     at = where(test)
@@ -146,10 +146,9 @@ def truth(test: ast.expr) -> ast.expr:
 
 
 def reached(call: ast.Call, number: int) -> ast.Call:
-    """Build the call with 0 recorded just before it happens, after its arguments are known.
+    """Build the call so that 0 is recorded after its arguments are evaluated and before it runs.
 
-    A publish may hand over to other nodes and to the world: recorded afterwards, its event would land in
-    the wrong step of the simulation.
+    Publishing can run other nodes and the world: recorded afterwards, the event could be in a later step.
     """
     if call.keywords:
         last = call.keywords[-1]
@@ -190,11 +189,11 @@ def _appended(value: ast.expr, number: int, at: Where) -> list[ast.stmt]:
 
 
 def _append(entry: ast.expr, at: Where) -> ast.stmt:
-    # As a method call on the list: CPython 3.11 and later specialise exactly this form.
+    # CPython 3.11 and later specialise this form, a method call on a list.
     method = ast.Attribute(_marked(BUFFER, at), "append", ast.Load(), **at)
     return ast.Expr(ast.Call(method, [entry], [], **at), **at)
 
 
 def _marked(mark: Mark, at: Where) -> ast.Constant:
-    """Build what `constants.bound` replaces."""
+    """Build a mark, which `constants.bound` replaces."""
     return ast.Constant(mark, **at)

@@ -1,8 +1,9 @@
-"""Record runs of plain arithmetic on local floats with a single call.
+"""Record sequences ("runs") of plain arithmetic on local floats with a single call.
 
-Where every name that such a run reads holds a float when it begins, its statements cannot fail, run no code of the
-program and make floats only. So their events may be kept back to the end of the run, unseen, and cost a fraction.
-Which names hold floats is known when the run begins; so it stands twice in the program, the second time as ever.
+If every name that a run reads holds a float at its beginning, its statements cannot fail, call no code of the program
+and produce only floats. So their events can be recorded together at the end of the run, at a fraction of the cost,
+with the same result. The types are known only when the run begins; so the program contains each run twice, and the
+second copy records statement by statement.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from pytest_tarl.instrumentation.blocks import Function, parameters
 
 Offset = tuple[int, int]
 
-FEWEST = 3  # events for which asking the types beforehand pays
-_EXACT = 2**53  # whole numbers below become floats without an error
+FEWEST = 3  # fewer events do not outweigh the type checks
+_EXACT = 2**53  # smaller integers convert to float exactly
 _SAFE = (ast.Add, ast.Sub, ast.Mult)
 _DIVIDING = (ast.Div, ast.FloorDiv, ast.Mod)
 _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
@@ -24,14 +25,14 @@ _NOTHING: frozenset[str] = frozenset()
 
 
 class Run(ast.Interactive):
-    """Stands for the statements of a run where its function is about to be transformed."""
+    """Placeholder for the statements of a run in a function that is being transformed."""
 
-    inputs: tuple[str, ...] = ()  # the names that must hold floats
+    inputs: tuple[str, ...] = ()  # names that must hold floats
 
 
 @dataclass
 class _Open:
-    """A run that may grow."""
+    """A run under construction."""
 
     body: list[ast.stmt] = field(default_factory=list)
     inputs: dict[str, None] = field(default_factory=dict)
@@ -39,26 +40,26 @@ class _Open:
 
 
 def gather(function: Function, sites: Collection[Offset]) -> None:
-    """Put a `Run` in the place of every run of a function that is worth it; functions inside are left alone."""
+    """Replace every worthwhile run of a function by a `Run`; nested functions stay unchanged."""
     _Gathering(function, sites).block(function.body, {one.arg for one in parameters(function.args)})
 
 
 def target_of(statement: ast.stmt) -> ast.Name:
-    """Return what a statement of a run gives a value to."""
+    """Return the target of an assignment in a run."""
     target = statement.targets[0] if isinstance(statement, ast.Assign) else getattr(statement, "target", None)
     assert isinstance(target, ast.Name)  # noqa: S101 - for the type checker
     return target
 
 
 class _Gathering:
-    """One walk over a function, with the names that certainly have a value."""
+    """One walk over a function that tracks the names certainly bound."""
 
     def __init__(self, function: Function, sites: Collection[Offset]) -> None:
         self._sites = sites
         self._unsure = frozenset(_unsure(function))
 
     def block(self, statements: list[ast.stmt], bound: set[str]) -> None:
-        """Replace the runs of a list of statements, and of those inside; names that get values join `bound`."""
+        """Replace the runs in a list of statements and nested ones; add newly bound names to `bound`."""
         result: list[ast.AST] = []
         run = _Open()
         for statement in statements:
@@ -72,7 +73,7 @@ class _Gathering:
         statements[:] = [*result, *self._closed(run)]  # type: ignore[list-item]  # a Run is replaced at once
 
     def _grows(self, run: _Open, statement: ast.stmt, bound: set[str]) -> bool:
-        """Take the statement into the run, where it belongs to it."""
+        """Add the statement to the run if it belongs to it; return whether it does."""
         reads = _arithmetic(statement)
         if reads is None or not reads <= (bound | run.made) - self._unsure:
             return False
@@ -103,7 +104,7 @@ class _Gathering:
 
 
 def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
-    """Return the names that a statement reads if it gives a float to a name whenever they hold floats."""
+    """Return the names that a statement reads if it assigns a float whenever they hold floats."""
     if isinstance(statement, ast.Assign) and len(statement.targets) == 1:
         return _float(statement.value) if isinstance(statement.targets[0], ast.Name) else None
     if isinstance(statement, ast.AugAssign) and isinstance(statement.target, ast.Name):
@@ -113,7 +114,7 @@ def _arithmetic(statement: ast.stmt) -> frozenset[str] | None:
 
 
 def _float(node: ast.expr) -> frozenset[str] | None:
-    """Return the names in an expression that is a float, without fail, whenever they are; else None."""
+    """Return the names in an expression that is certainly a float whenever they are; else None."""
     if isinstance(node, ast.Name):
         return frozenset((node.id,))
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
@@ -134,12 +135,12 @@ def _whole(node: ast.expr) -> bool:
 
 
 def _divides(node: ast.expr) -> bool:
-    """Return whether an expression is a number other than 0."""
+    """Return whether an expression is a nonzero number."""
     return isinstance(node, ast.Constant) and bool(node.value) and (_whole(node) or _float(node) is not None)
 
 
 def _given(statement: ast.stmt) -> set[str]:
-    """Return the names that a simple statement gives a value to, whatever else happens."""
+    """Return the names that a simple statement certainly binds."""
     if isinstance(statement, ast.Assign):
         return _stored(statement.targets)
     given = isinstance(statement, ast.AugAssign) or getattr(statement, "value", None) is not None
@@ -151,7 +152,7 @@ def _given(statement: ast.stmt) -> set[str]:
 
 
 def _entered(statement: ast.stmt) -> set[str]:
-    """Return the names that have a value in the body of a loop or `with`."""
+    """Return the names bound in the body of a loop or `with`."""
     if isinstance(statement, (ast.For, ast.AsyncFor)):
         return _stored([statement.target])
     if isinstance(statement, (ast.With, ast.AsyncWith)):
@@ -169,7 +170,7 @@ def _stored(targets: Iterable[ast.expr]) -> set[str]:
 
 
 def _unsure(function: Function) -> Iterable[str]:
-    """Yield the names that may lose their value, or that others may write to."""
+    """Yield the names that can be unbound, or that other scopes can assign."""
     for node in ast.walk(function):
         if isinstance(node, (ast.Global, ast.Nonlocal)):
             yield from node.names

@@ -1,4 +1,4 @@
-"""Import node files: instrument them, apply candidate repairs, and execute them anew in each episode.
+"""Import node files: instrument them, apply candidate repairs, and re-execute them in each episode.
 
 The only file that touches `sys.meta_path`.
 """
@@ -42,12 +42,11 @@ class AlreadyImportedWarning(UserWarning):
 
 
 class NodeImports:
-    """What a node and its imports are compiled and executed by, for one episode.
+    """Compile and execute a node and its imports, for one episode.
 
-    `plan` tells by file where sites stand, `overlay` gives other text to some files (sites keep their lines
-    there where they can). While entered as a context, imports of those files go through here, and whatever
-    project modules a node imports are forgotten at the end. `bind`, when given, gives code what it records
-    with (`Recorder.bind`), else it is `hook` alone.
+    `plan` holds the sites of each file; `overlay` replaces the text of some files (sites keep their lines where
+    possible). As a context manager, it handles imports of those files, and at the end removes the project modules
+    that a node imported. `bind` gives code its hook and buffer (`Recorder.bind`); without it, code gets `hook` alone.
     """
 
     def __init__(
@@ -68,16 +67,14 @@ class NodeImports:
         self._bind = bind or partial(bound, hook=hook)
         self._tails = {_tail(path) for path in self._code.files}
         self._executed: set[Path] = set()
-        self._imported: set[str] = set()  # names of modules that belong to this episode
+        self._imported: set[str] = set()  # names of this episode's modules
         self._namespaces: list[dict[str, Any]] = []
         self._open = contextlib.ExitStack()
-        self._before: set[str] = set()  # names of modules that were there before the episode
-        self.older: tuple[
-            Path, ...
-        ] = ()  # edited files that ran as they were before, known once it is closed
+        self._before: set[str] = set()  # names of modules imported before the episode
+        self.older: tuple[Path, ...] = ()  # edited files whose old text ran; set on exit
 
     def __enter__(self) -> NodeImports:
-        """Begin to watch imports."""
+        """Start to handle imports."""
         early = self._early()
         self._before = set(sys.modules)
         self._open.callback(self._look_for_older, early)
@@ -91,21 +88,21 @@ class NodeImports:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Leave sys.modules, sys.path and `__main__` as they were found."""
+        """Restore sys.modules, sys.path and `__main__`."""
         self._open.close()
 
     @property
     def unrecorded(self) -> Mapping[Path, tuple[Position, ...]]:
-        """Return the sites, by file, at which nothing stands that can be recorded."""
+        """Return the sites, by file, without a statement that can be recorded."""
         return self._code.unrecorded
 
     def compile_file(self, path: Path) -> CodeType:
-        """Compile a file with its sites recorded. Raises SyntaxError and OSError as an import does."""
+        """Compile a file that records its sites. Raises SyntaxError and OSError, as an import does."""
         code = self._code.compile(path)
         return self._bind(code) if self._code.recorded(path.resolve()) else code
 
     def run(self, path: Path, entry: str | None = None) -> None:
-        """Run a node's file: as a script, or by the function that its entry point names."""
+        """Run a node's file as a script, or call the function that its entry point names."""
         __tracebackhide__ = True
         if entry is None:
             self.run_script(path)
@@ -113,9 +110,9 @@ class NodeImports:
             self.run_entry(path, entry)
 
     def run_script(self, path: Path, name: str = "__main__") -> ModuleType:
-        """Execute a file as `python path` does, in a fresh module that `sys.modules` holds under `name`.
+        """Execute a file as `python path` does, in a new module that `sys.modules` holds as `name`.
 
-        A file of a package knows its package, as under `python -m`: its relative imports work.
+        `__package__` is set as by `python -m`, so that relative imports work.
         """
         __tracebackhide__ = True
         root, full_name = importable(path)
@@ -136,7 +133,7 @@ class NodeImports:
         return module
 
     def run_entry(self, path: Path, entry: str) -> None:
-        """Import a file under its own name and call `entry` in it, as a `console_scripts` entry point does."""
+        """Import a file under its own name and call its function `entry`, as a `console_scripts` entry point does."""
         __tracebackhide__ = True
         root, name = importable(path)
         on_search_path(root)
@@ -147,14 +144,14 @@ class NodeImports:
             raise SystemExit(found)
 
     def prepare(self, module: ModuleType, path: Path) -> None:
-        """Note a module whose code is about to be executed."""
+        """Register a module whose code is about to be executed."""
         file = path.resolve()
         self._executed.add(file)
         self._projects.add(workspace(file))
         self._namespaces.append(module.__dict__)
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
-        """Find a file of the plan or overlay; of all other imports only note whether a node asks for them."""
+        """Find a file of the plan or overlay; for other imports, only note whether a node requested them."""
         if fullname.rpartition(".")[2] not in self._tails:
             if fullname.partition(".")[0] not in _OURS and self._asked_by_node(sys._getframe(1)):
                 self._imported.add(fullname)
@@ -171,7 +168,7 @@ class NodeImports:
         return spec
 
     def edited(self, path: Path) -> bytes | None:
-        """Return the text that replaces a file, None when it is as on disk."""
+        """Return the replacement text of a file; None if it is unchanged."""
         return self._code.edited(path.resolve())
 
     def _found_by_others(self, fullname: str, path: Any, target: Any) -> ModuleSpec | None:
@@ -183,7 +180,7 @@ class NodeImports:
         return None
 
     def _asked_by_node(self, frame: FrameType | None) -> bool:
-        """Return whether code of a node, or of a module that belongs to the episode, is on the stack."""
+        """Return whether code of a node or of a module of this episode is on the stack."""
         while frame is not None:
             space = frame.f_globals
             if space.get("__name__") in self._imported or any(space is known for known in self._namespaces):
@@ -192,12 +189,12 @@ class NodeImports:
         return False
 
     def _early(self) -> dict[Path, str]:
-        """Return the files of plan and overlay that are imported already, with their module names."""
+        """Return the files of plan and overlay that are already imported, with their module names."""
         early: dict[Path, str] = {}
         endings = tuple(self._tails)
         names = "\n".join(sys.modules) + "\n"
         if not any(f"{ending}\n" in names for ending in endings):
-            return early  # the usual answer, ten times as quick as asking every name
+            return early  # fast path, ten times as fast as the check of every name
         for name in [name for name in sys.modules if name.endswith(endings)]:
             file = (
                 sys.modules[name].__dict__.get("__file__") if name.rpartition(".")[2] in self._tails else None
@@ -218,17 +215,17 @@ class NodeImports:
             )
 
     def _look_for_older(self, early: Mapping[Path, str]) -> None:
-        """Note edited files that were not executed though something of them is in use: it is the text of before."""
+        """Collect edited files that were not executed but are in use: their old text ran."""
         missed = {path.resolve() for path in self._overlay} - self._executed
         if missed:
             self.older = tuple(sorted({*outlived(missed), *(missed & early.keys())}))
 
     def _forget_modules(self) -> None:
-        """Forget the project's modules, and others that hold something of them since this episode."""
+        """Remove the project's modules, and modules of this episode that refer to them."""
         own = [name for name in self._imported if name in sys.modules and self._belongs(sys.modules[name])]
         new = sys.modules.keys() - self._before - set(own) if own else set()
         others = holders((sys.modules[name] for name in own), sorted(new))
-        for name in sorted((*own, *others), reverse=True):  # submodules before their packages
+        for name in sorted((*own, *others), reverse=True):  # submodules first, then their packages
             module = sys.modules.pop(name)
             package, _, tail = name.rpartition(".")
             outer = sys.modules.get(package)
@@ -236,7 +233,7 @@ class NodeImports:
                 delattr(outer, tail)
 
     def _belongs(self, module: ModuleType) -> bool:
-        """Return whether a module is source of the node's own workspace, or of the tests' one."""
+        """Return whether a module is source code of the node's or the tests' workspace."""
         spec = module.__dict__.get("__spec__")
         if spec is None or not isinstance(spec.loader, SourceFileLoader) or not spec.origin:
             return False
@@ -248,7 +245,7 @@ class NodeImports:
 
 
 class NodeLoader(SourceFileLoader):
-    """Load a node file: everything as the ordinary loader does, but for the code that is executed."""
+    """Load a node file like the standard loader, but with instrumented code."""
 
     def __init__(self, fullname: str, path: str, imports: NodeImports) -> None:
         super().__init__(fullname, path)
@@ -259,7 +256,7 @@ class NodeLoader(SourceFileLoader):
         return self._imports.compile_file(Path(self.path))
 
     def get_data(self, path: Any) -> bytes:
-        """Return the text that runs, so that `get_source` shows it."""
+        """Return the text that runs, for `get_source`."""
         edited = self._imports.edited(Path(path))
         return super().get_data(path) if edited is None else edited
 
@@ -276,10 +273,10 @@ def _resolved(root: Path) -> Path:
 
 @lru_cache(maxsize=8)
 def code_cache(root: Path) -> CodeCache:
-    """Return the cache of a project, the same for all its episodes."""
+    """Return the code cache of a project, shared by all its episodes."""
     return CodeCache(root / ".tarl" / "cache")
 
 
 def _tail(path: Path) -> str:
-    """Return the last part of the name under which a file can be imported."""
+    """Return the last part of a file's module name."""
     return path.parent.name if path.stem == "__init__" else path.stem

@@ -1,4 +1,4 @@
-"""Transform an ast into one that records. The instrumented program computes exactly what the original computes."""
+"""Transform an ast so that it records values. The instrumented program has the same behaviour as the original."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from pytest_tarl.instrumentation.magnitude import magnitude
 Offset = tuple[int, int]  # line from 1 and column in UTF-8 bytes from 0, as `ast` counts
 Scope = Literal["module", "class", "function"]
 
-# They make names known to the compiler, or nothing at all: there is no value to record.
+# They only declare names, or do nothing: there is no value to record.
 _SILENT = (ast.ClassDef, ast.Import, ast.ImportFrom, ast.Global, ast.Nonlocal)
 Function = TypeVar("Function", ast.FunctionDef, ast.AsyncFunctionDef)
 Loop = TypeVar("Loop", ast.For, ast.AsyncFor)
@@ -48,14 +48,12 @@ def instrument(
     inline: bool = False,
     placed: set[Offset] | None = None,
 ) -> ast.Module:
-    """Return the module with every statement (or lambda body) that starts at a position of `sites` recorded.
+    """Return the module with recording at every statement or lambda body that starts at a position in `sites`.
 
-    What it is recorded with are constants: compile the tree with `compiled`, give it a hook and a buffer by
-    `constants.bound`. Sites in `publishes`, and calls of methods named publish,
-    are recorded with 0 when they are reached. A condition is recorded as 1 or 0, the head of a function as
-    its message parameter, a loop as its target at each turn. With `inline`, plain floats are appended to
-    the buffer without a call. `tree` is used up; the positions at which something
-    stood are added to `placed`.
+    Compile the result with `compiled`, and give it a hook and a buffer by `constants.bound`. The recorded value is 0
+    for sites in `publishes` and calls of methods named publish, 1 or 0 for a condition, the message parameter for the
+    head of a function, and the target in each iteration for a loop. With `inline`, plain floats are appended to the
+    buffer without a call. `tree` is modified; positions with a recorded statement are added to `placed`.
     """
     found: set[Offset] = set() if placed is None else placed
     changed = _Recording(sites, frozenset(publishes), found, inline=inline).visit(tree)
@@ -64,7 +62,7 @@ def instrument(
 
 
 def compiled(tree: ast.Module, path: str) -> CodeType:
-    """Compile an instrumented module without the compiler's warnings: it takes the marks for what they look like."""
+    """Compile an instrumented module; ignore the compiler's warnings, which are about the marks."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         code: CodeType = compile(tree, path, "exec", dont_inherit=True)
@@ -84,7 +82,7 @@ class _Recording(ast.NodeTransformer):
         self._scope: list[Scope] = ["module"]
 
     def visit(self, node: ast.AST) -> ast.AST | list[ast.stmt]:
-        """Transform what is inside first, then the statement itself."""
+        """Transform nested nodes first, then the statement itself."""
         number = self._number(node) if isinstance(node, ast.stmt) else None
         inner: ast.AST = super().visit(node)
         if number is None or not isinstance(inner, ast.stmt):
@@ -102,7 +100,7 @@ class _Recording(ast.NodeTransformer):
             self._placed.add(offset)
         return number
 
-    # Scopes, and what is recorded inside of them
+    # Scopes, and recording inside them
 
     def _inside(self, node: ast.AST, scope: Scope) -> None:
         self._scope.append(scope)
@@ -110,16 +108,16 @@ class _Recording(ast.NodeTransformer):
         self._scope.pop()
 
     def visit_ClassDef(self, node: ast.ClassDef) -> ast.ClassDef:
-        """Enter a class."""
+        """Transform a class."""
         self._inside(node, "class")
         return node
 
     def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.FunctionDef:
-        """Enter a function; a site at one of its parameters is recorded at its entry."""
+        """Transform a function; a site at one of its parameters is recorded at its entry."""
         return self._function(node)
 
     def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> ast.AsyncFunctionDef:
-        """Enter a coroutine."""
+        """Transform a coroutine."""
         return self._function(node)
 
     def _function(self, node: Function) -> Function:
@@ -134,7 +132,7 @@ class _Recording(ast.NodeTransformer):
         return node
 
     def visit_Run(self, node: Run) -> ast.If:
-        """Record a run of arithmetic in one go where it begins with floats, else statement by statement."""
+        """Record a run of arithmetic with one call if its inputs are floats, else statement by statement."""
         begins = start_of(first_evaluated_in(node.body))
         numbers = [(target_of(statement).id, self._number(statement)) for statement in node.body]
         events = [(name, number) for name, number in numbers if number is not None]
@@ -143,7 +141,7 @@ class _Recording(ast.NodeTransformer):
         return ast.If(all_floats(node.inputs, begins), fused, node.body, **begins)
 
     def visit_Lambda(self, node: ast.Lambda) -> ast.Lambda:
-        """Record the body, and the message where the site is the lambda itself."""
+        """Record the body, and the message if the site is the lambda itself."""
         body, receives = self._number(node.body), self._number(node)
         same = (node.lineno, node.col_offset) == (node.body.lineno, node.body.col_offset)
         publish = self._publishing(node.body, body)
@@ -167,7 +165,7 @@ class _Recording(ast.NodeTransformer):
         return node
 
     def visit_match_case(self, node: ast.match_case) -> ast.match_case:
-        """Record the guard of a case, which stands where its pattern does."""
+        """Record the guard of a case, at the position of its pattern."""
         number = self._number(node.pattern)
         self.generic_visit(node)
         if number is not None and node.guard is not None:
@@ -216,7 +214,7 @@ class _Recording(ast.NodeTransformer):
     def _record_expr(self, node: ast.Expr, number: int) -> list[ast.stmt]:
         value = node.value
         if isinstance(value, ast.Constant):
-            return [node]  # a docstring must stay where it is, and `...` does nothing
+            return [node]  # a docstring must stay first, and `...` does nothing
         if isinstance(value, ast.Yield):
             if value.value is None:
                 return [*self._nothing(node, number), node]
@@ -228,12 +226,12 @@ class _Recording(ast.NodeTransformer):
         return [*self._nothing(node, number), node]
 
     def _record_assert(self, node: ast.Assert, number: int) -> list[ast.stmt]:
-        # A failing one leaves no event: the exception tells, and its caret depends on how the test is compiled.
+        # No event if it fails: there is an exception, whose caret depends on how the test is compiled.
         return [node, *self._note_constant(1.0, number, start_of(node.test))]
 
     def _record_if(self, node: ast.If | ast.While, number: int) -> list[ast.stmt]:
         if isinstance(node.test, ast.Constant):
-            return [node]  # nothing is evaluated, `while True` has no line of its own
+            return [node]  # nothing is evaluated: `while True` has no line events of its own
         true = start_of(first_evaluated_in(node.body))
         false = start_of(first_evaluated_in(node.orelse) if node.orelse else node.test)
         node.body[:0] = self._note_constant(1.0, number, true)
@@ -274,7 +272,7 @@ class _Recording(ast.NodeTransformer):
         return note_constant(value, number, at, inline=self._inline)
 
     def _rereadable(self) -> bool:
-        """Return whether a plain name can be read again without running code: not so in a class body."""
+        """Return whether a name can be read again without running code; false in a class body."""
         return self._scope[-1] != "class"
 
     def _before_or_around(

@@ -1,4 +1,4 @@
-"""Find the import path and name of a node's file, and restore the interpreter after the node has run."""
+"""Find the import path and module name of a node's file, and restore the interpreter after the node has run."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 
-_BUILT = ("build", "install", "devel")  # what building a workspace leaves beside its src
+_BUILT = ("build", "install", "devel")  # build output beside a workspace's src
 _PACKAGE = ("package.xml", "pyproject.toml", "setup.py")
 
 
 def importable(path: Path) -> tuple[Path, str]:
-    """Return the folder that a file is imported from and its name there: `driver`, in a package `robot.driver`."""
+    """Return the import folder of a file and its module name there: `driver`, or `robot.driver` in a package."""
     root, parts = path.parent, [path.stem]
     while (root / "__init__.py").is_file():
         root, parts = root.parent, [root.name, *parts]
@@ -23,11 +23,10 @@ def importable(path: Path) -> tuple[Path, str]:
 
 @lru_cache(maxsize=256)
 def workspace(path: Path) -> Path:
-    """Return the folder of everything that a node may be developed with.
+    """Return the root folder of the sources that belong to a node.
 
-    That is the git repository around it; without one, the folder above the `src` of a colcon or catkin workspace, or
-    the outermost folder with a `package.xml`, `pyproject.toml` or `setup.py`; without these, the folder that the
-    node is imported from.
+    That is its git repository; without one, the folder above the `src` of a colcon or catkin workspace, or the
+    outermost folder with a `package.xml`, `pyproject.toml` or `setup.py`; without these, its import folder.
     """
     file = path.resolve()
     for folder in file.parents:
@@ -40,7 +39,7 @@ def workspace(path: Path) -> Path:
 
 
 def on_search_path(*folders: Path) -> None:
-    """Let imports search these folders before all others, the first of them first."""
+    """Put these folders at the front of the search path, in this order."""
     for folder in reversed(folders):
         if str(folder) not in sys.path:
             sys.path.insert(0, str(folder))
@@ -48,7 +47,7 @@ def on_search_path(*folders: Path) -> None:
 
 @contextlib.contextmanager
 def restored_interpreter() -> Iterator[None]:
-    """Put back what a running script changes: the search path and `__main__`."""
+    """Restore what a script changes: the search path and `__main__`."""
     path, main = list(sys.path), sys.modules["__main__"]
     try:
         yield
@@ -59,7 +58,7 @@ def restored_interpreter() -> Iterator[None]:
 
 @contextlib.contextmanager
 def shown(path: Path, text: str) -> Iterator[None]:
-    """Let tracebacks and `inspect` show the text that runs, not the one on disk."""
+    """Make tracebacks and `inspect` show the text that runs, not the file on disk."""
     before = linecache.cache.pop(str(path), None)
     linecache.cache[str(path)] = (len(text), None, text.splitlines(keepends=True), str(path))
     try:

@@ -5,14 +5,14 @@ int, float, bool               absolute value; 1 and 0
 complex, Fraction, Decimal     absolute value
 numpy scalars and arrays       Euclidean norm (real and complex numbers; other kinds 0)
 list, tuple, set, dict values  Euclidean norm of all numbers inside, at any depth
-ROS message, dataclass         the same, leaving out header, stamp, seq and covariances
+ROS message, dataclass         the same, without header, stamp, seq and covariances
 NaN, infinity                  0: "no measurement" (REP 117), also as a part of something larger
 None, text, bytes, the rest    0
 =============================  =====================================================================
 
-Values above `LIMIT` count as `LIMIT`, so that sums and squares of them stay finite. To stay cheap, sequences
-of plain numbers and arrays are sampled evenly above `SAMPLE` numbers and scaled up; of anything else at most
-`SAMPLE` parts are looked at.
+Values above `LIMIT` count as `LIMIT`, so that their sums and squares stay finite. To limit the cost, sequences of
+plain numbers and arrays with more than `SAMPLE` numbers are sampled evenly and scaled up; of other containers at most
+`SAMPLE` parts are visited.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def magnitude(value: object) -> float:
         if number is not None:
             return _size(number, value)
         return 0.0 if parts is None else _bounded(_norm(value))
-    except Exception:  # whatever an object does, the program must not notice
+    except Exception:  # an object can raise anything; the program must not notice
         return 0.0
 
 
@@ -61,7 +61,7 @@ def _bounded(number: float) -> float:
 
 def _norm(value: object) -> float:
     sizes: list[float] = []
-    entered: set[int] = set()  # what holds itself is entered once
+    entered: set[int] = set()  # ids of visited containers, for cycles
     waiting: list[Any] = [value]
     looked_at = 0
     while waiting and looked_at < 2 * SAMPLE:
@@ -95,8 +95,8 @@ def _size(number: Number, value: object) -> float:
 
 
 def _plain_norm(sequence: list[Any] | tuple[Any, ...]) -> float | None:
-    """Return the norm of a sequence of finite plain numbers, None when it holds anything else."""
-    length = sequence.__len__()  # `len` may be the program's own for a while
+    """Return the norm of a sequence of finite plain numbers; None if it holds anything else."""
+    length = sequence.__len__()  # the program may have replaced `len`
     step = length // SAMPLE or 1
     sample = sequence[::step] if step > 1 else sequence
     if not _PLAIN.issuperset(map(id, map(type, sample))):
@@ -109,7 +109,7 @@ def _plain_norm(sequence: list[Any] | tuple[Any, ...]) -> float | None:
 
 
 def _kind(kind: type) -> tuple[Number | None, Parts | None]:
-    """Return what reads objects of a class as a number, else what lists their parts, else nothing."""
+    """Return (number reader, part lister) of a class; None for each that does not apply."""
     known = _KINDS.get(id(kind))
     if known is None:
         if len(_KINDS) >= _KINDS_KEPT:
@@ -120,7 +120,7 @@ def _kind(kind: type) -> tuple[Number | None, Parts | None]:
     return known[1], known[2]
 
 
-# By identity, since the hash of a class may be code of the program. An entry goes with its class, which is not kept.
+# Keyed by id, since hashing a class can run code of the program. A weak reference removes the entry with its class.
 _KINDS: dict[int, tuple[ref[type], Number | None, Parts | None]] = {}
 _KINDS_KEPT = 1024
 
@@ -155,7 +155,7 @@ _NUMBERS: tuple[tuple[type, Number], ...] = (
 
 
 def _numpy(value: Any) -> float:
-    """Return the norm of an array or scalar of numpy; evenly sampled where it is large."""
+    """Return the norm of a numpy array or scalar; large arrays are sampled evenly."""
     import numpy as np
 
     flat = np.asarray(value).reshape(-1)
@@ -172,10 +172,10 @@ def _numpy(value: Any) -> float:
 
 
 def _parts(kind: type) -> Parts | None:
-    """Return what lists the contents of a container or message; None if there is nothing to look into."""
+    """Return a function that lists the contents of a container or message; None for other objects."""
     for container in _CONTAINERS:
         if issubclass(kind, container):
-            return container.__iter__  # not the subclass's own, which may do anything
+            return container.__iter__  # not that of a subclass, which can run any code
     if issubclass(kind, dict):
         return dict.values
     names = _fields(kind)
@@ -188,7 +188,7 @@ def _parts(kind: type) -> Parts | None:
 
 
 def _fields(kind: type) -> tuple[str, ...]:
-    """Return the fields of a message class or dataclass, without those that are no payload."""
+    """Return the payload fields of a message class or dataclass."""
     listed = _attribute(kind, "get_fields_and_field_types")
     dataclass_fields = _attributes(kind).get("__dataclass_fields__")
     names: list[str] = []
@@ -204,7 +204,7 @@ def _fields(kind: type) -> tuple[str, ...]:
 
 
 def _slot(kind: type, name: str) -> MemberDescriptorType | None:
-    """Return where a field is stored; as `_name` where a property checks assignments to it."""
+    """Return the descriptor that stores a field; `_name` if a property checks assignments."""
     found = (_attribute(kind, stored) for stored in (name, f"_{name}"))
     return next((slot for slot in found if isinstance(slot, MemberDescriptorType)), None)
 
@@ -212,7 +212,7 @@ def _slot(kind: type, name: str) -> MemberDescriptorType | None:
 def _stored(message: object, name: str) -> object:
     """Read a field without running a property."""
     kind = type(message)
-    slot = _slot(kind, name)  # found anew, since it would keep the class
+    slot = _slot(kind, name)  # looked up each time, since a stored slot would keep the class alive
     if slot is not None:
         return slot.__get__(message, kind)
     state = _attribute(kind, "__dict__")
@@ -220,7 +220,7 @@ def _stored(message: object, name: str) -> object:
     return stored.get(name, stored.get(f"_{name}"))
 
 
-# What a class has, past its metaclass, which may run code of the program even for these.
+# Class attributes read without the metaclass, which can run code of the program even for these.
 _bases: Callable[[type], tuple[type, ...]] = type.__dict__["__mro__"].__get__
 _attributes: Callable[[type], Mapping[str, Any]] = type.__dict__["__dict__"].__get__
 

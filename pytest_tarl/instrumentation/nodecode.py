@@ -1,4 +1,4 @@
-"""Compile a node file, or the text that replaces it, with its sites recorded."""
+"""Compile a node file, or its replacement text, so that it records its sites."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from pytest_tarl.instrumentation.sites import Position, Positions, relocate
 
 
 class NodeCode:
-    """Compile the files of a plan (where sites stand) and of an overlay (texts that replace files)."""
+    """Compile the files of a plan (sites by file) and of an overlay (replacement texts)."""
 
     def __init__(
         self,
@@ -39,16 +39,16 @@ class NodeCode:
         self.files = frozenset({*self._plan, *self._overlay})
 
     def edited(self, file: Path) -> bytes | None:
-        """Return the text that replaces a file (a resolved path), None when it is as on disk."""
+        """Return the replacement text of a file (a resolved path); None if it is unchanged."""
         text = self._overlay.get(file)
         return None if text is None else text.encode()
 
     def recorded(self, file: Path) -> bool:
-        """Return whether a file (a resolved path) holds sites."""
+        """Return whether a file (a resolved path) contains sites."""
         return bool(self._plan.get(file))
 
     def compile(self, path: Path) -> CodeType:
-        """Compile a file with its sites recorded. Raises SyntaxError and OSError as an import does."""
+        """Compile a file that records its sites. Raises SyntaxError and OSError, as an import does."""
         file = path.resolve()
         data, text, positions = self._text(file)
         parts = (data, sorted(positions.items()), self._publishes, self._inline, _transform_digest())
@@ -61,7 +61,7 @@ class NodeCode:
         return code
 
     def _text(self, file: Path) -> tuple[bytes, str | None, Positions]:
-        """Return the bytes that are compiled, the text where it replaces the file, and its sites."""
+        """Return the bytes to compile, the replacement text if there is one, and the sites."""
         positions = self._plan.get(file, {})
         text = self._overlay.get(file)
         if text is None:
@@ -73,7 +73,7 @@ class NodeCode:
     def _compiled(self, path: Path, source: bytes | str, positions: Positions) -> CodeType:
         placed: set[Offset] = set()
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # the developers' own runs show them
+            warnings.simplefilter("ignore")  # shown when developers run the node themselves
             tree = ast.parse(source, str(path))
             offsets = _offsets(source if isinstance(source, str) else decode_source(source), positions)
             tree = instrument(
@@ -91,7 +91,7 @@ class NodeCode:
 
 
 def _offsets(text: str, positions: Positions) -> dict[Position, Offset]:
-    """Turn columns in characters, from 1, into columns in UTF-8 bytes, from 0."""
+    """Convert columns in characters, from 1, to columns in UTF-8 bytes, from 0."""
     lines = text.split("\n")
     offsets = {}
     for line, column in positions:
@@ -102,7 +102,7 @@ def _offsets(text: str, positions: Positions) -> dict[Position, Offset]:
 
 @lru_cache(maxsize=1)
 def _transform_digest() -> str:
-    """Identify the transform itself, so that code of another version of it is not taken."""
+    """Return a digest of the transform's source, so that code cached by another version is not used."""
     texts = [
         Path(module.__file__ or "").read_bytes() for module in (constants, forms, blocks, fusing, transform)
     ]

@@ -1,8 +1,8 @@
-"""Event buffers of one episode, with minimal work while the node runs and the rest at its end.
+"""Record the events of one episode, with little work while the node runs; most is done at the end.
 
-A buffer is one flat list per thread, `[site, value, site, value, …]`. What happens around the node (a cell
-is latched, a step is rewarded) goes into a list of marks, each with the length of every buffer at that
-moment; so only its own thread ever writes to a buffer. Greenlets of one thread share its buffer.
+A buffer is one flat list per thread, `[site, value, site, value, …]`. Events of the simulation (a cell is latched, a
+step is rewarded) are marks in a separate list, each with the length of every buffer at that moment. So only its own
+thread writes to a buffer. Greenlets of one thread share its buffer.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from pytest_tarl.instrumentation.threads import ThreadWatch
 from pytest_tarl.instrumentation.trace import Floats, Ints, Trace
 from pytest_tarl.sensors import Cell
 
-EXACT = 2**53  # integers below are floats without loss, which is all that the short way does
-MANY = 200_000  # entries of a buffer that are packed when a step ends, so that the list stays small
+EXACT = 2**53  # smaller integers convert to float exactly; the fast path handles only these
+MANY = 200_000  # entries above which a buffer is packed at the end of a step, to limit memory
 _TOOLS = frozenset(
     {"pytest_tarl", "_pytest", "execnet", "pytest_rerunfailures", "pytest_timeout", "slipcover", "xdist"}
 )
@@ -34,16 +34,16 @@ Hook = Callable[[int, Any], Any]
 
 @dataclass
 class _Buffer:
-    """The events of one thread, and how many entries it had at each mark, those that were packed included."""
+    """The events of one thread; `lengths` are its numbers of entries at each mark, including packed ones."""
 
     entries: list[Any] = field(default_factory=list)
     lengths: list[int] = field(default_factory=list)
     packed: list[Pairs] = field(default_factory=list)
-    gone: int = 0  # entries that were packed
+    gone: int = 0  # number of packed entries
 
     def pack(self) -> None:
-        """Turn the entries into columns; in the thread that they are from, or at the very end."""
-        entries = self.entries[:]  # one step: another thread may still be appending
+        """Convert the entries to columns. Call it in the buffer's own thread, or after the episode."""
+        entries = self.entries[:]  # atomic, since another thread may still append
         self.entries.clear()
         site, flow, starts = paired(entries)
         self.packed.append((site, flow, starts + self.gone if self.gone else starts))
@@ -53,21 +53,20 @@ class _Buffer:
 class Recorder:
     """Record one episode.
 
-    `hook` may be called from any thread. `bind` gives instrumented code a faster one and the buffer of the thread
-    that made the recorder. Before a second thread runs its first line, that buffer is made to pass on what comes
-    from other threads; at once where another thread is there already that may run code of the program, and with
-    `threads=True`: for real ROS.
+    `hook` can be called from any thread. `bind` gives instrumented code a faster hook, and the buffer of the thread
+    that created the recorder. That buffer begins to distinguish threads before a second thread runs its first line;
+    from the start if another thread that may run the program already exists, or with `threads=True`, as for real ROS.
     """
 
-    _packing = True  # whether `reward` may take entries out of the buffer of the recorder's own thread
+    _packing = True  # whether `reward` may pack the buffer of the recorder's own thread
 
     def __init__(self, *, threads: bool = False) -> None:
         self._lock = threading.Lock()
         self._local = threading.local()
         self._buffers: list[_Buffer] = []
         self._cells: dict[Cell, int] = {}
-        self._latched: list[int] = []  # at each mark, the cell that holds from there on
-        self._rewards: list[int] = []  # the marks that close a step
+        self._latched: list[int] = []  # the cell from each mark on
+        self._rewards: list[int] = []  # indices of the marks that close a step
         self._totals: list[float] = []
         self._parts: list[Mapping[str, float]] = []
         self.hook: Callable[[int, T], T] = _threaded_hook(self._entries)
@@ -81,14 +80,14 @@ class Recorder:
         self._watch, self._watching = ThreadWatch(self._share), False
 
     def bind(self, code: CodeType) -> CodeType:
-        """Return instrumented code that records here."""
+        """Return instrumented code that records into this recorder."""
         if self._single and not self._watching:
             self._watching = True
             self._watch.begin()
         return bound(code, self._bound_hook, self._own.entries)
 
     def latch(self, cell: Cell | None) -> None:
-        """Latch the current cell; None if it is unknown again."""
+        """Set the current cell; None if it is unknown again."""
         with self._lock:
             self._mark(-1 if cell is None else self._cells.setdefault(cell, len(self._cells)))
 
@@ -103,7 +102,7 @@ class Recorder:
             self._own.pack()
 
     def finish(self) -> Trace:
-        """End the episode and return what was recorded. Later events are dropped."""
+        """End the episode and return its trace. Later events are dropped."""
         self._watch.end()
         parts = [self._columns(buffer, number) for number, buffer in enumerate(self._buffers)]
         columns = [np.concatenate(part) for part in zip(*parts, strict=True)]
@@ -130,7 +129,7 @@ class Recorder:
             buffer.lengths.append(buffer.gone + len(buffer.entries))
 
     def _entries(self) -> list[Any]:
-        """Return the buffer of the running thread."""
+        """Return the entries of the running thread."""
         try:
             entries: list[Any] = self._local.entries
         except AttributeError:
@@ -141,17 +140,17 @@ class Recorder:
         return entries
 
     def _share(self) -> None:
-        """Have the buffer tell threads apart from now on."""
+        """Make the buffer distinguish threads from now on."""
         self._single = False
         self._own.entries.__class__ = SharedEntries
 
     def _columns(self, buffer: _Buffer, number: int) -> tuple[Ints, Floats, Ints, Ints, Ints]:
-        """Return site, flow, cell, step and thread of every event of one thread."""
+        """Return site, flow, cell, step and thread of one thread's events, each of shape (events,)."""
         buffer.pack()
         site, flow, starts = joined(buffer.packed)
         before = np.searchsorted(starts, np.array(buffer.lengths, np.int64), side="left")
         bounds = np.concatenate(([0], before, [len(starts)]))
-        between = bounds[1:] - bounds[:-1]  # events before each mark and after the last
+        between = bounds[1:] - bounds[:-1]  # numbers of events before each mark and after the last
         cells = np.array([-1, *self._latched], np.int32)
         closing = np.zeros(len(cells), np.int32)
         closing[np.array(self._rewards, np.int64) + 1] = 1
@@ -165,7 +164,7 @@ class Recorder:
 
 
 def _alone() -> bool:
-    """Return whether every other thread belongs to a tool that runs tests, and so never runs the program's code."""
+    """Return whether all other threads belong to test tools, which never run code of the program."""
     return all(
         _of_tool(thread) for thread in threading.enumerate() if thread is not threading.current_thread()
     )
@@ -177,7 +176,7 @@ def _of_tool(thread: threading.Thread) -> bool:
 
 
 def _plain_hook(entries: list[Any]) -> Hook:
-    """Make the hook of code that starts in one thread; `entries` tells others apart once there are some."""
+    """Return the hook for a program that starts in one thread; `entries` distinguishes later threads."""
     size = magnitude
 
     def hook(number: int, value: Any) -> Any:
@@ -201,7 +200,7 @@ def _plain_hook(entries: list[Any]) -> Hook:
 
 
 def _threaded_hook(own: Callable[[], list[Any]]) -> Hook:
-    """Make the hook that any thread may call."""
+    """Return the hook for any thread."""
     size, extend = magnitude, list.extend
 
     def hook(number: int, value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Number the sites of an analysis: one list per source and sink topic, with the position of each site."""
+"""Number the sites of an analysis: one list per pair of source and sink topic, with the sites' positions."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from pytest_tarl.model import SitePlace, TaintList
 if TYPE_CHECKING:
     from tarl_lint.model import Flow, SiteId, Step
 
-Position = tuple[int, int]  # line and column of a statement's first character, both from 1
-Positions = Mapping[Position, int]  # → global number of the site that stands there
+Position = tuple[int, int]  # line and column of a statement's first character, each from 1
+Positions = Mapping[Position, int]  # → global number of the site
 
 
 class HasFlows(Protocol):
-    """The part of `tarl_lint.api.Analysis` that `plan` needs."""
+    """The part of `tarl_lint.api.Analysis` that `plan` uses."""
 
     @property
     def flows(self) -> Sequence[Flow]:
-        """Return every flow found."""
+        """Return all flows."""
         ...
 
 
@@ -32,8 +32,8 @@ class HasFlows(Protocol):
 class Plan:
     """The sites to record.
 
-    A global site number is an index into `places`; `members[i]` are the numbers of `lists[i]`.
-    `positions` tells by path (as the analysis writes it) where sites stand, columns in characters.
+    A global site number is an index into `places`; `members[i]` are the numbers of `lists[i]`. `positions` holds the
+    sites by path (as in the analysis), with columns in characters.
     """
 
     lists: tuple[TaintList, ...]
@@ -43,7 +43,7 @@ class Plan:
 
     @property
     def publishes(self) -> frozenset[int]:
-        """Return the sites that produce nothing and are recorded when they are reached."""
+        """Return the sites without a value, which are recorded when they are reached."""
         return frozenset(number for number, place in enumerate(self.places) if place.role == "publish")
 
 
@@ -66,9 +66,9 @@ def plan(analysis: HasFlows) -> Plan:
 
 
 def relocate(positions: Positions, before: str, after: str) -> dict[Position, int]:
-    """Find where the sites of `before` stand in an edited text.
+    """Find the positions of the sites of `before` in an edited text.
 
-    A changed line keeps its sites when it is replaced by as many lines; sites on removed lines are left out.
+    Changed lines keep their sites if their number is unchanged; sites on removed lines are dropped.
     """
     lines: dict[int, int] = {}
     matcher = difflib.SequenceMatcher(None, before.split("\n"), after.split("\n"), autojunk=False)
@@ -91,7 +91,7 @@ def _scored(flow: Flow) -> list[Step]:
 
 
 def _merged(chains: Sequence[Sequence[Step]]) -> list[Step]:
-    """Merge taint lists: each keeps its order where they agree, ties go by position in the file."""
+    """Merge taint lists in an order consistent with each, as far as they agree; break ties by position."""
     best: dict[SiteId, Step] = {}
     followers: dict[SiteId, set[SiteId]] = defaultdict(set)
     waiting: dict[SiteId, int] = defaultdict(int)
@@ -110,7 +110,7 @@ def _merged(chains: Sequence[Sequence[Step]]) -> list[Step]:
 def _topological(
     steps: Mapping[SiteId, Step], followers: Mapping[SiteId, set[SiteId]], waiting: dict[SiteId, int]
 ) -> Iterator[Step]:
-    """Yield steps after all that lead to them; a cycle is entered at its first line."""
+    """Yield steps in topological order; enter a cycle at its first line."""
     left = dict(sorted(steps.items(), key=lambda item: item[1].span))
     ready = [(step.span, site) for site, step in left.items() if not waiting[site]]
     heapq.heapify(ready)
@@ -126,7 +126,7 @@ def _topological(
 
 
 def _numbering(steps: Iterable[Step]) -> dict[SiteId, Step]:
-    """Return every distinct step by its site, in the order of the files; data wins over control."""
+    """Return the distinct steps by site, in order of file and position; a data step replaces a control step."""
     distinct: dict[SiteId, Step] = {}
     for step in steps:
         if step.site not in distinct or step.dependence == "data":

@@ -1,4 +1,4 @@
-"""Get notified of a program's new threads before their first line runs."""
+"""Call a function before a new thread of a program runs its first line."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-# Not threading.setprofile: CPython 3.11 repeats the first instruction of a profiled thread as long as others wait for
-# the interpreter, so that several threads which start at once never get past it.
+# Not threading.setprofile: CPython 3.11 repeats the first instruction of a profiled thread while others wait for the
+# interpreter, so that several threads that start at once never get past it.
 _STARTERS = (
     (_thread, "start_new_thread"),
-    (_thread, "start_joinable_thread"),  # from 3.13 on
+    (_thread, "start_joinable_thread"),  # Python ≥ 3.13
     (threading, "_start_new_thread"),
     (threading, "_start_joinable_thread"),
 )
 
 
 class ThreadWatch:
-    """Call `heard` before a thread starts, by `threading` or by `_thread` itself.
+    """Call `heard` before a thread starts through `threading` or `_thread`.
 
-    A thread that an extension module makes by itself is not heard of.
+    Threads that extension modules start by other means are not noticed.
     """
 
     def __init__(self, heard: Callable[[], None]) -> None:
@@ -38,7 +38,7 @@ class ThreadWatch:
                 self._replaced.append((module, name, original, telling))
 
     def end(self) -> None:
-        """Leave both modules as they were, unless somebody else has changed them in between."""
+        """Restore both modules, unless other code has changed them meanwhile."""
         for module, name, original, telling in self._replaced:
             if getattr(module, name) is telling:
                 setattr(module, name, original)

@@ -18,10 +18,10 @@ Floats = NDArray[np.float64]
 class Trace:
     """Events and simulation steps of one episode.
 
-    `cells` are the distinct cells in order of first latch; the other cell columns are indices into it, -1
-    where no message had come yet. Event columns have shape (events,), step columns (steps,). Events come by
-    step and, within a step, by thread: consecutive events of different threads are no sequence. Events
-    after the last reward belong to the last step. `thread` is None if one thread recorded everything.
+    `cells` are the distinct cells in order of first use; the other cell columns are indices into it, -1 before the
+    first message. Event columns have shape (events,), step columns (steps,). Events come by step and, within a step,
+    by thread: consecutive events of different threads are not ordered. Events after the last reward belong to the
+    last step. `thread` is None if one thread recorded everything.
     """
 
     cells: tuple[Cell, ...]
@@ -29,12 +29,12 @@ class Trace:
     flow: Floats  # finite, at least 0
     event_cell: Ints
     event_step: Ints
-    step_cell: Ints  # latched when the reward of the step came
+    step_cell: Ints  # the cell when the step was rewarded
     reward: Floats
     parts: Mapping[str, Floats]
     thread: Ints | None = None
 
     @property
     def steps(self) -> int:
-        """Return how many simulation steps were rewarded."""
+        """Return the number of rewarded simulation steps."""
         return len(self.reward)
