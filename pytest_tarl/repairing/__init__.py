@@ -1,1 +1,1 @@
-"""`--tarl-repair`: search a mutation, find its guard, accept it on fresh seeds, write the patch."""
+"""`--tarl-repair`: search for a mutation and its guard, accept it on fresh seeds, and write the patch."""

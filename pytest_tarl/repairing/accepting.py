@@ -1,4 +1,4 @@
-"""From confirmed candidates to one that holds: under which guard, and does it on fresh seeds?"""
+"""Examine confirmed candidates: choose a guard, then test on fresh seeds until one is accepted."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ from pytest_tarl.searching.accept import SEEDS, TOO_LITTLE, Acceptance, Outcome,
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 from tarl_lint.model import Operand
 
-QUICK = 3  # seeds on which a guard is looked at before it is tested on fresh ones
+QUICK = 3  # seeds on which to try a guard before testing it on fresh ones
 WORLDS = 3  # in which a test runs episodes: drifted, designed, and designed without the candidate
-OLD_WORLD = 8  # episodes that show what a repair for good earns in the old world
-MOST = 5  # candidates that are tested ...
-SHARE = 2  # ... and how many of them may be of the same operands while others wait
-POWERS = (1.5, 2.0)  # of the factors of a candidate at the edge of its window
-SCREENED = 20  # candidates that are run on fresh seeds
+OLD_WORLD = 8  # episodes that show the reward of a permanent repair in the old world
+MOST = 5  # candidates to test per search ...
+SHARE = 2  # ... and how many of them may have the same operands while others wait
+POWERS = (1.5, 2.0)  # exponents for the factors of a candidate at the edge of its window
+SCREENED = 20  # candidates to run on fresh seeds per search
 
 
 @dataclass(frozen=True)
 class Accepted:
-    """A repair that held: the candidate, and the episodes that show it."""
+    """An accepted repair: the candidate and the episodes of its test."""
 
     candidate: Candidate
     acceptance: Acceptance
@@ -41,36 +41,36 @@ class Accepted:
 
 
 class Examiner:
-    """Tries guards on confirmed candidates and tests each of them once; remembers the best that was refused."""
+    """Try guards on confirmed candidates, test each candidate once, and remember the best refused one."""
 
     def __init__(self, mutants: Mutants, guards: Sequence[Guard]) -> None:
         self.mutants = mutants
         self.order = mutants.order
         self.guards = guards
         self.placing = Placing(mutants)
-        self.ranged: dict[Candidate, Ranged] = {}  # where the drift has a range
+        self.ranged: dict[Candidate, Ranged] = {}  # for drifts with a range
         self.ledger = Ledger()
         self.waiting: list[
             Candidate
-        ] = []  # they held on known seeds, and their operands have had their share
+        ] = []  # held on known seeds, but `SHARE` candidates of the same operands were tested before
         self._missed = Missed()
         self._pushed: set[tuple[frozenset[Operand], Guard]] = set()
         self._bisected: set[tuple[frozenset[Operand], Guard]] = set()
         self.tested = 0
-        self._ran = 0  # episodes of the test that is going on
-        self.turns = 1  # searches, or kinds of change, that have had their tests
+        self._ran = 0  # episodes run in the current test
+        self.turns = 1  # searches, or kinds of change, whose candidates were tested
         self.spent = 0
         self.refused = Refused(None, "no operand helps")
-        self.lost: tuple[str, ...] = ()  # what other tests lost under candidates
-        self.cut = False  # whether the budget ended it
+        self.lost: tuple[str, ...] = ()  # losses of other tests under candidates
+        self.cut = False  # whether the budget ended the search
 
     @property
     def tried(self) -> Sequence[Tried]:
-        """Return what became of the candidates, in order."""
+        """Return the examined candidates and their results, in order."""
         return self.ledger.tried
 
     def first(self, confirmed: Iterator[Candidate], trials: Trials) -> Accepted | None:
-        """Take candidates until one is accepted, no more may be tested or the budget of the trials is spent."""
+        """Examine candidates until one is accepted, the tests are used up or the budget is spent."""
         try:
             for candidate in confirmed:
                 accepted = self._under_guards(candidate, trials)
@@ -83,8 +83,8 @@ class Examiner:
         return self._of_those_waiting()
 
     def _under_guards(self, candidate: Candidate, trials: Trials) -> Accepted | None:
-        """Examine a candidate under every guard, then what lies beyond it, and between it and the original."""
-        edges: list[Candidate] = []  # that held on known seeds and not on fresh ones
+        """Examine a candidate under every guard, then stronger ones, and then milder ones."""
+        edges: list[Candidate] = []  # held on known seeds but failed on some fresh ones
         for guard in self.guards:
             examined = self._examined(replace(candidate, guard=guard), trials)
             if isinstance(examined, Accepted):
@@ -95,7 +95,7 @@ class Examiner:
                 edges.append(examined.candidate)
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
-                break  # where the guard is as wide as the search had it, no other one makes more of it
+                break  # this guard is as wide as in the search, so narrower guards cannot gain more
         for edge in edges:
             accepted = self._beyond(edge, trials)
             if accepted is not None or self._exhausted():
@@ -107,7 +107,7 @@ class Examiner:
         return None
 
     def _beyond(self, candidate: Candidate, trials: Trials) -> Accepted | None:
-        """Go on in the direction of a candidate that fails here and there: it is at the edge of its window."""
+        """Examine stronger factors of a candidate that fails on some seeds: it is at the edge of its window."""
         place = (operands(candidate), candidate.guard)
         for power in POWERS if place not in self._pushed else ():
             self._pushed.add(place)
@@ -138,7 +138,7 @@ class Examiner:
         return None
 
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:
-        """Look at a candidate on known seeds, then on fresh ones, unless one like it was examined before."""
+        """Examine a candidate on known seeds, then on fresh ones, unless a similar one was examined before."""
         known = self.ledger.alike(candidate) or next(
             (Tried(one, "never tested", ()) for one in self.waiting if alike(one, candidate)), None
         )
@@ -177,7 +177,7 @@ class Examiner:
         )
 
     def _of_those_waiting(self) -> Accepted | None:
-        """Test what had to wait for others, while there are tests left."""
+        """Test the waiting candidates while tests are left."""
         while self.waiting and not self._exhausted():
             examined = self._on_fresh_seeds(self.waiting.pop(0))
             if isinstance(examined, Accepted):
@@ -193,7 +193,7 @@ class Examiner:
         return self.tested >= most or of_fresh_seeds(self.tried) >= screened
 
     def _on_fresh_seeds(self, candidate: Candidate) -> Accepted | Tried:
-        """Run the one test of a candidate."""
+        """Test a candidate, once; include the other tests that its guard affects."""
         found = self._tested(candidate)
         self.spent += found.episodes
         others = beside(self.mutants, candidate) if found.accepted else NOTHING_BESIDE
@@ -211,7 +211,7 @@ class Examiner:
         return tried
 
     def _with_old_world(self, found: Acceptance, candidate: Candidate) -> Acceptance:
-        """Add what a repair earns in the world that is gone, to be shown; it decides nothing."""
+        """Add the reward of a permanent repair in the old world, for display only."""
         if not self.order.permanent:
             return found
         fresh = seeds.episode_seeds(self.order.options.seed, "old world", OLD_WORLD)
@@ -220,12 +220,16 @@ class Examiner:
         return replace(found, nominal=tuple(self.mutants.run(candidate, seed, None) for seed in fresh))
 
     def _named(self, reason: Reason, totals: Sequence[float]) -> Reason:
-        """Tell what gained too little from what made the drifted world worse than it is without a repair."""
+        """Distinguish a gain that is too small from a reward below that of the unrepaired program."""
         worse = reason == "gain too small" and fmean(totals) < self.order.goal.online
         return "worse than unrepaired" if worse else reason
 
     def _known_to_fail(self, candidate: Candidate, trials: Trials) -> Reason:
-        """Say why not, from on-line episodes that lost and off-line ones in which the candidate acts; "" if neither."""
+        """Return the reason why a candidate fails on episodes whose totals are known, "" if it does not.
+
+        These are drifted episodes, those that lost and some that did not, and recorded ones in which the guard holds.
+        Raises BudgetSpentError and RepairError.
+        """
         goal, offline = self.order.goal, self.order.fixture.sample
         known = dict(zip(offline.seeds, offline.total.tolist(), strict=True))
         slack = self.order.reference.mean - goal.near
@@ -248,7 +252,7 @@ class Examiner:
         return ""
 
     def _tested(self, candidate: Candidate) -> Acceptance:
-        """Test a candidate on seeds of its own."""
+        """Test a candidate on its own fresh seeds."""
         order, number = self.order, of_fresh_seeds(self.tried) + 1
         self._ran = 0
         nominal = self._world(candidate, None) if self._firing(candidate) else None
@@ -281,7 +285,7 @@ class Examiner:
         )
 
     def _firing(self, candidate: Candidate) -> tuple[int, ...]:
-        """Return the off-line episodes in which the guard holds; none count where the change is for good."""
+        """Return the seeds of recorded episodes in which the guard holds; none if the drift is permanent."""
         if self.order.permanent:
             return ()
         return candidates.firing_episodes(

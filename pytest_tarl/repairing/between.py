@@ -1,4 +1,4 @@
-"""Values between the original, which gains too little, and one that breaks the designed world."""
+"""Bisect between the original, which gains too little, and a value that breaks the designed world."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WEAK: tuple[Reason, ...] = (
     "worse than unrepaired",
     "not over the whole range",
 )
-FINEST = 1.05  # ratio of two factors between which there is nothing to find
+FINEST = 1.05  # two factors with a smaller ratio are not bisected further
 
 
 class Between:
@@ -27,19 +27,19 @@ class Between:
     def __init__(self, candidate: Candidate, mutate: Callable[[Operand, float], Mutation | None]) -> None:
         self.candidate = candidate
         self.mutate = mutate
-        self.weak, self.strong = 0.0, 1.0  # shares of the way, on a log scale
+        self.weak, self.strong = 0.0, 1.0  # exponents of the candidate's factors
         self.steps = 0
         self._factors = [factor(mutation) for mutation in candidate.mutations]
 
     def beyond(self, known: Candidate) -> None:
-        """Begin behind a candidate of the same operands that is known to gain too little."""
+        """Start from a candidate of the same operands that is known to gain too little."""
         if len(self._factors) == 1 and further(self.candidate, known):
             strong, weak = self._factors[0], factor(known.mutations[0])
             if strong is not None and weak is not None:
                 self.weak = max(self.weak, log(weak) / log(strong))
 
     def middle(self) -> Candidate | None:
-        """Return the candidate half-way between the weak one and the strong one; None where the search is over."""
+        """Return the candidate halfway between the weak and the strong one, None when the bisection is over."""
         factors = [one for one in self._factors if one is not None]
         if self.steps >= STEPS or len(factors) < len(self._factors):
             return None
@@ -61,7 +61,7 @@ class Between:
         return self.mutate(mutation.operand, by)
 
     def told(self, reason: Reason) -> bool:
-        """Take what became of the last one; return whether it says on which side to go on."""
+        """Take the result for the last candidate; return whether it shows on which side to continue."""
         share = (self.weak + self.strong) / 2
         if reason in WEAK:
             self.weak = share
@@ -75,7 +75,7 @@ class Between:
 def stronger(
     candidate: Candidate, power: float, mutate: Callable[[Operand, float], Mutation | None]
 ) -> Candidate | None:
-    """Return a candidate with its factors raised to a power; None where one is a sign, or no factor away from 1."""
+    """Return a candidate with its factors raised to a power; None if one has no positive factor other than 1."""
     moved: list[Mutation] = []
     for mutation in candidate.mutations:
         searched = mutation.form is not None and bool(mutation.form.parameter)
@@ -90,7 +90,7 @@ def stronger(
 
 
 def further(candidate: Candidate, other: Candidate) -> bool:
-    """Tell whether a candidate moves each of its operands the same way as another one, and no less far."""
+    """Tell whether a candidate moves the same operands as another one in the same direction, at least as far."""
     mine, its = ({m.operand: factor(m) for m in one.mutations} for one in (candidate, other))
     if mine.keys() != its.keys():
         return False
@@ -103,7 +103,7 @@ def _beyond(one: float, other: float) -> bool:
 
 
 def factor(mutation: Mutation) -> float | None:
-    """Return the positive factor that a mutation moves its operand by; None where it is no such factor."""
+    """Return the positive factor by which a mutation moves its operand; None if there is none."""
     operand, value = mutation.operand, mutation.value
     if mutation.form is not None or isinstance(operand.value, bool) or isinstance(value, bool):
         return None

@@ -1,4 +1,4 @@
-"""What the search of one repair may spend: episodes, or seconds. No phase of it gets more than is left."""
+"""Budget of one repair, in episodes or seconds, shared by all phases of the search."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
 
 @dataclass
 class Purse:
-    """A budget that phases draw on, one after the other.
+    """A budget that the phases draw on, one after the other.
 
-    `late` tells that the time was up; a phase is over when `share` of what was left at its begin is spent.
+    A phase ends when it has spent `share` of the budget left at its start. `late` is set when the time is up.
     """
 
     episodes: int
     seconds: float | None = None
     spent: int = 0
     late: bool = False
-    begun: float = field(default_factory=lambda: monotonic())  # looked up late, as tests replace it
+    begun: float = field(default_factory=lambda: monotonic())  # lambda: tests replace `monotonic`
 
     def phase(self, mutants: Mutants, method: str, watch: Watch, share: float = 1.0) -> Trials:
-        """Return the trials of a phase; `settle` has to be told of them when it is over."""
+        """Return the trials of a phase; pass them to `settle` afterwards."""
         order, passed = mutants.order, monotonic() - self.begun
         until = None if self.seconds is None else passed + share * (self.seconds - passed)
 
@@ -45,5 +45,5 @@ class Purse:
         return trials
 
     def settle(self, trials: Trials) -> None:
-        """Take what a phase has spent."""
+        """Subtract the episodes that a phase has spent."""
         self.spent += trials.spent

@@ -1,7 +1,7 @@
-"""A better value for a candidate that holds and loses much of what it may: a test of it would not come to an end.
+"""Improve the value of a candidate that holds but loses much of the margin, before its expensive test.
 
-What loses more than half of the margin is hard to tell from what loses all of it. A value nearer to the middle of the
-window loses less, costs a few known seeds, and saves a test of hundreds of episodes.
+A loss of more than half of the margin is hard to distinguish from a loss of all of it. A value closer to the middle of
+the candidate's window loses less; finding it costs a few known seeds and saves a test of hundreds of episodes.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from pytest_tarl.repairing.between import factor
 from pytest_tarl.searching.accept import Reference
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Pair, Trials
 
-THIN = 0.5  # share of the margin that may be lost before a better value is looked for
+THIN = 0.5  # share of the margin; candidates that lose less are not improved
 STEPS = (1.12, 1.04)  # ratios of neighbouring values
-SEEDS = 3  # that values are compared on
-MOVES = 3  # in one direction, at one ratio
+SEEDS = 3  # seeds on which to compare values
+MOVES = 3  # at most in one direction with one ratio
 
 
 def centred(
     candidate: Candidate, trials: Trials, mutate: Mutate, goal: Goal, reference: Reference
 ) -> Candidate:
-    """Return a candidate with the value that earns most on known seeds, climbing from the one that was found.
+    """Return the candidate with the best value found by hill climbing on known seeds.
 
-    What fails on them, or loses little, is returned as it is. Raises BudgetSpentError.
+    A candidate that fails on these seeds, or loses little, is returned unchanged. Raises BudgetSpentError.
     """
     pairs = goal.pairs[:SEEDS]
     harder = fmean(goal.harder.get(pair.seed, 0.0) for pair in pairs)
@@ -56,7 +56,7 @@ def _climbed(
 
 
 def _moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | None:
-    """Return a candidate with its only value a little further or nearer; None where it has several, or a sign."""
+    """Return a candidate with its value scaled by `ratio`; None for several sites or an operand without a factor."""
     moved: list[Mutation] = []
     for one in candidate.mutations:
         by = float(one.value) if one.form is not None and one.form.parameter else factor(one)

@@ -1,4 +1,4 @@
-"""What is handed over in the end: the patch of a repair that held, or the best one and why it was refused."""
+"""Deliver the result: the patch of an accepted repair, or the best refused candidate and the reason."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ def delivered(
     history: tuple[Attempt, ...],
     bounds: Mapping[str, Guarantee],
 ) -> Repair:
-    """Write the patch of an accepted repair; the counts are the episodes that it took to find it.
+    """Write the patch of an accepted repair. Raises RepairError.
 
-    `bounds` are what is stated of the repaired program, by world.
+    `search` and `acceptance` are numbers of episodes; `bounds` maps worlds to guarantees for the repaired program.
     """
     order, candidate = mutants.order, accepted.candidate
     guard = _guard(order, candidate)
@@ -56,9 +56,9 @@ def delivered(
 
 
 def _written(order: Order, diff: str) -> str:
-    """Write patch and SARIF and return the patch's path below the root; empty where that cannot be done.
+    """Write patch and SARIF; return the patch's path relative to the root, "" if it cannot be written.
 
-    What was found must not be lost with it: the whole patch is told in its place.
+    The repair must not be lost in that case: the report then shows the whole patch.
     """
     try:
         written = patch.write(diff, order.patches, order.fixture.test, order.drift)
@@ -70,7 +70,7 @@ def _written(order: Order, diff: str) -> str:
 
 
 def _verify(order: Order, candidate: Candidate, changed: Mapping[Path, str]) -> None:
-    """Look at the files once more before they become a patch. Raises RepairError when one would lose something."""
+    """Check that no file loses anything but the changed lines. Raises RepairError."""
     for shown, original in order.analysis.sources.items():
         text = changed.get(order.root / shown)
         if text is not None:
@@ -83,7 +83,7 @@ def _verify(order: Order, candidate: Candidate, changed: Mapping[Path, str]) -> 
 
 
 def withheld(order: Order, refused: Refused, history: tuple[Attempt, ...]) -> Repair:
-    """Tell the best candidate that was refused, and why."""
+    """Return the best refused candidate and the reason for its refusal."""
     candidate = refused.candidate
     if candidate is None:
         return Repair(False, "", (), reason=refused.reason, history=history)
@@ -99,7 +99,7 @@ def withheld(order: Order, refused: Refused, history: tuple[Attempt, ...]) -> Re
 
 
 def partial(mutants: Mutants, found: Best) -> Partial | None:
-    """Write what helps and is no repair, in a file that nothing applies by itself; None where it cannot be written."""
+    """Write a change that helps but is no repair to a quoted file; return None if it cannot be written."""
     order, candidate = mutants.order, found.candidate
     what = words.repair_words(Repair(False, _guard(order, candidate), _edits(order, candidate)))
     made = Partial(
@@ -137,7 +137,7 @@ def partial(mutants: Mutants, found: Best) -> Partial | None:
 
 
 def attempts(order: Order, tried: Iterable[Tried]) -> tuple[Attempt, ...]:
-    """Tell what became of the candidates that came near, in words."""
+    """Describe the examined candidates and their results."""
     return tuple(
         Attempt(
             words.repair_words(Repair(False, _guard(order, one.candidate), _edits(order, one.candidate))),
@@ -153,7 +153,7 @@ def attempts(order: Order, tried: Iterable[Tried]) -> tuple[Attempt, ...]:
 def _guard(order: Order, candidate: Candidate) -> str:
     try:
         return guard_text(candidate.guard, order.analysis, candidate.mutations, order.fixture.topics)
-    except RepairError:  # the node has no expression for it, which is why the candidate was dropped
+    except RepairError:  # the node cannot evaluate the guard, which is why the candidate was dropped
         return " and ".join(
             f"{one.low:g} <= {one.sensor.name} <= {one.high:g}" for one in candidate.guard.conjuncts
         )
@@ -184,7 +184,7 @@ def _evidence(
     acceptance: int,
     bounds: Mapping[str, Guarantee],
 ) -> list[str]:
-    """Return what the patch's header tells: what changes, and why it was accepted."""
+    """Return the header of the patch: the change and the evidence for it."""
     order = mutants.order
     totals = order.comparison.totals
     repaired = [outcome.total for outcome in accepted.acceptance.drifted]
@@ -211,7 +211,7 @@ def _evidence(
 
 
 def _constants(candidate: Candidate) -> Iterator[str]:
-    """Name the constants that a candidate changes where they are defined, by which two patches of one are known."""
+    """Yield the definitions of the constants that a candidate changes; two patches of one constant conflict."""
     for mutation in candidate.mutations:
         operand = mutation.operand
         span = operand.definition or operand.span
@@ -220,12 +220,12 @@ def _constants(candidate: Candidate) -> Iterator[str]:
 
 
 def remarks(mutants: Mutants, candidate: Candidate) -> list[str]:
-    """Return what a reviewer should know of an accepted repair beside its figures."""
+    """Return what a reviewer should know about an accepted repair besides its figures."""
     return [*_jumps(candidate), *undeclared(mutants.source(candidate), mutants.order.root)]
 
 
 def _jumps(candidate: Candidate) -> list[str]:
-    """Say how far the constants jump where a condition on a number sets in; nothing where there is none."""
+    """Describe how far the constants jump at the threshold of a numeric condition; empty without one."""
     sensors = edges(candidate.guard)
     if not sensors:
         return []
@@ -243,22 +243,22 @@ def _jumps(candidate: Candidate) -> list[str]:
             )
     if not moved:
         return []
-    return [f"jump at the edge of the condition on {' and '.join(sensors)}: {', '.join(moved)}"]
+    return [f"jump at the threshold of {' and '.join(sensors)}: {', '.join(moved)}"]
 
 
 def _designed_and_repaired(order: Order, nominal: Sequence[float]) -> str:
-    """Tell what the repair earns in the designed world."""
+    """Describe the reward of the repair in the designed world."""
     if order.permanent:
         return (
             f"old world and repaired: {words.average(nominal)}; not required, because the drift is permanent"
         )
     if nominal:
         return f"designed and repaired: {words.average(nominal)}, on held-out seeds"
-    return "designed and repaired: as designed, since the condition never holds there"
+    return "designed and repaired: as designed, because the condition never holds there"
 
 
 def _stated(bounds: Mapping[str, Guarantee]) -> list[str]:
-    """Return what is stated of the repaired program in either world, over the worlds that the test draws."""
+    """Return the guarantees for the repaired program in either world, as header lines."""
     names = {"repaired": "drifted and repaired", "nominal_repaired": "designed and repaired"}
     return [
         f"bounds, {names[world]}: {told}" for world, one in bounds.items() for told in guarantees.brief(one)
@@ -266,7 +266,7 @@ def _stated(bounds: Mapping[str, Guarantee]) -> list[str]:
 
 
 def _recorded(order: Order) -> list[str]:
-    """Name the fixture that the repair was accepted against."""
+    """Return the header line with digest and path of the recording that the repair was accepted against."""
     path = order.recorded
     if path is None:
         return []
@@ -276,10 +276,10 @@ def _recorded(order: Order) -> list[str]:
 
 
 def _again(order: Order) -> str:
-    """Return the command that compares again, to be run in the root."""
+    """Return the command that repeats the comparison, for use in the root."""
     return words.command(replace(_in_root(order), flags=order.options.flags))
 
 
 def _in_root(order: Order) -> Comparison:
-    """Return the comparison with its test as it is typed in the root."""
+    """Return the comparison with its test named relative to the root."""
     return replace(order.comparison, target=order.fixture.test.partition("[")[0])

@@ -1,9 +1,8 @@
-"""Where few missions fail: further seeds whose missions fail, and what each of them earns as designed.
+"""Find more seeds whose missions fail, where few do, and what each of them earns in the designed world.
 
-Missions that fail seldom do so for a reason, a person on the road for instance, and such missions are harder in the
-designed world, too: they are a selection, so the off-line mean is not what a repair can reach on them. Each is
-therefore held against the designed mission of its own seed. Acceptance draws fresh seeds, so the selection biases
-nothing that is promised.
+Missions that fail rarely do so for a reason, such as a person on the road, and are harder in the designed world, too.
+They are a selection, so a repair cannot be expected to reach the recorded mean on them. Each is therefore compared with
+the designed mission of its own seed. Acceptance draws fresh seeds, so this selection does not bias its test.
 """
 
 from __future__ import annotations
@@ -18,16 +17,17 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.searching.search import CONFIRMATIONS, BudgetSpentError, Goal, Pair, Trials
 
-ENOUGH = 1 + CONFIRMATIONS  # seeds that a candidate is tried on
-LOOKED_AT = 12  # recorded missions that are run under the drift, to find such seeds
-SELECTED = 0.5  # share of the on-line episodes; where more lose, they are no selection
-CONTROLS = 2  # on-line episodes that did not lose, in which a candidate must not lose either
+ENOUGH = 1 + CONFIRMATIONS  # seeds on which a candidate is tried
+LOOKED_AT = 12  # recorded missions to run under the drift in search of such seeds
+SELECTED = 0.5  # share of failing episodes from which they do not count as a selection
+CONTROLS = 2  # drifted episodes that lost nothing and in which a candidate must not lose either
 
 
 def enriched(mutants: Mutants, trials: Trials) -> Goal:
-    """Return the goal with enough seeds that lose, each beside what it earns as designed; episodes are charged.
+    """Return the goal with enough failing seeds, each with its reward in the designed world; charge the episodes.
 
-    Nothing is run where most on-line episodes lose. The goal stays as it was where the budget does not suffice.
+    Return the goal unchanged, without running anything, if most drifted episodes lose, and also if the budget does not
+    suffice.
     """
     order = mutants.order
     goal, online = order.goal, order.online.recorded.sample
@@ -54,17 +54,18 @@ def enriched(mutants: Mutants, trials: Trials) -> Goal:
 
 
 def _run(mutants: Mutants, trials: Trials, seed: int, drift: str | None) -> float:
-    """Return what the program earns as it is."""
+    """Return the total reward of the unrepaired program. Raises BudgetSpentError."""
     trials.charge()
     total: float = mutants.run(ORIGINAL, seed, drift).total
     return total
 
 
 def _likely(recorded: Sample, online: Sample, lost: set[int]) -> Iterator[tuple[int, float]]:
-    """Yield recorded missions, seeds and totals, that are likely to lose under the drift, the likeliest first.
+    """Yield seeds and totals of recorded missions that are likely to lose under the drift, most likely first.
 
-    A mission counts by the bin on its way that tells most: the share of the lost on-line episodes in which that sensor
-    was in that bin, less the share of the others. Bins and not cells are compared, as one sensor may tell the drift.
+    Each bin of each sensor is scored by the share of losing drifted episodes that visited it, minus the share of the
+    others. A mission counts by its best bin. Single bins are scored instead of cells because one sensor may suffice to
+    detect the drift.
     """
     bins = {place for sample in (recorded, online) for cell in sample.cells for place in enumerate(cell)}
     order = {place: at for at, place in enumerate(sorted(bins))}
@@ -77,7 +78,7 @@ def _likely(recorded: Sample, online: Sample, lost: set[int]) -> Iterator[tuple[
 
 
 def _visited(sample: Sample, order: dict[tuple[int, int], int]) -> np.ndarray:
-    """Tell which bins each episode was in, shape (episodes, bins)."""
+    """Return which bins each episode visited, boolean of shape (episodes, bins)."""
     visited = np.zeros((sample.episodes, len(order)), dtype=bool)
     for sensor in range(len(sample.cells[0]) if sample.cells else 0):
         columns = np.array([order[sensor, cell[sensor]] for cell in sample.cells])

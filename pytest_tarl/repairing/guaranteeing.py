@@ -1,4 +1,4 @@
-"""What is stated of a repaired program, from episodes that nothing was decided by: not even whether to accept it."""
+"""Guarantees for a repaired program, from episodes that no decision used, not even its acceptance."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from pytest_tarl.searching.accept import Outcome
 
 
 def guaranteed(mutants: Mutants, accepted: Accepted) -> tuple[Mapping[str, Guarantee], int]:
-    """Return the bounds in the drifted and in the designed world, and how many episodes that took.
+    """Return bounds for the drifted and the designed world, and the number of episodes run.
 
-    Where the repair changes nothing in the designed world, what was recorded of it holds. Where the drift is for good,
-    that world is gone.
+    If the repair changes nothing in the designed world, the bounds of the recording apply there. If the drift is
+    permanent, the designed world has no bounds.
     """
     order = mutants.order
     count = order.options.episodes or order.options.ONLINE_EPISODES

@@ -1,4 +1,4 @@
-"""What is seen of all candidates while a search runs: which one is best so far, which ones were dropped and why."""
+"""Track all candidates during a search: the best one so far, and those dropped, with the reason."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate
 
-LEAST = 2  # episodes after the first, in which a candidate was given the chance to be confirmed
+LEAST = 2  # runs; a candidate with more was tried for confirmation
 
 
 class Watch:
-    """Keeps the outcomes of the candidates that searches run in the drifted world."""
+    """Store the outcomes of all candidates that searches run in the drifted world."""
 
     def __init__(self, order: Order) -> None:
         self.order = order
@@ -23,25 +23,25 @@ class Watch:
         self.best: Candidate | None = None
 
     def saw(self, candidate: Candidate, seed: int, outcome: Outcome) -> None:
-        """Keep one episode."""
+        """Store the outcome of an episode."""
         self.seen.setdefault(candidate, {})[seed] = outcome
         if self.best is None or self._worth(candidate) > self._worth(self.best):
             self.best = candidate
 
     def gain(self, candidate: Candidate) -> float:
-        """Return what a candidate gained per episode over the unmutated runs of the same seeds."""
+        """Return a candidate's gain per episode over the unmutated runs of the same seeds."""
         usual = self.order.goal.online
         return fmean(run.total - self.without.get(seed, usual) for seed, run in self.seen[candidate].items())
 
     def best_so_far(self, refused: Refused) -> Refused:
-        """Return the best with its figures, where none was refused on fresh seeds."""
+        """Return the best candidate with its figures, unless one was refused on fresh seeds."""
         if refused.candidate is not None or self.best is None:
             return refused
         totals = [run.total for run in self.seen[self.best].values()]
         return Refused(self.best, refused.reason, fmean(totals), len(totals))
 
     def unconfirmed(self, tried: Iterable[Tried]) -> list[Tried]:
-        """Return the candidates that came near once and did not on further seeds, in the order they were found."""
+        """Return the candidates that came near once but not on further seeds, in the order they were found."""
         examined = {one.candidate.changes for one in tried}
         dropped = []
         for candidate, runs in self.seen.items():
@@ -53,13 +53,13 @@ class Watch:
         return dropped
 
     def progress(self, method: str) -> str:
-        """Name the search and what its best candidate gains so far."""
+        """Name the search and the gain of its best candidate so far."""
         if self.best is None:
             return method
         wanted = self.order.goal.wanted
         return f"{method} (best so far {self.gain(self.best):+.3g} of {wanted:.3g})"
 
     def _worth(self, candidate: Candidate) -> float:
-        """Return the gain, drawn towards none where it was seen once only."""
+        """Return the gain, shrunk towards 0 for few runs."""
         runs = len(self.seen[candidate])
         return self.gain(candidate) * runs / (runs + 1)

@@ -1,4 +1,4 @@
-"""What became of every candidate that was examined, so that none is examined twice."""
+"""Results of all examined candidates, so that none is examined twice."""
 
 from __future__ import annotations
 
@@ -11,15 +11,16 @@ from pytest_tarl.patching.mutate import Mutation
 from pytest_tarl.searching.search import Candidate
 from tarl_lint.model import Operand
 
-ALIKE = 0.05  # share of a value that two candidates of the same operands and guard may differ in and be one
-HELD: tuple[Reason, ...] = ("nominal gets worse", "another test gets worse")  # in one world, in both of them
+ALIKE = 0.05  # relative difference up to which values of the same operands and guard count as equal
+# Reasons of candidates that held in the drifted world, and in both worlds.
+HELD: tuple[Reason, ...] = ("nominal gets worse", "another test gets worse")
 
 
 @dataclass(frozen=True)
 class Tried:
-    """A candidate that was examined, and what became of it; accepted without a reason.
+    """An examined candidate and its result; `reason` is "" if it was accepted.
 
-    `fresh` where its totals are of seeds that nothing was chosen by, `tested` where it took a test of its own.
+    `fresh` if its totals are from fresh seeds, `tested` if it had a test of its own.
     """
 
     candidate: Candidate
@@ -31,7 +32,7 @@ class Tried:
 
 @dataclass(frozen=True)
 class Refused:
-    """The best that did not hold, and why; `mean` is its reward on fresh seeds, -inf where it got none."""
+    """The best refused candidate and the reason; `mean` is its mean reward on fresh seeds, -inf without any."""
 
     candidate: Candidate | None
     reason: Reason
@@ -41,27 +42,27 @@ class Refused:
 
 @dataclass
 class Ledger:
-    """Every candidate that was examined, in order."""
+    """Every examined candidate, in order."""
 
     tried: list[Tried] = field(default_factory=list)
 
     def enter(self, tried: Tried) -> Tried:
-        """Write down what became of a candidate."""
+        """Store and return the result of a candidate."""
         self.tried.append(tried)
         return tried
 
     def alike(self, candidate: Candidate) -> Tried | None:
-        """Return the entry of a candidate that is the same one, but for a few percent in its values."""
+        """Return the entry of an equal or nearly equal candidate, None if there is none."""
         return next((one for one in self.tried if alike(one.candidate, candidate)), None)
 
     def tests(self, candidate: Candidate) -> int:
-        """Return how many tests on fresh seeds went to candidates of the same operands."""
+        """Return the number of tests spent on candidates of the same operands."""
         mine = operands(candidate)
         return sum(one.tested and operands(one.candidate) == mine for one in self.tried)
 
 
 def operands(candidate: Candidate) -> frozenset[Operand]:
-    """Return what a candidate changes."""
+    """Return the operands that a candidate changes."""
     return frozenset(mutation.operand for mutation in candidate.mutations)
 
 
@@ -83,12 +84,12 @@ def _near(one: Mutation, other: Mutation) -> bool:
 
 
 def of_fresh_seeds(tried: Sequence[Tried]) -> int:
-    """Return how many candidates were run on fresh seeds."""
+    """Return how many candidates ran on fresh seeds."""
     return sum(one.fresh for one in tried)
 
 
 def furthest(one: Refused, other: Refused) -> Refused:
-    """Return what came further: in how many worlds it held, or else which earned more on fresh seeds."""
+    """Return the one that held in more worlds; if equal, the one with more reward on fresh seeds."""
 
     def came(refused: Refused) -> tuple[bool, int, float]:
         held = HELD.index(refused.reason) + 1 if refused.reason in HELD else 0

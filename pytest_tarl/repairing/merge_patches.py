@@ -1,4 +1,4 @@
-"""At the end of a run: do the patches of several tests go together? One combined patch, or the lines in conflict."""
+"""Merge the patches of several tests at the end of a run, or report the lines on which they conflict."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from pytest_tarl.patching.reading import Patch, read
 
 @dataclass(frozen=True)
 class Joined:
-    """Sentences about patches that touch the same files, and the commands that apply what was found."""
+    """Sentences about patches of the same files, and the commands that apply the patches."""
 
     lines: tuple[str, ...] = ()
     commands: tuple[str, ...] = ()
 
 
 def joined(paths: Sequence[Path], cwd: Path) -> Joined:
-    """Look at all patches of a run; those that share a file are combined where they can be."""
+    """Merge the patches of a run that share a file, where possible. Raises RepairError."""
     lines: list[str] = []
     commands: list[str] = []
     for group in _groups([read(path) for path in paths]):
@@ -41,7 +41,7 @@ def joined(paths: Sequence[Path], cwd: Path) -> Joined:
 
 
 def _as_one(patches: Sequence[Patch]) -> tuple[list[str], list[Path]]:
-    """Return what to tell of different patches of the same files, and the patches to apply."""
+    """Return sentences about different patches of the same files, and the patches to apply."""
     paths = [one.path for one in patches]
     if len(patches) < 2:
         return [], paths
@@ -52,16 +52,16 @@ def _as_one(patches: Sequence[Patch]) -> tuple[list[str], list[Path]]:
     try:
         combined = _combined(patches)
     except RepairError as problem:
-        return [f"{' and '.join(one.name for one in patches)} are not combined: {problem}"], paths
+        return [f"{' and '.join(one.name for one in patches)} cannot be merged: {problem}"], paths
     names = " and ".join(one.name for one in patches)
     shown = Path(os.path.relpath(combined, patches[0].root or combined.parent)).as_posix()
     return [
-        f"{names} go together: {shown} holds both changes; each was accepted by itself, so compare again"
+        f"{names} do not conflict: {shown} contains both changes; each was accepted on its own, so compare again"
     ], [combined]
 
 
 def _combined(patches: Sequence[Patch]) -> Path:
-    """Write one patch in place of several. Raises RepairError where the texts are not what they were."""
+    """Write one patch for several. Raises RepairError if the files have changed since."""
     root = patches[0].root
     if root is None or len({one.base for one in patches}) > 1:
         raise RepairError("they belong to different repositories.")
@@ -81,7 +81,7 @@ def _combined(patches: Sequence[Patch]) -> Path:
 
 
 def _groups(patches: Sequence[Patch]) -> Iterator[list[Patch]]:
-    """Yield the patches that share files or constants, directly or through others, in the order of their first ones."""
+    """Yield groups of patches that share files or constants, directly or through others, in their order."""
     left = list(patches)
     while left:
         group, files = [left.pop(0)], set[tuple[str, str]]()
@@ -96,5 +96,5 @@ def _groups(patches: Sequence[Patch]) -> Iterator[list[Patch]]:
 
 
 def _touched(patch: Patch) -> set[tuple[str, str]]:
-    """Return the files and the constants that a patch changes."""
+    """Return the files and constants that a patch changes."""
     return {(patch.base, name) for name in (*(file.name for file in patch.files), *constants(patch))}

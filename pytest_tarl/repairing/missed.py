@@ -1,4 +1,4 @@
-"""Missions that refused candidates lost: what comes later is held against them before its test."""
+"""Missions that refused candidates lost; later candidates must pass them before their test."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ LATEST = 3
 
 @dataclass
 class Missed:
-    """Seeds that candidates lost on in their tests, each with the total that is near the designed mission of it."""
+    """Seeds on which tested candidates lost, each with the total that counts as near its designed mission."""
 
     seeds: list[tuple[int, float]] = field(default_factory=list)
 
     def learn(self, found: Acceptance, goal: Goal, reference: Reference) -> None:
-        """Remember the missions that a refused candidate lost."""
+        """Store the missions that a refused candidate lost."""
         slack = reference.mean - goal.near
         for seed, outcome, designed in zip(found.seeds, found.drifted, found.designed, strict=False):
             near = min(designed, reference.mean) - slack
@@ -25,7 +25,7 @@ class Missed:
                 self.seeds.append((seed, near))
 
     def again(self, candidate: Candidate, trials: Trials, goal: Goal) -> bool:
-        """Tell whether a candidate loses most of the latest missions that others lost. Raises BudgetSpentError."""
+        """Tell whether a candidate loses most of the latest stored missions. Raises BudgetSpentError."""
         lost, asked = 0, self.seeds[-LATEST:]
         for seed, near in asked:
             outcome = trials(candidate, seed)

@@ -1,4 +1,4 @@
-"""Candidates as what they are in the end: patched sources, run as episodes of the test."""
+"""Write candidates into the source and run them as episodes of the test."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate, Wanted
 from tarl_lint.model import Operand
 
-ORIGINAL = Candidate((), Guard())  # the program as it is
-MOST_KEPT = 128  # sources of candidates that are not written anew
+ORIGINAL = Candidate((), Guard())  # the unrepaired program
+MOST_KEPT = 128  # candidates whose source is cached
 
 
 class Mutants:
-    """Writes candidates into the source and runs them, where there are workers also ahead of being asked."""
+    """Write candidates into the source and run them; with workers, also ahead of requests."""
 
     def __init__(self, order: Order) -> None:
         self.order = order
         self._ahead = Ahead(order.rollout)
-        self.texts: dict[str, str] = {}  # files beside the analysed ones, which constants are defined in
+        self.texts: dict[str, str] = {}  # files that define constants but were not analysed
         self._sources: dict[Candidate, Mapping[Path, str]] = {}
 
     def mutate(self, operand: Operand, factor: float) -> Mutation | None:
@@ -33,7 +33,7 @@ class Mutants:
         return mutations(operand, factor, is_integral(self.order.analysis, operand))
 
     def source(self, candidate: Candidate) -> Mapping[Path, str]:
-        """Return path → text of every file that a candidate changes. Raises RepairError when it cannot be written."""
+        """Return path → text of every file that a candidate changes. Raises RepairError."""
         if candidate not in self._sources:
             order = self.order
             self._read_places(candidate)
@@ -46,26 +46,26 @@ class Mutants:
         return self._sources[candidate]
 
     def _read_places(self, candidate: Candidate) -> None:
-        """Read the files, beside the analysed ones, that constants are changed in and that nobody has read yet."""
+        """Read the files outside the analysis in which the candidate changes constants."""
         for place in {mutation.place for mutation in candidate.mutations if mutation.place is not None}:
             if place.path not in self.order.analysis.sources and place.path not in self.texts:
                 self.texts[place.path] = (self.order.root / place.path).read_bytes().decode("utf-8")
 
     def foresee(self, wanted: Iterable[Wanted], drift: str | None) -> None:
-        """Tell which episodes will probably be asked for next, in this order."""
+        """Announce the episodes that are likely to be requested next, in order."""
         self._ahead.foresee(self._foreseen(wanted, drift))
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
-        """Run one episode of a candidate. Raises RepairError when it cannot be written into the source."""
+        """Run one episode of a candidate. Raises RepairError if it cannot be written into the source."""
         plan = EpisodePlan(seed, drift, self.source(candidate))
         return _outcome(lambda: self._ahead((candidate, seed, drift), plan), self.order.worst)
 
     def run_at(
         self, rollout: Rollout, worst: float, candidate: Candidate | None, seed: int, drift: str | None = None
     ) -> Outcome:
-        """Run one episode of another test, of the node as it is without a candidate.
+        """Run one episode of another test, with the unrepaired program if `candidate` is None.
 
-        `worst` is what a candidate earns that breaks that test.
+        `worst` is the total of a candidate that breaks that test. Raises RepairError.
         """
         plan = EpisodePlan(seed, drift, self.source(candidate) if candidate else {})
         return _outcome(lambda: rollout(plan), worst)
@@ -77,27 +77,27 @@ class Mutants:
             try:
                 source = self.source(candidate)
             except RepairError:
-                continue  # whoever asks for it will hear why
+                continue  # `run` will raise the error again
             yield (candidate, seed, drift), EpisodePlan(seed, drift, source)
 
 
 def _check_text(ended: EpisodeRun) -> None:
-    """Raise StaleTextError where an episode ran an older text than the candidate's."""
+    """Raise StaleTextError if an episode ran an older text than the candidate's."""
     if ended.older:
         names = ", ".join(path.name for path in ended.older)
         raise StaleTextError(
-            f"{names}: a candidate was written into it, and the text of before ran all the same, so nothing can be "
-            "said of its constants. Something outside of the node keeps what was imported from it: import it inside "
-            "the test function, or not at all in tests, conftest.py and installed packages."
+            f"{names}: the candidate was written into the file, but the episode ran the previous text, so the search "
+            "cannot judge its constants. Something outside the node keeps objects imported from this file: import it "
+            "inside the test function, and not in tests, conftest.py or installed packages."
         )
 
 
 def _outcome(run: Callable[[], EpisodeRun], worst: float) -> Outcome:
-    """Run an episode with a candidate in the nodes and say what it earned.
+    """Run an episode of a candidate and return its outcome. Raises StaleTextError.
 
-    The test ran before, so whatever breaks it now (a node that fell silent, a reward that is no number) is the
-    candidate's doing. Such an episode, or one that the node did not live to see the end of, earns as little as the
-    worst one recorded: what it had until then says nothing.
+    The unrepaired program ran in this test, so any failure now (a silent node, a reward that is not a number) is due to
+    the candidate. Such an episode, or one in which the node crashed, earns at most as much as the worst recorded one;
+    the reward up to the crash means nothing.
     """
     try:
         ended = run()

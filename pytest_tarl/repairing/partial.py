@@ -1,4 +1,4 @@
-"""The best that is no repair: it gains something for certain, costs the designed world nothing, and is not enough."""
+"""Partial repairs: candidates that certainly gain and do no harm in the designed world, but do not gain enough."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
 from pytest_tarl.searching.accept import PASS_RATE_LOSS, Outcome
 from pytest_tarl.searching.search import Candidate
 
-MOST = 2  # candidates that are tested
-EPISODES = 40  # of either world, each beside one of the program as it is
-SCREENED = 12  # candidates that are looked at ...
-KNOWN = 3  # ... in so many recorded episodes of the designed world
-LEAST = 0.1  # of what is lost, that a candidate has to have gained in the search
+MOST = 2  # candidates to test
+EPISODES = 40  # per world, each paired with one of the unrepaired program
+SCREENED = 12  # candidates to screen ...
+KNOWN = 3  # ... in this number of recorded episodes of the designed world
+LEAST = 0.1  # share of the loss that a candidate must have gained in the search
 HARMFUL: tuple[Reason, ...] = (
     "nominal gets worse",
     "another test gets worse",
@@ -33,16 +33,16 @@ HARMFUL: tuple[Reason, ...] = (
 
 @dataclass(frozen=True)
 class Gained:
-    """What a candidate gains an episode over the program as it is, on fresh seeds; `low` is a lower bound of it."""
+    """Gain per episode over the unrepaired program on fresh seeds; `low` is its lower confidence bound."""
 
     mean: float
     low: float
-    failures: int  # more than the program as it is has
+    failures: int  # additional failures compared with the unrepaired program
 
 
 @dataclass(frozen=True)
 class Best:
-    """A candidate that helps: in the drifted world, and what it changes in the designed one."""
+    """A candidate that helps, with its gains in the drifted and in the designed world."""
 
     candidate: Candidate
     drifted: Gained
@@ -50,7 +50,7 @@ class Best:
 
 
 def best(mutants: Mutants, examiner: Examiner, watch: Watch) -> tuple[Best | None, int]:
-    """Test the candidates that gained most; return the first that helps for certain, and the episodes that it took."""
+    """Test the best candidates; return the first that certainly helps, if any, and the number of episodes."""
     spent, number = 0, -1
     for candidate in islice(_promising(examiner, watch), SCREENED):
         try:
@@ -74,7 +74,7 @@ def best(mutants: Mutants, examiner: Examiner, watch: Watch) -> tuple[Best | Non
 
 
 def _mild(mutants: Mutants, candidate: Candidate) -> bool:
-    """Tell whether a candidate loses nothing in a few recorded episodes of the designed world."""
+    """Tell whether a candidate loses at most the margin in a few recorded episodes of the designed world."""
     if mutants.order.permanent:
         return True
     sample, margin = mutants.order.fixture.sample, mutants.order.reference.margin
@@ -90,7 +90,7 @@ def _harmless(mutants: Mutants, designed: Gained) -> bool:
 
 
 def _promising(examiner: Examiner, watch: Watch) -> Iterator[Candidate]:
-    """Yield what came furthest, then what gained most in the search, without what does harm."""
+    """Yield the best refused candidate, then those with the highest gains in the search, except harmful ones."""
     goal = watch.order.goal
     harmful = [one.candidate.changes for one in examiner.tried if one.reason in HARMFUL]
     furthest = [examiner.refused.candidate] if examiner.refused.candidate is not None else []

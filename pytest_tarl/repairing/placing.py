@@ -1,4 +1,4 @@
-"""Where a repair is written: at the constant's definition where that is in force in this test, else at its use."""
+"""Choose where to write a repair: at the constant's definition if it is in force in this test, else at its use."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
-LOOKED_AT = 3  # seeds on which a repair at the definition has to be as good as at the use
-MOST_PLACES = 6  # configuration files that are tried for one parameter
-MOST_NAMED = 5  # other users that a note names
+LOOKED_AT = 3  # seeds on which a repair at the definition must hold
+MOST_PLACES = 6  # configuration files to try for one parameter
+MOST_NAMED = 5  # other users to name in a note
 
 
 class Placing:
-    """Moves the mutations of a candidate to where their constants are defined, and remembers what is in force."""
+    """Move the mutations of a candidate to the definitions of their constants; cache which definitions are in force."""
 
     def __init__(self, mutants: Mutants) -> None:
         self.mutants = mutants
@@ -29,7 +29,7 @@ class Placing:
         self._why: dict[Operand, str] = {}
 
     def __call__(self, candidate: Candidate, trials: Trials) -> Candidate | None:
-        """Return the candidate as it is to be written; None where it has no place that was asked for."""
+        """Return the candidate with its final places; None if `--tarl-edit` requires a place that does not work."""
         edit = self.order.options.edit
         movable = [one for one in candidate.mutations if not one.operand.literal and one.form is None]
         if edit == "use" or candidate.guard.conjuncts or not movable:
@@ -41,7 +41,7 @@ class Placing:
         return moved or (None if edit == "definition" else candidate)
 
     def notes(self, candidate: Candidate) -> Iterator[str]:
-        """Say why a repair is written at its use, and who else uses what it changes."""
+        """Yield notes on why a repair is at its use, and on other users of a changed definition."""
         for mutation in candidate.mutations:
             if mutation.place is None and not candidate.guard.conjuncts and mutation.operand in self._why:
                 yield self._why[mutation.operand]
@@ -49,7 +49,7 @@ class Placing:
             yield from self._users(place, [m.operand for m in candidate.mutations if m.place == place])
 
     def _moved(self, candidate: Candidate, trials: Trials) -> Candidate | None:
-        """Move what has a place in force; None where nothing has, or where the moved candidate does not hold."""
+        """Move mutations to definitions in force; return None if there are none or the moved candidate fails."""
         mutations = []
         for mutation in candidate.mutations:
             stays = mutation.operand.literal or mutation.form is not None
@@ -60,7 +60,7 @@ class Placing:
             if mutation.place and values.setdefault(mutation.place, redefinition(mutation)) != redefinition(
                 mutation
             ):
-                return None  # two uses of one constant, which are to differ
+                return None  # two uses of one constant need different values
         if not values or (self.order.options.edit == "definition" and self._left(mutations)):
             return None
         moved = Candidate(tuple(mutations), candidate.guard)
@@ -71,8 +71,8 @@ class Placing:
             if mutation.place is not None:
                 where = f"{mutation.place.path}:{mutation.place.line}"
                 self._why[mutation.operand] = (
-                    f"`{mutation.operand.code}` is changed at its use: changed where it is defined, at {where}, it "
-                    "does not bring the reward back, since others use it, too"
+                    f"`{mutation.operand.code}` is changed at its use, because a change of its definition at {where} "
+                    "does not restore the reward: other code uses the constant, too"
                 )
         return None
 
@@ -86,7 +86,7 @@ class Placing:
         return self._in_force[operand]
 
     def _found(self, mutation: Mutation, candidate: Candidate, trials: Trials) -> Place | None:
-        """Return the first place whose change changes an episode: it is what this test goes by."""
+        """Return the first place where a change affects the episode, which shows that the place is in force."""
         analysis, operand = self.order.analysis, mutation.operand
         name = parameter(analysis, operand)
         written = defined(analysis, operand)
@@ -112,7 +112,7 @@ class Placing:
     def _moves(
         self, mutation: Mutation, places: Sequence[Place], candidate: Candidate, trials: Trials
     ) -> bool:
-        """Tell whether a change at these places is felt: the episode is no longer the one without it."""
+        """Tell whether a change at one of these places alters the reward of an episode."""
         pair = self.order.goal.pairs[0]
         for place in places:
             alone = Candidate((replace(mutation, place=place),), candidate.guard)
@@ -124,14 +124,14 @@ class Placing:
         return False
 
     def _given(self, name: str, operand: Operand) -> str:
-        """Say that a parameter's value comes from the test."""
+        """Explain that a parameter's value comes from the test."""
         test = self.order.root / self.order.fixture.test.partition("::")[0]
         text = test.read_text("utf-8", "replace") if test.is_file() else ""
         key = name.rpartition("/")[2].removeprefix("~")
-        who = "the test itself gives it (parameters=…, argv=…)" if key in text else "this test sets it"
+        who = "the test itself passes it (parameters=…, argv=…)" if key in text else "this test sets it"
         return (
-            f"`{operand.code}` is changed at its use: the parameter {name!r} has a default and maybe a value in the "
-            f"package, but {who}, and tests are never edited: change the parameter where your robot gets it from"
+            f"`{operand.code}` is changed at its use: the parameter {name!r} has a default and possibly a value in the "
+            f"package, but {who}, and tests are never edited: change the parameter where your robot sets it"
         )
 
     def _users(self, place: Place, used: Sequence[Operand]) -> Iterator[str]:
@@ -140,13 +140,13 @@ class Placing:
         if others:
             more = f" and {len(others) - MOST_NAMED} more" if len(others) > MOST_NAMED else ""
             yield (
-                f"{place.name} at {place.path}:{place.line} is used by {', '.join(others[:MOST_NAMED])}{more}, too; "
-                "recorded tests of this run that use it were run"
+                f"{place.name} at {place.path}:{place.line} is also used by {', '.join(others[:MOST_NAMED])}{more}; "
+                "this run repeated the recorded tests that use it"
             )
 
 
 def _importers(root: Path, place: Place, analysed: set[str]) -> list[str]:
-    """Return Python files below the root, not analysed, that name both the constant and the module it is in."""
+    """Return Python files outside the analysis that contain both the constant's name and its module's name."""
     if not place.path.endswith(".py"):
         return []
     module, found = Path(place.path).stem, []

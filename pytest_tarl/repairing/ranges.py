@@ -1,4 +1,4 @@
-"""A drift whose size differs from episode to episode: a repair has to hold in every part of the range."""
+"""Drifts whose size varies from episode to episode: a repair must hold in every part of the range."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from pytest_tarl.model import Band, Sizes
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching.accept import TOO_LITTLE, Acceptance, Outcome
 
-LEAST_NEAR = 2  # episodes that a candidate holds in before it is said to fit a part of the range
+LEAST_NEAR = 2  # successful episodes before a candidate can be said to fit a part of the range
 
-STRATA = 4  # parts of equal width that the seeds of a test come from in turn; looks are multiples of it
+STRATA = 4  # parts of equal width from which a test takes its seeds in turn; all looks are multiples of it
 
-Test = Callable[[Sequence[int]], Acceptance]  # of a candidate, on seeds
+Test = Callable[[Sequence[int]], Acceptance]  # test of a candidate on these seeds
 
 
 @dataclass(frozen=True)
 class Ranged:
-    """The seeds of an acceptance in the order of its episodes, and the parts of the range in which it held or not."""
+    """The seeds of a test in order, and the parts of the range in which the candidate held or lost."""
 
     seeds: tuple[int, ...] = ()
     held: tuple[Band, ...] = ()
@@ -30,13 +30,13 @@ class Ranged:
 
 
 def over_the_range(order: Order, stream: str, most: int, test: Test) -> tuple[Acceptance, Ranged]:
-    """Test a candidate once; where the drift has a range, on seeds that are spread evenly over it.
+    """Test a candidate once; if the drift has a range, on seeds that are spread evenly over it.
 
-    Every block of `STRATA` episodes has one from each stratum of the range, so that a test takes no more episodes than
-    that of a point. It keeps its risk: over a block, a fixed bet grows at most as it would if all episodes came from
-    the mean of the strata (geometric and arithmetic mean), and failures whose rates differ are spread less than
-    binomial ones of the mean rate, so that few of them are less likely (Hoeffding 1956). What it accepts must also lose
-    less than the margin on average in each third of the range, which can only refuse.
+    Each block of `STRATA` episodes has one from each stratum of the range, so the test needs no more episodes than one
+    for a drift of a single size. Its risk is kept. Over a block, a fixed bet grows at most as if all episodes came from
+    the mean of the strata (inequality of geometric and arithmetic mean). The number of failures with different rates
+    varies less than a binomial one with the mean rate, so a small number is less likely (Hoeffding 1956). An accepted
+    candidate must also lose less than the margin on average in each third of the range; this can only refuse.
     """
     bands = [band for one in order.comparison.sizes.values() for band in one.bands]
     if not bands:
@@ -50,7 +50,7 @@ def over_the_range(order: Order, stream: str, most: int, test: Test) -> tuple[Ac
 
 
 def spread_seeds(order: Order, stream: str, most: int) -> tuple[int, ...]:
-    """Return fresh seeds of which each block of `STRATA` draws one size from each stratum, in order."""
+    """Return fresh seeds such that each block of `STRATA` draws one size from each stratum, in order."""
     strata: list[list[int]] = [[] for _ in range(STRATA)]
     wanted = -(-most // STRATA)
     for index in count():
@@ -64,7 +64,7 @@ def spread_seeds(order: Order, stream: str, most: int) -> tuple[int, ...]:
 
 
 def _stratum(order: Order, seed: int) -> int:
-    """Return which part a seed draws: a quarter of the only range, or which halves of the first two."""
+    """Return the stratum of a seed: a quarter of the only range, or a pair of halves of the first two ranges."""
     drawn = _drawn(order, seed)
     first = list(order.comparison.sizes.items())[:2]
     each = STRATA if len(first) == 1 else 2
@@ -76,7 +76,7 @@ def _stratum(order: Order, seed: int) -> int:
 
 
 def _holds_in(order: Order, band: Band, found: Acceptance) -> bool:
-    """Tell whether a candidate loses less than the margin in a part of the range, on average."""
+    """Tell whether a candidate loses at most the margin on average in a part of the range."""
     lost = [
         designed - outcome.total
         for seed, outcome, designed in zip(found.seeds, found.drifted, found.designed, strict=True)
@@ -86,7 +86,7 @@ def _holds_in(order: Order, band: Band, found: Acceptance) -> bool:
 
 
 def repaired_sizes(order: Order, ranged: Ranged) -> Mapping[str, Sizes]:
-    """Return the sizes of the comparison with those that the repair was accepted on."""
+    """Return the drift sizes of the comparison, with the sizes in the repair's acceptance test added."""
     drawn = [_drawn(order, seed) for seed in ranged.seeds]
     return {
         part: replace(one, of={**one.of, "repaired": tuple(each[part] for each in drawn)})
@@ -95,24 +95,22 @@ def repaired_sizes(order: Order, ranged: Ranged) -> Mapping[str, Sizes]:
 
 
 def fits_a_part(order: Order, runs: Mapping[int, Outcome]) -> str:
-    """Say at which sizes a candidate held, where it did so at one end of a range only; else ""."""
+    """Describe the sizes at which a candidate held if they are at one end of a range only; else return ""."""
     for part in order.comparison.sizes:
         near = [_drawn(order, seed)[part] for seed, run in runs.items() if order.goal.reached(run, seed)]
         far = [_drawn(order, seed)[part] for seed, run in runs.items() if not order.goal.reached(run, seed)]
         if len(near) >= LEAST_NEAR and far and (max(near) < min(far) or max(far) < min(near)):
             name = f" of {part}" if part else ""
             missed = f"{min(far):.3g} to {max(far):.3g}"
-            return f"it fits sizes{name} from {min(near):.3g} to {max(near):.3g} and not {missed}"
+            return f"it works for sizes{name} from {min(near):.3g} to {max(near):.3g}, but not for {missed}"
     return ""
 
 
 def bands_in_words(ranged: Ranged) -> str:
-    """Say in which parts of the range a candidate held."""
+    """Describe the parts of the range in which a candidate held."""
     held, lost = (" and ".join(map(str, bands)) for bands in (ranged.held, ranged.lost))
     return (
-        f"it holds for {held} and not for {lost}"
-        if held
-        else f"it holds for no part of the range, not for {lost}"
+        f"it holds for {held}, but not for {lost}" if held else f"it holds for no part of the range ({lost})"
     )
 
 

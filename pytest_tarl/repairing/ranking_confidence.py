@@ -1,4 +1,4 @@
-"""How certain the ranking of the sites is, in words."""
+"""Describe how certain the ranking of the sites is."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def ranking_confidence(
     accepted: Accepted | None,
     ranking: Ranking | None,
 ) -> str:
-    """Say what the ranking rests on; empty where nothing was simulated."""
+    """Return a sentence about the evidence for the ranking; "" if nothing was simulated."""
     if not effects:
         return ""
     sites = len({step.site for step in order.analysis.sites})

@@ -1,4 +1,4 @@
-"""Other recorded tests of the node that a candidate changes: their missions in the designed world must not lose."""
+"""Regression tests: missions of other recorded tests of a changed file must not lose in the designed world."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import Outcome
 from pytest_tarl.searching.search import Candidate
 
-MOST = 5  # tests that are run
-EPISODES = 8  # of each of them, those first in which the guard holds
+MOST = 5  # tests to run
+EPISODES = 8  # per test, the first ones in which the guard holds
 
 
 @dataclass(frozen=True)
 class Beside:
-    """What came of the other tests: sentences about those that held and about those that lost; episodes run."""
+    """Results of the other tests: sentences about those that held and those that lost, and the episodes run."""
 
     held: tuple[str, ...] = ()
     lost: tuple[str, ...] = ()
@@ -32,7 +32,7 @@ NOTHING_BESIDE = Beside()
 
 
 def beside(mutants: Mutants, candidate: Candidate) -> Beside:
-    """Run the recorded missions of other tests of the changed files, until one of them loses."""
+    """Run the recorded missions of other tests of the changed files until one of them loses. Raises RepairError."""
     changed = {path.resolve() for path in mutants.source(candidate)}
     concerned = [one for one in mutants.order.neighbours() if _uses(one, changed, mutants.order.root)]
     held: list[str] = []
@@ -45,12 +45,12 @@ def beside(mutants: Mutants, candidate: Candidate) -> Beside:
             return Beside(tuple(held), (told,), episodes)
         held.append(told)
     if len(concerned) > MOST:
-        held.append(f"{len(concerned) - MOST} more of the node were not run")
+        held.append(f"{len(concerned) - MOST} more tests of the node were not run")
     return Beside(tuple(held), (), episodes)
 
 
 def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
-    """Tell whether a test's nodes are among the changed files, or they or the test name one of them."""
+    """Tell whether a test's nodes are among the changed files, or a node or the test mentions one of them."""
     if changed & set(neighbour.nodes):
         return True
     texts = [root / neighbour.test.partition("::")[0], *neighbour.nodes]
@@ -61,7 +61,7 @@ def _uses(neighbour: Neighbour, changed: Set[Path], root: Path) -> bool:
 
 
 def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:
-    """Return the recorded episodes (by index) to run: those in which the guard holds, where the recording knows."""
+    """Return the indices of recorded episodes to run: those in which the guard holds, if the recording shows it."""
     fixture = neighbour.fixture
     if any(conjunct.sensor not in fixture.sensors for conjunct in candidate.guard.conjuncts):
         return range(min(EPISODES, fixture.sample.episodes))
@@ -73,26 +73,29 @@ def _chosen(neighbour: Neighbour, candidate: Candidate) -> Sequence[int]:
 def _compared(
     mutants: Mutants, neighbour: Neighbour, candidate: Candidate, chosen: Sequence[int]
 ) -> tuple[bool, str]:
-    """Tell whether missions lose under a candidate, each against its own recording, and say so in words."""
+    """Compare missions under a candidate with their own recording; return whether they lose, and a sentence."""
     if not chosen:
-        return False, f"{neighbour.test}: as recorded, since the condition never holds there"
+        return False, f"{neighbour.test}: as recorded, because the condition never holds there"
     sample = neighbour.fixture.sample
     outcomes = _run(mutants, neighbour, candidate, chosen)
     if neighbour.drift is not None:
         before, what = (
             _run(mutants, neighbour, None, chosen),
-            "it earns without the repair under the same drift",
+            "without the repair under the same drift",
         )
     else:
         before = [Outcome(float(sample.total[at]), bool(sample.passed[at])) for at in chosen]
-        what = "was recorded"
+        what = "as recorded"
     failed = sum(not outcome.passed and usual.passed for outcome, usual in zip(outcomes, before, strict=True))
     now, usually = (fmean(outcome.total for outcome in world) for world in (outcomes, before))
-    told = f"{neighbour.test}: {now:.4g} an episode where {usually:.4g} {what}, {len(chosen)} episodes"
+    told = f"{neighbour.test}: {now:.4g} per episode instead of {usually:.4g} {what}, {len(chosen)} episodes"
     if failed:
-        told += f", {failed} of them fail now"
+        told += f", {failed} of them now fail"
     if mutants.order.permanent and neighbour.drift is None:
-        return False, f"{told}; it does not declare the drift, so this is its old world, which may change"
+        return (
+            False,
+            f"{told}; it does not declare the drift, so this is its old world, in which losses are allowed",
+        )
     return failed > 0 or now < usually - neighbour.margin, told
 
 

@@ -1,4 +1,4 @@
-"""The whole repair: search, guard, accept, deliver."""
+"""Run a whole repair: search, choose a guard, accept, deliver."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from pytest_tarl.searching import candidates
 from pytest_tarl.searching.ranking import Ranking
 from pytest_tarl.searching.search import BudgetSpentError, Strategy, label
 
-CONSTANTS = 2 / 3  # of the budget, where changes of structure are to have the rest
-RESERVE = 1 / 6  # of the budget, that constants get beside it when they have come far
-NAMED_FROM = 3  # episodes from which a candidate that fits a part of a range is named
+CONSTANTS = 2 / 3  # of the budget, if structural changes are to get the rest
+RESERVE = 1 / 6  # of the budget, which constants get in addition if a candidate came far
+NAMED_FROM = 3  # episodes; candidates with more are reported if they fit a part of a range
 
 
 @dataclass(frozen=True)
 class Repaired:
-    """How a repair ended: the comparison with culprits, curves and repair in it, what held, episodes by kind."""
+    """Result of a repair: the comparison with culprits, curves and repair, the accepted candidate, episodes by kind."""
 
     comparison: Comparison
     accepted: Accepted | None
@@ -45,26 +45,26 @@ class Repaired:
 
 @dataclass
 class _Findings:
-    """What the searches have brought so far; effects are those of the first one that has any, by its name."""
+    """Results of the searches so far; `effects` are those of the first search that has any, named by `method`."""
 
     accepted: Accepted | None = None
     effects: Mapping[str, Sequence[OperandEffect]] | None = None
     method: str = ""
     curves: tuple[SearchTrace, ...] = ()
     interrupted: bool = False
-    late: bool = False  # the time of a search was up
+    late: bool = False  # the time for the search was up
     episodes: int = 0
-    ranking: Ranking | None = None  # where all sites were ranked
-    structure: int = 0  # episodes of the search that changes of structure took
+    ranking: Ranking | None = None  # if all sites were ranked
+    structure: int = 0  # episodes spent on structural changes, part of `episodes`
 
     def take(self, purse: Purse) -> None:
-        """Add what was spent of a purse."""
+        """Add the episodes spent from a purse."""
         self.episodes += purse.spent
         self.late = self.late or purse.late
 
 
 def repair(order: Order) -> Repaired:
-    """Run the searches asked for; the first candidate that is accepted counts."""
+    """Run the requested searches; the first accepted candidate is the repair. Raises RepairError."""
     mutants, found = Mutants(order), _Findings()
     purse = Purse(order.options.budget, order.options.seconds)
     _enrich(mutants, purse)
@@ -90,7 +90,7 @@ def repair(order: Order) -> Repaired:
 
 
 def _enrich(mutants: Mutants, purse: Purse) -> None:
-    """Look for more missions that fail, where few do."""
+    """Search for more missions that fail, if few do."""
     trials = purse.phase(mutants, "missions that fail", Watch(mutants.order))
     goal = enriched(mutants, trials)
     purse.settle(trials)
@@ -106,7 +106,7 @@ def _search(
     found: _Findings,
     watch: Watch,
 ) -> None:
-    """Run one search; once a repair is accepted, for its curve only."""
+    """Run one search; after a repair was accepted, only for its curve."""
     share = CONSTANTS if mutants.order.options.structure and method == "sweep" else 1.0
     trials = purse.phase(mutants, method, watch, share)
     if share < 1.0:
@@ -133,7 +133,7 @@ def _restructure(
     searched: Sequence[Guard],
     purse: Purse,
 ) -> None:
-    """Try changes of structure, since no constant suffices, with the episodes that are left."""
+    """Try structural changes with the remaining episodes, since no change of constants was accepted."""
     trials = purse.phase(mutants, "structure", watch)
     chief = tuple(dict.fromkeys((candidates.ALWAYS, searched[0])))
     structures = Structures(mutants.order, chief, trials)
@@ -150,7 +150,7 @@ def _restructure(
 
 
 def _rank(mutants: Mutants, found: _Findings, guard: Guard, watch: Watch) -> None:
-    """Go on until all sites are ranked, under the guard of the repair or else the one that tells most."""
+    """Rank all sites, under the guard of the repair or else the most promising guard."""
     if found.accepted is not None:
         guard = found.accepted.candidate.guard
     purse = Purse(mutants.order.options.budget, mutants.order.options.seconds)
@@ -167,7 +167,7 @@ def _rank(mutants: Mutants, found: _Findings, guard: Guard, watch: Watch) -> Non
 
 
 def _exhibit(strategy: Strategy) -> None:
-    """Run a search for its curve only, up to its first candidate."""
+    """Run a search up to its first candidate, only for its curve."""
     with suppress(BudgetSpentError):
         next(strategy.candidates(), None)
 
@@ -186,7 +186,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
         totals["repaired"] = tuple(outcome.total for outcome in accepted.acceptance.drifted)
         nominal = tuple(outcome.total for outcome in accepted.acceptance.nominal)
         totals["nominal_repaired"] = nominal or totals["offline"]
-        with suppress(KeyboardInterrupt):  # what was accepted counts without them
+        with suppress(KeyboardInterrupt):  # the repair stays accepted without bounds
             bounds, spent = guaranteed(mutants, accepted)
     part = None
     if accepted is None and not found.interrupted:
@@ -218,7 +218,7 @@ def _concluded(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Wa
 
 
 def _formulas(order: Order, accepted: Accepted | None) -> tuple[FormulaRow, ...]:
-    """Return what formulas came to, in the episodes that an accepted repair was tested on, too."""
+    """Return the verdicts of formulas, including the episodes in which an accepted repair was tested."""
     if accepted is None:
         return order.comparison.formulas
     worlds = {"repaired": accepted.acceptance.drifted, "nominal_repaired": accepted.acceptance.nominal}
@@ -227,7 +227,7 @@ def _formulas(order: Order, accepted: Accepted | None) -> tuple[FormulaRow, ...]
 
 
 def _ended(examiner: Examiner, found: _Findings) -> Refused:
-    """Return the best that was refused; what ended the search is the reason where nothing was tested."""
+    """Return the best refused candidate; if nothing was tested, the reason is whatever ended the search."""
     if found.interrupted:
         return replace(examiner.refused, reason="interrupted")
     if found.late and examiner.refused.reason == "budget":
@@ -236,7 +236,7 @@ def _ended(examiner: Examiner, found: _Findings) -> Refused:
 
 
 def _notes(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Watch) -> Iterator[str]:
-    """Say what was not searched, what was dropped for the sake of others, and what cut the search short."""
+    """Yield notes on what was not searched, which candidates were dropped, and what ended the search early."""
     order, accepted = mutants.order, found.accepted is not None
     told = found.accepted.candidate if found.accepted else examiner.refused.candidate
     if told is not None:
@@ -251,23 +251,23 @@ def _notes(mutants: Mutants, examiner: Examiner, found: _Findings, watch: Watch)
     )
     if found.structure:
         yield (
-            f"no single constant sufficed, so changes of structure were tried in {found.structure} of the search's "
-            f"{found.episodes} episodes"
+            f"no single constant sufficed, so {found.structure} of the search's {found.episodes} episodes tried "
+            "structural changes"
         )
     if found.late:
         yield (
-            f"the search was cut after {order.options.seconds:g} s, in which it ran {found.episodes} episodes; the "
-            f"clock is not in the seed, so another run may get elsewhere: --tarl-budget {found.episodes} gets as far"
+            f"the search ended after {order.options.seconds:g} s and {found.episodes} episodes; a time limit is not "
+            f"reproducible: to repeat this search, use --tarl-budget {found.episodes}"
         )
     elif examiner.cut and not accepted and examiner.tested:
         yield (
             f"the search ended because its {order.options.budget} episodes were spent: "
-            f"--tarl-budget {2 * order.options.budget} goes on for as long again"
+            f"--tarl-budget {2 * order.options.budget} doubles them"
         )
 
 
 def _of_the_range(order: Order, examiner: Examiner, watch: Watch) -> Iterator[str]:
-    """Say which candidates fit a part of the range only."""
+    """Yield notes on candidates that fit only a part of the range."""
     for one in examiner.tried:
         ranged = examiner.ranged.get(one.candidate)
         if one.reason == "not over the whole range" and ranged is not None:
@@ -279,7 +279,7 @@ def _of_the_range(order: Order, examiner: Examiner, watch: Watch) -> Iterator[st
 
 
 def _ranked(order: Order, effects: Mapping[str, Sequence[OperandEffect]]) -> list[tuple[SitePlace, float]]:
-    """Return the sites as the slices rank them, then those that the recording did not know or that were tried late."""
+    """Return the sites in the order of the slices, then sites unknown to the recording and timing sites."""
     ranked = [(culprit.site, culprit.score) for culprit in order.comparison.culprits]
     known = {site.id for site, _ in ranked}
     late = [step for step in order.analysis.timing if str(step.site) in effects]

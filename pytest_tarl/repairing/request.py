@@ -1,4 +1,4 @@
-"""What is to be repaired, and what a repair has to reach."""
+"""A request for a repair: the degraded test, and the reward that a repair must reach."""
 
 from __future__ import annotations
 
@@ -19,59 +19,59 @@ from pytest_tarl.searching.accept import PASS_RATE_LOSS, Reference
 from pytest_tarl.searching.search import Goal, Pair
 from tarl_lint.api import Analysis
 
-SMALL = 0.05  # share of the loss that may stay where designed missions earn nothing, so that no share of that says it
+SMALL = 0.05  # share of the loss used as the margin if designed missions earn nothing
 
 
 @dataclass(frozen=True)
 class Neighbour:
-    """Another recorded test: its nodes' files, how to run it, the loss per episode that nobody minds."""
+    """Another recorded test: its nodes' files, how to run it, and the tolerated loss per episode."""
 
     test: str
     nodes: tuple[Path, ...]
     rollout: Rollout
     fixture: Fixture
     margin: float
-    drift: str | None = None  # the one that is repaired, where it is for good and this test declares it, too
+    drift: str | None = None  # the drift to repair, if it is permanent and this test declares it, too
 
 
 @dataclass(frozen=True)
 class Order:
-    """One degraded test under one drift: how to run it, what was recorded of it, where patches go."""
+    """A degraded test under one drift: how to run it, its recording, and where patches go."""
 
     rollout: Rollout
     analysis: Analysis
-    root: Path  # what the analysis' paths are relative to
+    root: Path  # folder to which the analysis' paths are relative
     fixture: Fixture
     online: Online
     options: Options
     progress: Progress
     patches: Path
-    recorded: Path | None = None  # the file of the fixture
-    neighbours: Callable[[], Sequence[Neighbour]] = tuple  # asked for when a candidate has held otherwise
-    world: Drift | None = None  # what the drift is
-    declared: tuple[float, float] | None = None  # the range of an episode's total
+    recorded: Path | None = None  # file of the recording
+    neighbours: Callable[[], Sequence[Neighbour]] = tuple  # called once a candidate has held otherwise
+    world: Drift | None = None  # the declaration of the drift
+    declared: tuple[float, float] | None = None  # declared range of an episode's total reward
     searched: Goal | None = (
-        None  # what the search is after, where more was looked for than the on-line run told
+        None  # the goal with more seeds than the comparison had, if some were searched for
     )
 
     @property
     def comparison(self) -> Comparison:
-        """Return what the on-line run found."""
+        """Return the comparison with the drifted world."""
         return self.online.comparison
 
     @property
     def drift(self) -> str | None:
-        """Return the drift scenario that the repair is for."""
+        """Return the drift scenario to repair."""
         return self.comparison.drift
 
     @property
     def permanent(self) -> bool:
-        """Tell whether the world has changed for good: then the designed one is the old one, and no longer asked."""
+        """Tell whether the world has changed permanently; the designed world is then history and is not tested."""
         return self.comparison.permanent
 
     @cached_property
     def reference(self) -> Reference:
-        """Return the off-line world that repairs are held against."""
+        """Return the designed world to which repairs are compared."""
         offline, verdict = self.fixture.sample, self.comparison.verdict
         margin = verdict.tolerance or SMALL * verdict.loss
         totals, passed = offline.total.tolist(), float(offline.passed.mean())
@@ -80,7 +80,7 @@ class Order:
 
     @cached_property
     def goal(self) -> Goal:
-        """Return what the search is after."""
+        """Return the goal of the search."""
         if self.searched is not None:
             return self.searched
         online = self.online.recorded.sample
@@ -94,12 +94,12 @@ class Order:
 
     @cached_property
     def worst(self) -> float:
-        """Return the lowest reward that any recorded episode had: what a candidate earns that breaks the test."""
+        """Return the lowest total of any recorded episode, which a candidate gets that breaks the test."""
         return float(min(self.fixture.sample.total.min(), self.online.recorded.sample.total.min()))
 
 
 def spread(drawn: Sequence[tuple[float, int]]) -> Iterator[int]:
-    """Yield the indices of (size, index) pairs so that the first few of them span the sizes."""
+    """Yield the indices of (size, index) pairs in an order whose first few span the sizes."""
     parts = [[index for _, index in sorted(drawn)]]
     while parts:
         part = parts.pop(0)
@@ -110,7 +110,7 @@ def spread(drawn: Sequence[tuple[float, int]]) -> Iterator[int]:
 
 
 def goal(online: Sequence[Pair], reference: Reference, loss: float) -> Goal:
-    """Pick the on-line episodes that lost, worst last, and say what a mutation must reach on them."""
+    """Pick the drifted episodes that lost, worst last, and compute the totals that a mutation must reach."""
     spread = stdev(reference.totals) if len(reference.totals) > 1 else 0.0
     near = reference.mean - max(reference.margin, 2 * spread, 0.1 * loss)
     lost = sorted((pair for pair in online if pair.total < near), key=lambda pair: -pair.total)

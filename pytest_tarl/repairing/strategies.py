@@ -1,4 +1,4 @@
-"""The searches by name, and what each of them is given: operands in order, guards, a generator of its own."""
+"""Create the searches by name, each with its operands in order, its guards and its random generator."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from pytest_tarl.searching.search import Strategy, Trials
 from pytest_tarl.searching.sweep import Sweep
 from tarl_lint.model import Operand
 
-MOST_GUARDS = 3  # that a search runs under
+MOST_GUARDS = 3  # guards per search
 
 
 def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Trials) -> Strategy:
-    """Return the search of that name. Raises SearchError, SettingsError where one was plugged in and is none."""
+    """Return the search of that name. Raises SearchError and SettingsError for unsuitable plug-ins."""
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
     if method == "sweep":
@@ -55,12 +55,12 @@ def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Tri
 
 
 def ranking(mutants: Mutants, guard: Guard, trials: Trials) -> Ranking:
-    """Return what ranks all sites."""
+    """Return the ranking of all sites."""
     return Ranking(operands(mutants.order), mutants.mutate, guard, trials, mutants.order.goal)
 
 
 def operands(order: Order) -> tuple[Operand, ...]:
-    """Return all operands of the analysed flows, those of the sites that the slices rank first in front."""
+    """Return all operands of the analysed flows, plainest changes first, then in the order of the slices."""
     rank = {culprit.site.id: i for i, culprit in enumerate(order.comparison.culprits)}
     steps = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
     found = dict.fromkeys(o for step in steps for o in order.analysis.operands(step.site))
@@ -68,7 +68,7 @@ def operands(order: Order) -> tuple[Operand, ...]:
 
 
 def timing_operands(order: Order) -> tuple[Operand, ...]:
-    """Return the operands that say when the nodes act: they are in no flow, so no slice ranks them."""
+    """Return operands that set when the nodes act; they are in no flow, so no slice ranks them."""
     analysis = order.analysis
     known = set(operands(order))
     found = (o for step in analysis.timing for o in analysis.operands(step.site))
@@ -76,7 +76,7 @@ def timing_operands(order: Order) -> tuple[Operand, ...]:
 
 
 def evidence(order: Order) -> candidates.Evidence:
-    """Return what guards can be read from."""
+    """Return the data from which guards are derived."""
     comparison = order.comparison
     return candidates.Evidence(
         comparison.sensors,

@@ -1,6 +1,6 @@
-"""Repairs of structure, tried when no constant suffices: templates at the expressions that the slices rank first.
+"""Structural repairs, for drifts that no constant repairs: templates at the expressions that the slices rank first.
 
-Each parameter of a template at an expression is an operand like any other, so the sweep searches it.
+Each parameter of a template at an expression is an operand like any other, so the sweep can search it.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ MOST = {
     "comparison": 5,
     "pair": 4,
     "sensor": 3,
-}  # expressions that a template is tried at
+}  # expressions at which to try a template, by its kind
 _NUMERIC = ("abs", "float", "int", "max", "min", "pow", "round", "sum")
 _AXES = (("x", "y"), ("y", "z"), ("x", "z"), ("left", "right"), ("roll", "pitch"))
 
 
 class Structures:
-    """A search over templates, cheapest first; each price has its share of the episodes."""
+    """A search over templates, cheapest first; templates of equal cost share an equal part of the episodes."""
 
     def __init__(self, order: Order, guards: Sequence[Guard], trials: Trials) -> None:
         self.order = order
@@ -45,7 +45,7 @@ class Structures:
         self._found: dict[Operand, Form] = {}
 
     def candidates(self) -> Iterator[Candidate]:
-        """Yield confirmed candidates, those of cheap templates first. Raises BudgetSpentError."""
+        """Yield confirmed candidates, cheap templates first. Raises BudgetSpentError."""
         groups = self._groups()
         whole = self.trials.budget
         for number, operands in enumerate(groups):
@@ -61,7 +61,7 @@ class Structures:
                 self.trials.budget = whole
 
     def effects(self) -> dict[str, list[OperandEffect]]:
-        """Return, per site, what each template's best values gained."""
+        """Return, for each site, the gains of each template's best values."""
         found: dict[str, list[OperandEffect]] = {}
         for sweep in self._sweeps:
             for site, effects in sweep.effects().items():
@@ -69,12 +69,14 @@ class Structures:
         return found
 
     def mutate(self, operand: Operand, factor: float) -> Mutation | None:
-        """Return one step of a parameter; a template without any is there or not."""
+        """Return one step of a parameter; a template without parameters has a single step."""
         form = self._found[operand]
         if not form.parameter:
             return Mutation(operand, True, form=form)
         if factor == 1.0 and form.parameter != form.defaults[0][0]:
-            return None  # as proposed, which is one change whatever parameter is moved afterwards
+            return (
+                None  # unchanged, hence the same change for every parameter; only the first one proposes it
+            )
         return Mutation(operand, factor, form=form) if factor > 0 or form.template.on == "sensor" else None
 
     def _groups(self) -> list[list[Operand]]:
@@ -93,7 +95,7 @@ class Structures:
 
 
 def form_words(order: Order, mutation: Mutation) -> str:
-    """Say what a structural mutation does."""
+    """Describe a structural mutation."""
     form = mutation.form
     assert form is not None  # noqa: S101
     source = document(mutation.operand.span.path, order.analysis.sources[mutation.operand.span.path])
@@ -103,7 +105,7 @@ def form_words(order: Order, mutation: Mutation) -> str:
 
 
 class _Spot:
-    """An expression that a template may be written at."""
+    """An expression at which a template may be written; `typical` is the usual size of its value."""
 
     def __init__(self, site: SiteId, source: Document, node: ast.expr, kind: str, typical: float) -> None:
         self.site = site
@@ -114,7 +116,7 @@ class _Spot:
 
 
 def _forms(order: Order, template: Template, spots: Sequence[_Spot]) -> Iterator[tuple[Operand, Form]]:
-    """Yield an operand for every parameter of a template at every spot that it fits."""
+    """Yield an operand for every parameter of a template at every expression that it fits."""
     kind = "value" if template.on == "sensor" else template.on
     if template.on == "pair":
         for one, other in _pairs(spots):
@@ -146,7 +148,7 @@ def _operands(template: Template, spot: _Spot, bare: Form, scale: float) -> Iter
 
 
 def _spots(order: Order) -> Iterator[_Spot]:
-    """Yield the expressions of the flows' statements, in the order of the statements."""
+    """Yield the expressions in the statements of flows, in the order of the statements."""
     sizes = _typical(order)
     seen: set[tuple[str, int]] = set()
     for step in _steps(order):
@@ -165,9 +167,9 @@ def _spots(order: Order) -> Iterator[_Spot]:
 
 
 def _steps(order: Order) -> list[Step]:
-    """Return the flows' statements: in turns the one that the slices rank next, and the one next to the publish call.
+    """Return the flows' statements, alternately from the slices' ranking and from the publish calls backwards.
 
-    What limits, smooths or adds to a command does it where the command is sent, whatever line the loss comes from.
+    Limits, filters and offsets of a command act where the command is sent, wherever the loss comes from.
     """
     rank = {culprit.site.id: at for at, culprit in enumerate(order.comparison.culprits)}
     ranked = sorted(order.analysis.sites, key=lambda step: rank.get(str(step.site), len(rank)))
@@ -180,7 +182,7 @@ def _steps(order: Order) -> list[Step]:
 
 
 def _expressions(source: Document, span: Span, numeric: bool) -> Iterator[tuple[ast.expr, str]]:
-    """Yield what may be changed in the statement at a span, and what it is; `numeric` where it recorded numbers."""
+    """Yield the expressions to change in the statement at a span, with kind; `numeric` if it recorded numbers."""
     statements = [
         node for node in ast.walk(source.tree) if isinstance(node, ast.stmt) and node.lineno == span.line
     ]
@@ -200,7 +202,7 @@ def _expressions(source: Document, span: Span, numeric: bool) -> Iterator[tuple[
 
 
 def _passed(call: ast.Call) -> Iterator[ast.expr]:
-    """Yield the numbers that a call calculates for its arguments, those inside of messages that it makes, too."""
+    """Yield the numbers computed for the arguments of a call, also inside messages constructed there."""
     for each in (*call.args, *(keyword.value for keyword in call.keywords)):
         if _is_numeric(each):
             yield each
@@ -209,7 +211,7 @@ def _passed(call: ast.Call) -> Iterator[ast.expr]:
 
 
 def _computes(node: ast.expr) -> bool:
-    """Tell whether an expression may give a number: a call of a function, or a choice between two values."""
+    """Tell whether an expression may yield a number: a function call or a conditional expression."""
     return isinstance(node, ast.IfExp) or (isinstance(node, ast.Call) and not _makes_an_object(node))
 
 
@@ -218,7 +220,7 @@ def _makes_an_object(call: ast.Call) -> bool:
 
 
 def _is_numeric(node: ast.expr) -> bool:
-    """Tell whether an expression calculates a number."""
+    """Tell whether an expression computes a number."""
     if isinstance(node, ast.BinOp):
         return not isinstance(node.left, ast.Constant) or not isinstance(node.left.value, str)
     if isinstance(node, ast.UnaryOp):
@@ -234,7 +236,7 @@ def _orders(op: ast.cmpop) -> bool:
 
 
 def _pairs(spots: Sequence[_Spot]) -> list[tuple[_Spot, _Spot]]:
-    """Return expressions of one function that differ by their axis only."""
+    """Return pairs of expressions in one function that differ only in their axis."""
     found = []
     for one, other in combinations(spots, 2):
         together = one.source is other.source and one.source.function(one.node) is other.source.function(
@@ -260,14 +262,14 @@ def _assigned(spot: _Spot) -> str:
 
 
 def _threshold(node: ast.expr) -> float:
-    """Return the size of the number that is compared with; 1 where it is none."""
+    """Return the absolute value of the number in a comparison, 1 if there is none."""
     numbers = [each.value for each in ast.walk(node) if isinstance(each, ast.Constant)]
     sizes = [abs(float(value)) for value in numbers if isinstance(value, int | float) and value]
     return sizes[0] if sizes else 1.0
 
 
 def _typical(order: Order) -> Mapping[str, float]:
-    """Return the mean size of what each site produces, off-line."""
+    """Return the mean recorded flow value of each site, by site id."""
     sample: Sample = order.fixture.sample
     found: dict[str, float] = {}
     for taint_list, recorded in zip(order.fixture.lists, sample.lists, strict=True):

@@ -1,4 +1,4 @@
-"""Modules of the project that a flow passes and that the marker does not name: their constants are not searched."""
+"""Modules of the project through which a flow passes but which the marker does not name, so they are not searched."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pytest_tarl.repairing.request import Order
 
 
 def unnamed_modules(order: Order) -> Iterator[str]:
-    """Yield a sentence for every such module, once."""
+    """Yield a sentence for each such module."""
     named = {(order.root / shown).resolve() for shown in order.analysis.sources}
     told: set[Path] = set()
     for shown, text in order.analysis.sources.items():
@@ -23,13 +23,13 @@ def unnamed_modules(order: Order) -> Iterator[str]:
                 told.add(file)
                 place = file.relative_to(order.root.resolve()).as_posix()
                 yield (
-                    f"a flow passes {place} at {shown}:{step.span.line}, and the marker does not name that file, so "
-                    "its constants were not searched: add it to nodes and record again"
+                    f"a flow passes through {place} at {shown}:{step.span.line}, but the marker does not name that "
+                    "file, so its constants were not searched: add it to nodes and record again"
                 )
 
 
 def _imports(tree: ast.Module, at: Path, root: Path) -> Iterator[tuple[str, Path]]:
-    """Yield the names that a module imports from files of the project, with the files."""
+    """Yield (name, file) for names that a module imports from files of the project."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             for each in node.names:
@@ -46,7 +46,7 @@ def _imports(tree: ast.Module, at: Path, root: Path) -> Iterator[tuple[str, Path
 
 
 def _files(module: str, level: int, at: Path, root: Path) -> list[Path]:
-    """Return the file of a module, beside the importing one or in a folder above it, up to the root."""
+    """Return the file of a module, next to the importing file or in a parent folder up to the root."""
     starts = [at.parents[level - 1]] if level else [each for each in at.parents if each.is_relative_to(root)]
     parts = module.split(".")
     wanted = [start.joinpath(*parts).with_suffix(".py") for start in starts if module]

@@ -27,7 +27,7 @@ def test_what_goes_together_becomes_one_patch_with_the_evidence_of_both(robot: P
     second = repair(robot, {"node.py": NODE.replace("low = 1", "low = 3")}, "wind")
     found = joined([first, second], robot)
     (line,), (command,) = found.lines, found.commands
-    assert line.startswith(f"{first.name} and {second.name} go together: .tarl/patches/combined-node-")
+    assert line.startswith(f"{first.name} and {second.name} do not conflict: .tarl/patches/combined-node-")
     git(*command.split()[1:], cwd=robot)
     assert (robot / "node.py").read_text() == guarded(NODE).replace("low = 1", "low = 3")
     combined = read(robot / command.split()[-1])
@@ -75,7 +75,7 @@ def test_names_that_two_repairs_add_to_one_import_go_together(robot: Path, endin
     float_too = IMPORTING.replace("import Float64", "import Float32, Float64").replace("GAIN = 5", "GAIN = 7")
     first, second = repair(robot, {"node.py": bool_too}), repair(robot, {"node.py": float_too}, "wind")
     found = joined([first, second], robot)
-    assert "go together" in found.lines[0]
+    assert "do not conflict" in found.lines[0]
     git(*found.commands[0].split()[1:], cwd=robot)
     wanted = IMPORTING.replace("from std_msgs.msg import Float64", BOTH)
     wanted = wanted.replace("low = 1", "low = 3").replace("GAIN = 5", "GAIN = 7")
@@ -138,7 +138,7 @@ def test_what_would_not_compile_together_is_not_combined(robot: Path) -> None:
     first = repair(robot, {"node.py": NODE.replace("high = 2\n", "high = (2\n")})
     second = repair(robot, {"node.py": NODE.replace("GAIN = 5", "GAIN = 6")}, "wind")
     found = joined([first, second], robot)
-    assert "are not combined: the merged file does not compile" in found.lines[0]
+    assert "cannot be merged: the merged file does not compile" in found.lines[0]
     assert sorted(path.name for path in robot.glob(".tarl/patches/*")) == sorted([first.name, second.name])
 
 

@@ -72,7 +72,7 @@ def test_the_first_recorded_episodes_in_which_the_guard_holds_are_run_with_their
     assert [seed for _, seed in mutants.ran] == [FIRST + 2 * n for n in range(3, 3 + EPISODES)]
     assert (found.episodes, found.lost, len(found.held)) == (EPISODES, (), 1)
     assert (
-        f"{3 + (EPISODES - 1) / 2:.4g} an episode where {3 + (EPISODES - 1) / 2:.4g} was recorded"
+        f"{3 + (EPISODES - 1) / 2:.4g} per episode instead of {3 + (EPISODES - 1) / 2:.4g} as recorded"
         in found.held[0]
     )
 
@@ -107,7 +107,7 @@ def test_a_mission_has_lost_when_it_earns_less_than_recorded_by_more_than_its_ma
 
 def test_one_mission_that_fails_now_is_a_loss_whatever_it_earns() -> None:
     found = beside(Mutants([neighbour()], 5.0, fails=4), guard(7.0, 8.0))  # type: ignore[arg-type]
-    assert "1 of them fail now" in found.lost[0]
+    assert "1 of them now fail" in found.lost[0]
 
 
 def test_after_a_loss_no_further_test_is_run() -> None:
@@ -121,7 +121,7 @@ def test_only_so_many_tests_are_run_and_the_rest_is_counted() -> None:
     mutants = Mutants([neighbour(n) for n in range(MOST + 3)])
     found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
     assert len({rollout for rollout, _ in mutants.ran}) == MOST
-    assert found.held[-1] == "3 more of the node were not run"
+    assert found.held[-1] == "3 more tests of the node were not run"
     assert found.episodes == MOST * EPISODES
 
 
@@ -134,7 +134,7 @@ def test_under_a_drift_of_its_own_a_test_is_compared_with_the_node_as_it_is() ->
 
 def test_a_permanent_change_does_not_ask_the_old_world_of_others() -> None:
     found = beside(Mutants([neighbour()], -9.0, permanent=True), guard(7.0, 8.0))  # type: ignore[arg-type]
-    assert (found.lost, "its old world, which may change" in found.held[0]) == ((), True)
+    assert (found.lost, "its old world, in which losses are allowed" in found.held[0]) == ((), True)
     under = beside(Mutants([neighbour(drift="mud")], -9.0, permanent=True), guard(7.0, 8.0))  # type: ignore[arg-type]
     assert under.lost
 

@@ -144,7 +144,7 @@ def test_keeps_full(tarl, tarl_drift):
     ("declared", "words"),
     [
         ('{"worn": Drift(0.1, permanent=True)}', "it earns without the repair under the same drift"),
-        ("{}", "so this is its old world, which may change"),
+        ("{}", "so this is its old world, in which losses are allowed"),
     ],
 )
 def test_other_tests_of_the_node_run_in_the_new_world_where_they_declare_it(

@@ -234,7 +234,7 @@ def test_what_the_test_itself_gives_is_said_and_never_edited(worn: pytest.Pytest
     where, told, lines = repaired(worn)
     assert where.startswith("keeper.py:")
     assert "self.gain * missing" in lines
-    assert "the test itself gives it (parameters=…, argv=…), and tests are never edited" in told
+    assert "the test itself passes it (parameters=…, argv=…), and tests are never edited" in told
 
 
 def test_a_definition_that_others_need_as_it_is_stays(worn: pytest.Pytester) -> None:

@@ -81,7 +81,7 @@ def test_a_repair_that_fits_a_part_of_the_range_is_refused_and_told(ranged: pyte
     done = ranged.runpytest(*REPAIR, "--tarl-budget=100")
     told = " ".join(done.stdout.str().split())
     assert not result(ranged)["repair"]["accepted"]
-    assert "it fits sizes from" in told or "a part of the drift's range" in told
+    assert "it works for sizes from" in told or "a part of the drift's range" in told
 
 
 def test_bytes_do_not_depend_on_the_number_of_workers(ranged: pytest.Pytester) -> None:

@@ -182,7 +182,8 @@ def test_a_repair_that_leaves_other_tests_as_they_were_says_so_in_its_patch(tank
     tank.runpytest(*REPAIR).assert_outcomes(failed=1, passed=1, deselected=1)
     (patch,) = tank.path.glob(".tarl/patches/*.patch")
     assert (
-        "# other test: test_tank.py::test_wide_pipe: 15 an episode where 15 was recorded" in patch.read_text()
+        "# other test: test_tank.py::test_wide_pipe: 15 per episode instead of 15 as recorded"
+        in patch.read_text()
     )
 
 
@@ -193,7 +194,7 @@ def test_a_module_that_the_marker_does_not_name_is_named(tank: pytest.Pytester) 
     changed(tank, "test_tank", "import pytest\n", "import pytest\nimport sys\nsys.path.insert(0, '.')\n")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     told = " ".join(tank.runpytest(*REPAIR, "--tarl-budget=20").stdout.str().split())
-    assert "a flow passes gains.py at keeper.py:22, and the marker does not name that file" in told
+    assert "a flow passes through gains.py at keeper.py:22, but the marker does not name that file" in told
 
 
 OWN = """
