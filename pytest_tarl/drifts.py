@@ -41,7 +41,7 @@ class Drift:
 
     @property
     def spans(self) -> Mapping[str, Span]:
-        """Return its ranges by the name of their part; the name is empty for the whole value."""
+        """Return the ranges by the name of their part, "" for the whole value."""
         return dict(_spans(self.value, ""))
 
 

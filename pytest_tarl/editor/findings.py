@@ -16,7 +16,7 @@ _HAZARD = "TARL2"
 
 
 def diagnostics(result: Result, places: Places) -> dict[str, list[types.Diagnostic]]:
-    """Return the diagnostics of each file that was read, by its path. Accepted findings are hints."""
+    """Return the diagnostics of each linted file, by its path. Accepted findings become hints."""
     found: dict[str, list[types.Diagnostic]] = {path: [] for path in result.texts}
     for finding in result.findings:
         found.setdefault(finding.span.path, []).append(_diagnostic(finding, places))
@@ -56,7 +56,7 @@ def _severity(finding: Finding) -> types.DiagnosticSeverity:
 
 
 def _taint_list(flow: Flow, places: Places) -> list[types.DiagnosticRelatedInformation]:
-    """Return the statements of a flow: the shortest chain where there is one, with what each of them does."""
+    """Return the statements of a flow with their roles: only its shortest chain, if it has one."""
     chosen = [flow.steps[at] for at in flow.chain] or list(flow.steps)
     return [
         types.DiagnosticRelatedInformation(places.location(step.span), f"{step.role}: {step.code}")
@@ -77,7 +77,7 @@ def lenses(result: Result, path: str, places: Places) -> list[types.CodeLens]:
 
 
 def title(flows: Sequence[Flow]) -> str:
-    """Return a lens: `data of /odom, decided by /estop`."""
+    """Return the title of a lens: `data of /odom, decided by /estop`."""
     words = {"explicit": "data of", "implicit": "decided by"}
     parts = []
     for kind, word in words.items():
@@ -88,4 +88,4 @@ def title(flows: Sequence[Flow]) -> str:
 
 
 def _name(flow: Flow) -> str:
-    return " or ".join(flow.source.topics) or f"a topic heard by {flow.source.callback or 'a call'}"
+    return " or ".join(flow.source.topics) or f"a topic received in {flow.source.callback or 'a call'}"

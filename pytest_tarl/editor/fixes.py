@@ -1,4 +1,4 @@
-"""Quick fixes: silence a finding by a comment, accept it into the baseline, apply an accepted repair."""
+"""Quick fixes: ignore a finding with a comment, accept it into the baseline, or apply an accepted repair."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _IGNORED = re.compile(r"#\s*tarl:\s*ignore\[([^\]]*)\]")
 def fixes(
     uri: str, path: str, found: Sequence[types.Diagnostic], patches: Iterable[Path], places: Places
 ) -> list[types.CodeAction]:
-    """Return the quick fixes of the diagnostics at a place, and the repairs of its file."""
+    """Return quick fixes for the diagnostics at a place, and actions that apply the repairs of its file."""
     actions = []
     for diagnostic in found:
         data: Any = diagnostic.data
@@ -54,7 +54,7 @@ def fixes(
 
 
 def _comment(path: str, at: types.Range, code: str, places: Places) -> types.TextEdit:
-    """Return the edit that adds a code to the comment of the last line of a finding, or the comment itself."""
+    """Return the edit that adds the code to the ignore comment on a finding's last line, or adds the comment."""
     number = at.end.line + 1
     line = places.line(path, number)
     known = _IGNORED.search(line)

@@ -1,4 +1,4 @@
-"""Places: the linter counts characters from 1, the protocol counts UTF-16 units from 0."""
+"""Convert positions: the linter counts characters from 1, the protocol counts UTF-16 units from 0."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def units(text: str) -> int:
 
 
 class Places:
-    """Turns spans into ranges and locations. `texts` holds each file by the path that its spans have."""
+    """Convert spans to ranges and locations. `texts` maps the paths in spans to file contents."""
 
     def __init__(self, root: Path, texts: Mapping[str, str]) -> None:
         self._root = root
@@ -24,11 +24,11 @@ class Places:
         self._lines: dict[str, list[str]] = {}
 
     def uri(self, path: str) -> str:
-        """Return the address of a file."""
+        """Return the URI of a file."""
         return (self._root / path).as_uri()
 
     def line(self, path: str, number: int) -> str:
-        """Return a line, counted from 1, without its end; "" where the file is shorter or was not read."""
+        """Return line `number` (from 1) without its line ending; "" if the file is shorter or was not linted."""
         if path not in self._lines:
             self._lines[path] = self._texts.get(path, "").split("\n")
         lines = self._lines[path]
@@ -39,16 +39,16 @@ class Places:
         return types.Position(line - 1, units(self.line(path, line)[: column - 1]))
 
     def range(self, span: Span) -> types.Range:
-        """Return what a span covers."""
+        """Return the range of a span."""
         return types.Range(
             self.position(span.path, span.line, span.column),
             self.position(span.path, span.end_line, span.end_column),
         )
 
     def location(self, span: Span) -> types.Location:
-        """Return where a span is."""
+        """Return the location of a span."""
         return types.Location(self.uri(span.path), self.range(span))
 
     def end_of_line(self, path: str, line: int) -> types.Position:
-        """Return the position behind the last character of a line."""
+        """Return the position after the last character of a line."""
         return types.Position(line - 1, units(self.line(path, line)))

@@ -1,6 +1,6 @@
 """Results of the last comparisons by line: utility, its difference under a drift, rank, and accepted repairs.
 
-It is read from `.tarl/results/*.json`. Statements are found again by their identity, so moved lines keep their figures.
+The source is `.tarl/results/*.json`. Statements are matched by identity, so moved lines keep their figures.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from tarl_lint.model import Step
 
 @dataclass(frozen=True)
 class Figures:
-    """What one comparison says about one statement. Utilities are in units of reward."""
+    """Figures of one statement in one comparison. Utilities are in units of reward."""
 
     test: str
     drift: str
     offline: float
     online: float
-    rank: int | None = None  # among the culprits, from 1
+    rank: int | None = None  # position among the culprits, from 1
 
     @property
     def difference(self) -> float:
@@ -33,14 +33,14 @@ class Figures:
 
 @dataclass(frozen=True)
 class Recorded:
-    """All comparisons of a project. `patches` are those of accepted repairs, by the path of an edited file."""
+    """All comparisons of a project. `patches` maps edited files to the patches of accepted repairs."""
 
     by_site: Mapping[str, tuple[Figures, ...]] = field(default_factory=dict)
     patches: Mapping[str, tuple[Path, ...]] = field(default_factory=dict)
 
 
 def read(root: Path) -> Recorded:
-    """Return what the results below `.tarl` hold; what is damaged or of another format is left out."""
+    """Read the results below `.tarl`; skip damaged files and other formats."""
     found = [_document(path, root) for path in sorted(root.joinpath(".tarl", "results").glob("*.json"))]
     sites: dict[str, list[Figures]] = {}
     patches: dict[str, list[Path]] = {}
@@ -55,7 +55,7 @@ def read(root: Path) -> Recorded:
 
 
 def _document(path: Path, root: Path) -> tuple[list[tuple[str, Figures]], list[str], Path] | None:
-    """Return the figures of one comparison, and the files that its repair edits, with the patch."""
+    """Return the figures of one comparison, the files that its repair edits, and the patch."""
     try:
         document = json.loads(path.read_text("utf-8"))
         figures = list(_figures(document))
@@ -84,13 +84,13 @@ def _figures(document: Mapping[str, Any]) -> Iterator[tuple[str, Figures]]:
 
 
 def steps(result: Result, path: str) -> dict[str, Step]:
-    """Return the statements of a file that are on a flow, by identity."""
+    """Return the statements of a file that are part of a flow, by identity."""
     flows = (finding.flow for finding in (*result.findings, *result.silenced) if finding.flow is not None)
     return {str(step.site): step for flow in flows for step in flow.steps if step.span.path == path}
 
 
 def hover(figures: tuple[Figures, ...]) -> str:
-    """Return a Markdown table of what is recorded about a statement."""
+    """Return a Markdown table with the figures of a statement."""
     rows = []
     for one in figures:
         utilities = f"{one.offline:.4g} | {one.online:.4g} | {one.difference:+.4g}"
@@ -100,6 +100,6 @@ def hover(figures: tuple[Figures, ...]) -> str:
 
 
 def hint(figures: tuple[Figures, ...]) -> str:
-    """Return the inlay hint of a statement, "" if no comparison ranks it."""
+    """Return the inlay hint for a statement, "" if no comparison ranks it."""
     ranked = [one for one in figures if one.rank is not None]
     return ", ".join(f"#{one.rank} {one.drift} {one.difference:+.3g}" for one in ranked)

@@ -1,4 +1,4 @@
-"""The language server: keeps the last result of the workspace, lints again after changes, answers an editor."""
+"""The language server: lint the workspace after changes and answer the editor's requests from the last result."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ CHANGES = (
 
 
 class Server(LanguageServer):
-    """A workspace in an editor. All state changes in the event loop; only linting runs in a thread of its own."""
+    """A workspace in an editor. State changes only in the event loop; linting and reading files run in threads."""
 
     def __init__(self, apply: Apply) -> None:
         super().__init__("tarl", version("tarl"), types.TextDocumentSyncKind.Incremental)
@@ -47,13 +47,13 @@ class Server(LanguageServer):
         self._problem = ""
 
     def begin(self, root: Path) -> None:
-        """Work on the files below a folder."""
+        """Set the root folder of the workspace."""
         self.root = root
-        os.chdir(root)  # the linter names files as they are seen from the working directory
+        os.chdir(root)  # the linter names files relative to the working directory
         self.linted = Workspace([root])
 
     def changed(self) -> None:
-        """Lint soon; a further change before that starts the wait again."""
+        """Lint after `PAUSE`; a further change restarts the wait."""
         if self._waiting is not None:
             self._waiting.cancel()
         self._waiting = asyncio.ensure_future(self._later())
@@ -63,7 +63,7 @@ class Server(LanguageServer):
         await asyncio.shield(self.lint())
 
     async def lint(self) -> None:
-        """Lint the workspace with the open buffers, and publish what changed."""
+        """Lint the workspace with the open buffers, and publish changed diagnostics."""
         if self.linted is None:
             return
         async with self._running:
@@ -90,18 +90,18 @@ class Server(LanguageServer):
         return found
 
     def path(self, uri: str) -> Path | None:
-        """Return the file of an address, None for one that is no file or lies elsewhere."""
+        """Return the path of a URI, None if it is not a file below the root."""
         place = to_fs_path(uri)
         path = Path(place) if place else None
         return path if path is not None and path.is_relative_to(self.root) else None
 
     def shown_path(self, uri: str) -> str | None:
-        """Return a file as the linter names it."""
+        """Return the path of a URI as the linter names it, None if it is not below the root."""
         path = self.path(uri)
         return path.relative_to(self.root).as_posix() if path is not None else None
 
     def say(self, sentence: str) -> None:
-        """Show a sentence, once until the next run that works."""
+        """Show a warning, at most once until linting succeeds again."""
         if sentence != self._problem:
             self._problem = sentence
             self.window_show_message(types.ShowMessageParams(types.MessageType.Warning, f"tarl: {sentence}"))
@@ -124,11 +124,11 @@ class Server(LanguageServer):
 
 
 def _heard(_: object) -> None:
-    """Take the client's answer to a refresh, which holds nothing."""
+    """Ignore the client's response to a refresh request."""
 
 
 def server(apply: Apply) -> Server:
-    """Return a server with its features; `apply` applies the patch of a repair and returns what to say."""
+    """Return a server with its features; `apply` applies a patch and returns the lines to show."""
     made = Server(apply)
 
     @made.feature(types.INITIALIZED)
@@ -210,7 +210,7 @@ def _commands(made: Server) -> None:
         except LintError as error:
             ls.say(str(error))
             return
-        ls.say(f"accepted in {path.name}: commit it.")
+        ls.say(f"accepted the finding in {path.name}: commit this file.")
         await ls.lint()
 
     @made.command(fixes.APPLY)
@@ -233,6 +233,6 @@ def _tell(ls: Server, lines: Iterable[str]) -> None:
 
 
 def main(apply: Apply) -> int:
-    """Serve one editor by standard input and output, until it leaves."""
+    """Serve one editor over standard input and output until it exits."""
     server(apply).start_io()
     return 0

@@ -99,7 +99,7 @@ class LogFile:
 
 
 def encoded(record: Record) -> bytes:
-    """Return a record as it stands in the file."""
+    """Return the bytes of a record in the file."""
     payload = zlib.compress(json.dumps(record, separators=(",", ":")).encode(), 1)
     return _HEAD.pack(len(payload), zlib.crc32(payload)) + payload
 
@@ -130,7 +130,7 @@ def _whole(file: BinaryIO, path: Path) -> int:
     start = file.read(len(MAGIC))
     if start != MAGIC:
         if MAGIC.startswith(start):
-            return 0  # empty, or torn while it was begun
+            return 0  # empty, or truncated within its first line
         raise _foreign(path)
     end = file.tell()
     while next_record(file) is not None:
@@ -144,7 +144,7 @@ def _check_magic(file: BinaryIO, path: Path) -> None:
 
 
 def next_record(file: BinaryIO) -> bytes | None:
-    """Return the payload of the record at the file's position, None if no whole one is there."""
+    """Return the payload of the record at the file's position, None if it is incomplete."""
     head = file.read(HEAD)
     if len(head) < HEAD:
         return None

@@ -42,7 +42,7 @@ class Topics:
 @contextmanager
 def watched(library: str, observer: Observer, topics: Topics, *, idle: bool) -> Iterator[None]:
     """Pass messages to the observer while a node of this client library runs."""
-    import_module(library)  # before any message: it settles of which generation they are
+    import_module(library)  # before any message type, because it decides between ROS 1 and ROS 2 messages
     listeners = _listeners(observer, topics)
     undo = _watch_rospy(listeners) if library == "rospy" else _watch_rclpy(listeners)
     resume = _watch_publishing(library, observer) if idle else None
@@ -84,7 +84,7 @@ def _class(name: str) -> type[Any]:
 
 
 def _watch_rospy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[], None]:
-    """Subscribe as soon as the node is registered: before its own subscriptions, so that it is told after us."""
+    """Subscribe as soon as the node is registered, so that we receive each message before the node does."""
     rospy = import_module("rospy")
     begin = rospy.init_node
 
@@ -102,9 +102,9 @@ def _watch_rospy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[
 
 
 def _watch_rclpy(listeners: list[tuple[str, type[Any], Listener]]) -> Callable[[], None]:
-    """Subscribe on the first node that the program makes."""
+    """Subscribe with the first node that the program creates."""
     node_class = import_module("rclpy.node").Node
-    profile = import_module("rclpy.qos").qos_profile_sensor_data  # which any publisher can serve
+    profile = import_module("rclpy.qos").qos_profile_sensor_data  # compatible with every publisher
     make, pending = node_class.__init__, list(listeners)
 
     def init(self: Any, *args: Any, **kwargs: Any) -> None:

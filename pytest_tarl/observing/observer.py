@@ -17,7 +17,7 @@ from pytest_tarl.observing.stream import Stream
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.sensors import Cell, Sensor, reading
 
-PERIOD = 0.02  # least seconds between two cuts: few events each, so that a cut is short
+PERIOD = 0.02  # least seconds between two cuts; longer intervals would make each cut take longer
 PATIENCE = 0.1  # seconds after which to cut even if no step was closed
 OUTCOMES = {"succeeded": True, "failed": False}
 
@@ -28,7 +28,7 @@ NEVER = Rotation()
 class Observer:
     """The observer of a node. Messages may come from any thread.
 
-    What takes time, from columns to the disk, is done by a process of its own. Raise LogError if it cannot write.
+    Slow work, such as conversion and disk access, happens in the writer process. Raise LogError if it cannot write.
     """
 
     def __init__(
@@ -45,8 +45,8 @@ class Observer:
         self.stream = Stream()
         self.sensors = tuple(sensors)
         self._names = tuple(sensor.name for sensor in self.sensors)
-        self.signals = tuple(signals)  # that formulas name, and that messages hold
-        self._following = following  # whether there are formulas, for which every change is written down
+        self.signals = tuple(signals)  # signals of formulas that are read from messages
+        self._following = following  # whether to record every change, as formulas need it
         self._changes: deque[list[Any]] = deque()  # [seconds, name, value]; any thread appends
         self._times: list[float] = []  # when steps were closed
         self._begun = monotonic()
@@ -54,15 +54,15 @@ class Observer:
         self._idle = idle
         self._bins: dict[str, int | None] = {}
         self._values: dict[str, Any] = {}
-        self._numbers: dict[str, float] = {}  # what signals are, as heard in this mission
-        self._before: dict[str, float] = {}  # and what they were before it, for those that stay silent
+        self._numbers: dict[str, float] = {}  # values of signals received in this mission
+        self._before: dict[str, float] = {}  # values before the mission, for signals without a message in it
         self._readings: list[list[Any]] = []
         self._active = monotonic()
         self.running = False  # whether a mission runs
         self.problem = ""  # the first error in here: errors must not reach the node
         self._lock = threading.RLock()  # order of records
         self._over = False
-        self._wake = threading.Lock()  # taken while the thread sleeps; a step that is closed gives it back
+        self._wake = threading.Lock()  # held while the thread sleeps; closing a step releases it
         self._wake.acquire()
         self._cut_at = self._begun
         self._thread = threading.Thread(target=self._write, name="tarl-observer", daemon=True)
@@ -99,7 +99,7 @@ class Observer:
                 self._changes.append([monotonic() - self._begun, name, number])
 
     def step(self, reward: float) -> None:
-        """Close a step with its reward; NaN if the test's own `judge` is to say it later."""
+        """Close a step with its reward; NaN if the test's `judge` computes it later."""
         with self._lock:
             now = monotonic()
             self._times.append(now - self._begun)
@@ -107,7 +107,7 @@ class Observer:
             self.stream.reward(reward)
             if now - self._cut_at > PERIOD and self._wake.locked():
                 self._cut_at = now
-                self._wake.release()  # now, when the cycle is over: not when the next one begins
+                self._wake.release()  # at the end of a cycle, to write before the next one begins
 
     def begin(self) -> None:
         """Begin a mission; a running one ends as succeeded."""
@@ -206,4 +206,4 @@ def _plain(value: Any) -> Any:
     try:
         return int(value) if isinstance(value, int) else float(value)
     except (TypeError, ValueError, OverflowError):
-        return None  # told already: a sensor that reads no number has no bin
+        return None  # reported in `told`; a sensor without a number has no bin

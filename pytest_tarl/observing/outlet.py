@@ -18,9 +18,9 @@ from pytest_tarl.errors import LogError
 from pytest_tarl.observing.writer import Rotation
 from pytest_tarl.observing.writer_main import LENGTH, READY
 
-MOST_WAITING = 1 << 26  # most bytes of waiting messages; beyond, the stream is not read
-_PIPE = 1 << 20  # bytes that the pipe itself holds, where the system allows
-_PLAIN = 2  # the version of marshal that does not look for objects which occur twice
+MOST_WAITING = 1 << 26  # most bytes of waiting messages; while more wait, events are dropped
+_PIPE = 1 << 20  # size of the pipe's buffer in bytes, if the system allows it
+_PLAIN = 2  # version of marshal without references to repeated objects, which is faster to write
 
 
 class Outlet:

@@ -14,7 +14,7 @@ from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.instrumentation.trace import Floats, Ints
 from pytest_tarl.sensors import Cell
 
-MOST_ENTRIES = 4_000_000  # halves of events that wait for the disk; beyond, they are dropped and counted
+MOST_ENTRIES = 4_000_000  # waiting list entries (two per event); further events are dropped and counted
 
 
 @dataclass(frozen=True)
@@ -41,13 +41,13 @@ class Chunk:
 
 
 class Cut(NamedTuple):
-    """What was recorded since the last cut, as plain values that `marshal` writes; `chunk` makes columns of it."""
+    """The events since the last cut, as plain values for `marshal`; `chunk` converts them to columns."""
 
-    cells: list[Cell]  # those that are new
-    latched: list[int]  # at each mark, the cell that holds from there on
+    cells: list[Cell]  # cells that are new in this cut
+    latched: list[int]  # at each mark, the number of the cell from there on
     rewards: list[int]  # the marks that close a step
     totals: list[float]
-    threads: list[tuple[list[Any], list[int]]]  # of each thread, its entries and how many it had at each mark
+    threads: list[tuple[list[Any], list[int]]]  # per thread: its entries, and their number at each mark
 
     @property
     def empty(self) -> bool:
@@ -63,12 +63,12 @@ class Stream(Recorder):
     def __init__(self) -> None:
         super().__init__(threads=True)
         self.dropped = 0
-        self._told = 0  # cells that earlier cuts hold
+        self._told = 0  # number of cells in earlier cuts
 
     def cut(self, drop: bool = False) -> Cut:
         """Return and drop the events recorded since the last call. Callable from any thread; it only slices lists.
 
-        With `drop` the events are left out and counted, for lack of room: rewards and cells are kept.
+        With `drop` the events are only counted, for lack of memory; rewards and cells are kept.
         """
         if drop:
             self.relieve(0)
@@ -85,7 +85,7 @@ class Stream(Recorder):
         return Cut(cells, latched, rewards, totals, threads)
 
     def relieve(self, most: int | None = None) -> None:
-        """Drop the events of a thread when more than `most` halves wait (MOST_ENTRIES); `dropped` counts them."""
+        """Drop the events of a thread with more than `most` waiting entries (MOST_ENTRIES); `dropped` counts them."""
         most = MOST_ENTRIES if most is None else most
         for buffer in tuple(self._buffers):
             if len(buffer.entries) > most:
@@ -96,7 +96,7 @@ class Stream(Recorder):
 
 
 def chunk(cut: Cut, known: list[Cell]) -> Chunk:
-    """Return a cut as columns; its new cells are appended to those that are known."""
+    """Convert a cut to columns; append its new cells to `known`."""
     known += map(tuple, cut.cells)
     columns = [_columns(entries, lengths, cut.latched, cut.rewards) for entries, lengths in cut.threads]
     threads = [np.full(len(column[0]), number, np.int32) for number, column in enumerate(columns)]
@@ -108,7 +108,7 @@ def chunk(cut: Cut, known: list[Cell]) -> Chunk:
 
 
 def joined(chunks: Sequence[Chunk]) -> Chunk:
-    """Return several chunks in a row, at least one, as one."""
+    """Concatenate consecutive chunks, at least one."""
     if len(chunks) == 1:
         return chunks[0]
     before = np.cumsum([0, *(one.reward.size for one in chunks[:-1])])
@@ -121,17 +121,17 @@ def joined(chunks: Sequence[Chunk]) -> Chunk:
 
 
 def _in_order(one: Chunk) -> Chunk:
-    """Return a chunk by steps, and within a step by threads."""
+    """Return a chunk sorted by step, and by thread within a step."""
     order = np.lexsort((one.thread, one.step))
     events = {name: getattr(one, name)[order] for name in ("site", "flow", "cell", "step", "thread")}
     return replace(one, **events)
 
 
 def _cut(entries: list[Any]) -> list[Any]:
-    """Take whole events off the front; the owner may be appending. Each of the three operations is atomic."""
+    """Remove complete events from the front while the owner may append. Each of the three operations is atomic."""
     count = len(entries)
     if count and type(entries[count - 1]) is int:
-        count -= 1  # a site whose value is still to come
+        count -= 1  # keep a site whose value is not appended yet
     taken = entries[:count]
     del entries[:count]
     return taken
@@ -140,7 +140,7 @@ def _cut(entries: list[Any]) -> list[Any]:
 def _columns(
     entries: list[Any], lengths: list[int], latched: list[int], rewards: list[int]
 ) -> tuple[Ints, Floats, Ints, Ints]:
-    """Return site, flow, cell and step of every event of one thread."""
+    """Return site, flow, cell and step of every event of one thread, each of shape (events,)."""
     site, flow, starts = paired(entries)
     before = np.searchsorted(starts, np.array(lengths, np.int64), side="left")
     between = np.diff(before, prepend=0, append=len(starts))

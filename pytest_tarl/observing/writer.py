@@ -17,7 +17,7 @@ from pytest_tarl.observing.frames import LogFile, Record
 from pytest_tarl.observing.stream import Chunk, Cut, chunk, joined
 from pytest_tarl.sensors import Cell
 
-MOST_HELD = 100_000  # events of a record, roughly, so that memory stays bounded
+MOST_HELD = 100_000  # approximate events per record, which bounds memory
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Writer:
         self._about = about
         self._rotation = rotation
         self._cells: list[Cell] = []
-        self._chunks: list[Chunk] = []  # of the running mission, not written yet
+        self._chunks: list[Chunk] = []  # chunks of the running mission that are not written yet
         self._readings: list[list[Any]] = []
         self._times: list[float] = []
         self._changes: list[list[Any]] = []
@@ -107,7 +107,7 @@ class Writer:
 
 
 def steps_record(one: Chunk, readings: list[list[Any]], dropped: int) -> Record:
-    """Return the record of some steps; a watch reads those whose fields come in this order fastest."""
+    """Return the record of some steps; the watch has a fast path for this order of fields."""
     return {
         "kind": "steps",
         "cells": [list(cell) for cell in one.cells],

@@ -21,19 +21,19 @@ from pytest_tarl.errors import LogError
 from pytest_tarl.observing.frames import LogFile
 from pytest_tarl.observing.writer import Rotation, Writer
 
-PERIOD = 0.25  # seconds between two syncs: what a power cut can cost at most, but for the writing itself
-LENGTH = struct.Struct("<I")  # of a message, in bytes; 0 says that there are no more
+PERIOD = 0.25  # seconds between two syncs; a power cut loses little more than this
+LENGTH = struct.Struct("<I")  # length of a message in bytes; 0 marks the end
 READY = "ready"
-NICER = 5  # the node's own threads go first
+NICER = 5  # nice value, so that the node's threads have priority
 _PIECE = 1 << 20
 
 
 def main() -> int:
-    """Run; say on standard output that it is ready, or what is in the way."""
+    """Run the writer; print to standard output that it is ready, or the reason why it cannot write."""
     for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(one, signal.SIG_IGN)  # the node decides when it is over
+        signal.signal(one, signal.SIG_IGN)  # the node's process decides when to end
     with contextlib.suppress(OSError, AttributeError):
-        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))  # whatever the node's own is
+        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))  # not the node's real-time scheduler
     with contextlib.suppress(OSError):
         os.nice(NICER)
     order: dict[str, Any] = json.loads(sys.argv[1])
@@ -68,7 +68,7 @@ def _serve(writer: Writer) -> None:
 
 
 def _take(writer: Writer, waiting: bytearray) -> bool:
-    """Take the whole messages off the front; tell whether the last one has come."""
+    """Process and remove complete messages; return whether the end mark was among them."""
     at = 0
     while len(waiting) - at >= LENGTH.size:
         (length,) = LENGTH.unpack_from(waiting, at)
@@ -77,7 +77,7 @@ def _take(writer: Writer, waiting: bytearray) -> bool:
         end = at + LENGTH.size + length
         if len(waiting) < end:
             break
-        writer.take(marshal.loads(waiting[at + LENGTH.size : end]))  # noqa: S302 - from the process that began this one
+        writer.take(marshal.loads(waiting[at + LENGTH.size : end]))  # noqa: S302 - sent by the parent process
         at = end
     del waiting[:at]
     return False

@@ -27,11 +27,8 @@ EARLY = (8, 16, 32)  # looks (numbers of episodes) at which the test can only re
 LOOKS = tuple(range(60, 201, 20))  # ... and looks at which it can also accept
 SEEDS = SCREEN + LOOKS[-1]
 PASS_RATE_LOSS = 0.05
-TOO_LITTLE: tuple[Reason, ...] = (
-    "gain too small",
-    "fails too often",
-    "not shown",
-)  # reasons in the drifted world
+# Reasons to refuse a candidate in the drifted world.
+TOO_LITTLE: tuple[Reason, ...] = ("gain too small", "fails too often", "not shown")
 SHARE = 2 / 3  # of the risk α for the first candidate; each later one gets a third of the risk before it
 
 

@@ -106,9 +106,7 @@ class Trials:
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
-    _short: list[dict[int, float]] = field(
-        default_factory=list
-    )  # per candidate that fell short: seed → total
+    _short: list[dict[int, float]] = field(default_factory=list)  # per weak candidate: seed → total
 
     def __call__(self, candidate: Candidate, seed: int) -> Outcome:
         """Return the outcome of one episode, from the cache if it has run. Raises BudgetSpentError and RepairError."""

@@ -195,9 +195,8 @@ class Sweep:
     def _plainer(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
         """Spend a few episodes on changes that a maintainer would prefer to the candidate found."""
         odd, guard, begun = oddness(found.mutations), found.guard, self.trials.spent
-        before = (
-            set(self._refused) if odd is Oddness.OFFSET else set()
-        )  # in place of an offset, refused units are refined once more
+        # In place of an offset, refused units are refined once more.
+        before = set(self._refused) if odd is Oddness.OFFSET else set()
         gains = {one: gains for (one, held), gains in self._gains.items() if held == guard and one != unit}
         others = [one for one in self.units if one != unit]
         for other in plainer(odd, gains, others, PROMISING * self.goal.wanted):

@@ -1,4 +1,4 @@
-"""One controller whose gain of 2 is written in many ways, in the node, a helper module or a file beside it.
+"""One controller whose gain of 2 is written in many ways, in the node, a helper module or a configuration file.
 
 A form is what the node has in place of the parts below; `# here` marks the line in which its gain is defined.
 """

@@ -1,4 +1,4 @@
-"""Hand-made analyses and a tiny ROS: what the tests of rewriting need, and no more."""
+"""Hand-made analyses and a tiny ROS for the tests of rewriting."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ MUDDY_STRETCH = Guard((Conjunct(TERRAIN, 1, 1), Conjunct(POSITION, 4.0, 7.0)))
 
 @dataclass
 class HandMade:
-    """What `tarl_lint.api.Analysis` tells, told by a test."""
+    """A stand-in for `tarl_lint.api.Analysis` whose results are given by the test."""
 
     sources: Mapping[str, str]
     flows: tuple[Flow, ...] = ()
@@ -39,7 +39,7 @@ class HandMade:
     def operand(
         self, code: str, value: Any, within: str, path: str = "", literal: bool | None = None
     ) -> Operand:
-        """Return the use `code` in the first line that holds `within`."""
+        """Return the use `code` in the first line that contains `within`."""
         path = path or next(iter(self.sources))
         text = self.sources[path]
         span = span_of(path, text, code, text.index(within) + within.index(code))
@@ -49,7 +49,7 @@ class HandMade:
 
 
 def span_of(path: str, text: str, code: str, start: int) -> Span:
-    """Return the span of `code`, which stands at an offset of the text."""
+    """Return the span of `code`, which starts at an offset of the text."""
     end = start + len(code)
     before, until = text[:start].split("\n"), text[:end].split("\n")
     return Span(path, len(before), len(before[-1]) + 1, len(until), len(until[-1]) + 1)
@@ -58,14 +58,14 @@ def span_of(path: str, text: str, code: str, start: int) -> Span:
 def subscribing(
     sources: Mapping[str, str], path: str, call: str, api: str, topic: str = "/odom"
 ) -> tuple[Flow, ...]:
-    """Return the flow from the subscription call that `call` is."""
+    """Return the flow whose source is the subscription call `call`."""
     text = sources[path]
     source = Source("source", span_of(path, text, call, text.index(call)), (topic,), "", "", api)
     return (Flow("explicit", source, Sink("sink", Span(path, 1, 1, 1, 1), (), "", ""), ()),)
 
 
 class TinyRos:
-    """Subscriptions of a node by topic, and what it published."""
+    """Subscriptions of a node by topic, and its published messages."""
 
     def __init__(self) -> None:
         self.subscribed: dict[str, list[Callable[[Any], None]]] = {}

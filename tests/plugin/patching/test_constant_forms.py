@@ -1,4 +1,4 @@
-"""However a constant is written: it is an operand, the sweep finds it, and it is changed where it is defined."""
+"""A constant in any notation is an operand, is found by the sweep, and is changed at its definition."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ NOWHERE = {
 
 
 class World:
-    """Ten points a mission, less what the published value is off by."""
+    """Ten points per mission, minus the error of the published value."""
 
     def __init__(self, name: str, folder: Path) -> None:
         self.name, self.folder = name, folder
@@ -43,7 +43,7 @@ class World:
         self.analysis: Analysis = analyse([folder], root=folder)
 
     def published(self, changed: Mapping[str, str]) -> float:
-        """Return what the node sends for a value of 1, with some files changed."""
+        """Return the value that the node sends for an input of 1, with some files changed."""
         texts = {Path(path).name: text for path, text in {**self.analysis.sources, **changed}.items()}
         overlay = {self.folder / Path(path).name: text for path, text in changed.items()}
         ros = TinyRos()
@@ -61,7 +61,7 @@ class World:
         return Outcome(total, total > 9.0)
 
     def place(self, mutation: Mutation) -> Place | None:
-        """Return where a mutation's constant is defined: in a file, if it was loaded from one."""
+        """Return the definition of a mutation's constant, in a configuration file if it was loaded from one."""
         found = defined(self.analysis, mutation.operand)
         if found is not None:
             return found

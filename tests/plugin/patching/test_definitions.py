@@ -1,4 +1,4 @@
-"""What a constant is called where it is defined."""
+"""Names of constants at their definitions."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_an_entry_keeps_its_key_and_a_parameter_its_name(
     assert parameter(analysis, operand) == (name if use.startswith("self.") else "")
 
 
-def test_a_place_in_a_file_that_nobody_has_read_is_read_when_it_is_written(tmp_path: Path) -> None:
+def test_a_file_outside_the_analysis_is_read_when_it_is_changed(tmp_path: Path) -> None:
     path, file = tmp_path / "mast.py", tmp_path / "mast.yaml"
     path.write_text(NODE.format(use="self.ki"))
     file.write_text("mast:\n  ki: 0.5  # per second\n")

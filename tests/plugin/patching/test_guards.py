@@ -1,4 +1,4 @@
-"""Guards as Python: what they say, what they ask, and that silence keeps the original code."""
+"""Guards as Python: their conditions, the expressions they read, and no effect before the first message."""
 
 from __future__ import annotations
 
@@ -65,23 +65,21 @@ def test_each_kind_of_sensor_has_its_condition(conjunct: Conjunct, expected: str
         (Conjunct(MODE, 0, 1), 'mode in ("dry", "wet")'),
     ],
 )
-def test_a_sensor_that_was_silent_so_far_is_asked_for_none_only_where_needed(
-    conjunct: Conjunct, expected: str
-) -> None:
+def test_none_is_checked_only_where_the_comparison_would_raise(conjunct: Conjunct, expected: str) -> None:
     text = told(conjunct, readings=SILENT)
     assert text == expected
     assert not eval(text, {conjunct.sensor.name: None})
 
 
-def test_conditions_are_joined_in_order() -> None:
+def test_conditions_are_combined_in_order() -> None:
     assert told(Conjunct(TERRAIN, 1, 1), Conjunct(POSITION, 4, 7)) == "terrain and 4.0 <= pos < 7.0"
 
 
-def test_no_condition_at_all_is_an_empty_guard() -> None:
+def test_a_guard_without_conditions_is_empty() -> None:
     assert told() == told(Conjunct(POSITION, -INF, INF)) == ""
 
 
-def test_limits_are_rounded_to_what_a_bin_can_tell() -> None:
+def test_bounds_are_rounded_to_a_hundredth_of_a_bin() -> None:
     fine = Sensor("x", topic="/odom", field="x", low=0, high=10, bins=24)
     assert told(Conjunct(fine, *fine.interval(10, 16))) == "4.167 <= pos < 7.083"
     wide = Sensor("x", topic="/odom", field="x", low=-5e4, high=5e4, bins=3)
@@ -110,7 +108,7 @@ def test_the_condition_holds_exactly_in_the_bins_up_to_rounding(
 
 
 @pytest.mark.parametrize("value", [0.0, 4.0, 7.0, 10.0, 10.5, -0.5])
-def test_the_ends_of_bins_belong_where_the_sensor_puts_them(value: float) -> None:
+def test_the_ends_of_bins_are_open_or_closed_as_in_the_sensor(value: float) -> None:
     for first, last in ((-1, -1), (0, 3), (4, 6), (7, 9), (10, 10)):
         text = told(Conjunct(POSITION, *POSITION.interval(first, last)))
         index = POSITION.bin(value)
@@ -124,7 +122,7 @@ MUDDY, FIRM = Conjunct(TERRAIN, 1, 1), Conjunct(TERRAIN, 0, 0)
 
 
 def choose(text: str, expressions: tuple[str, ...], conjunct: Conjunct = STRETCH) -> Reading | None:
-    """Ask which expression is used at the statement that holds `HERE`."""
+    """Return the expression chosen at the statement that contains `HERE`."""
     source = document("node.py", dedent(text))
     name = next(node for node in ast.walk(source.tree) if isinstance(node, ast.Name) and node.id == "HERE")
     return held(source, source.statement(name), expressions, conjunct)
@@ -144,13 +142,15 @@ def test_the_first_expression_that_is_safe_is_taken() -> None:
 @pytest.mark.parametrize(
     ("initial", "conjunct"), [("0.0", START), ("Pose()", START), ("False", FIRM), ("True", MUDDY)]
 )
-def test_a_variable_that_starts_out_inside_the_guard_is_not_trusted(initial: str, conjunct: Conjunct) -> None:
+def test_a_variable_whose_initial_value_satisfies_the_guard_is_not_used(
+    initial: str, conjunct: Conjunct
+) -> None:
     text = f"value = {initial}\ndef step(): HERE = 1\n"
     assert choose(text, ("value",), conjunct) is None
 
 
 @pytest.mark.parametrize(("initial", "conjunct"), [("0.0", STRETCH), ("Pose()", STRETCH), ("False", MUDDY)])
-def test_a_variable_that_starts_out_outside_the_guard_is_used(initial: str, conjunct: Conjunct) -> None:
+def test_a_variable_whose_initial_value_violates_the_guard_is_used(initial: str, conjunct: Conjunct) -> None:
     text = f"value = {initial}\ndef step(): HERE = 1\n"
     assert choose(text, ("value",), conjunct) == Reading("value")
 
@@ -180,7 +180,7 @@ def test_a_variable_that_starts_out_outside_the_guard_is_used(initial: str, conj
         ("def step(pos):\n    HERE = 1\ndef other():\n    pos = None", "pos", ""),
     ],
 )  # fmt: skip
-def test_none_is_asked_for_where_the_code_around_does_not_exclude_it(
+def test_none_is_checked_unless_the_surrounding_code_excludes_it(
     text: str, expression: str, absent: str
 ) -> None:
     assert choose(text, (expression,)) == Reading(expression, absent)
@@ -204,7 +204,7 @@ def test_none_is_asked_for_where_the_code_around_does_not_exclude_it(
         ),
     ],
 )
-def test_an_attribute_that_only_a_callback_sets_is_used_where_the_code_reads_it_anyway(
+def test_an_attribute_set_only_by_a_callback_is_used_where_the_code_already_reads_it(
     text: str, bound: bool
 ) -> None:
     assert (choose(text, ("self.p",)) is not None) is bound
@@ -219,12 +219,12 @@ def test_an_attribute_that_only_a_callback_sets_is_used_where_the_code_reads_it_
         ("def step(p): HERE = 1", True),
     ],
 )
-def test_a_global_that_only_a_callback_sets_is_used_where_the_code_reads_it_anyway(
+def test_a_global_set_only_by_a_callback_is_used_where_the_code_already_reads_it(
     text: str, bound: bool
 ) -> None:
     assert (choose(text, ("p",)) is not None) is bound
 
 
 @pytest.mark.parametrize("expression", ["latest()", "a + b", "cache[key]", "cache['x']"])
-def test_expressions_that_may_fail_or_act_are_not_asked(expression: str) -> None:
+def test_expressions_that_may_raise_or_have_effects_are_not_used(expression: str) -> None:
     assert choose("cache = {}\na = b = key = 1.0\ndef step(): HERE = 1", (expression,)) is None

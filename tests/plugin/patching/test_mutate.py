@@ -1,4 +1,4 @@
-"""Mutations and how they read in the source."""
+"""Mutations and the source text that they produce."""
 
 from __future__ import annotations
 
@@ -53,13 +53,13 @@ def test_a_literal_takes_the_scaled_value_with_four_digits(value: Any, factor: f
 @pytest.mark.parametrize(
     ("value", "factor", "expected"), [(5, 2.35, 12), (1, 1.2, 2), (1, 0.9, 0), (10, 0.04, 0)]
 )
-def test_a_count_stays_an_integer_and_moves_by_one_at_least(value: int, factor: float, expected: int) -> None:
+def test_a_count_stays_an_integer_and_moves_by_at_least_one(value: int, factor: float, expected: int) -> None:
     assert mutations(constant(value), factor, integral=True) == Mutation(constant(value), expected)
 
 
 @pytest.mark.parametrize("value", [5, 0.5, 0, 0.0, 7.12345])
 @pytest.mark.parametrize("integral", [False, True])
-def test_a_factor_that_changes_nothing_is_no_mutation(value: float, integral: bool) -> None:
+def test_a_factor_that_changes_nothing_gives_no_mutation(value: float, integral: bool) -> None:
     found = mutations(constant(value), 1.0, integral)
     assert found is None or (value == 7.12345 and found.value == 7.123)
 
@@ -67,7 +67,7 @@ def test_a_factor_that_changes_nothing_is_no_mutation(value: float, integral: bo
 @pytest.mark.parametrize(
     ("value", "factor"), [(math.inf, 2.0), (math.nan, 2.0), (1.0, math.inf), (1e308, 10.0)]
 )
-def test_infinite_results_are_no_mutations(value: float, factor: float) -> None:
+def test_infinite_values_give_no_mutation(value: float, factor: float) -> None:
     assert mutations(constant(value), factor) is None
 
 
@@ -89,7 +89,7 @@ def test_steps_of_zero_are_symmetric_on_a_log_scale() -> None:
     assert up.value == -down.value == 3.0
 
 
-# Each case: the statement, the operand in it, its value (None: as written), what it becomes, always and in mud.
+# Each case: the statement, its operand, its value (None: as written), the result without a guard and in mud.
 ALWAYS = [
     ("vel = 5 * delta", "5", 5, 12.0, "vel = 12.0 * delta"),
     ("vel = self.kp * delta", "self.kp", 0.5, 2.4, "vel = 2.4 * self.kp * delta"),
@@ -157,14 +157,14 @@ def test_without_a_guard_the_use_is_replaced(
 
 
 @pytest.mark.parametrize(("statement", "code", "value", "new", "expected"), IN_MUD)
-def test_under_a_guard_it_reads_as_a_maintainer_would_write_it(
+def test_a_guarded_change_reads_as_a_maintainer_would_write_it(
     statement: str, code: str, value: Any, new: Any, expected: str
 ) -> None:
     assert written(statement, code, value, new, MUD) == expected
 
 
 def written(statement: str, code: str, value: Any, new: Any, guard: Guard) -> str:
-    """Rewrite one operand of a statement inside a method in which `mud` holds the terrain."""
+    """Rewrite one operand of a statement inside a method in which `mud` contains the terrain."""
     head = "class Node:\n    def step(self, mud, pos, delta):\n"
     text = f"{head}{indent(statement, ' ' * 8)}\n"
     if '"""' in statement:
@@ -222,7 +222,7 @@ def test_several_operands_of_a_statement_change_together() -> None:
     assert "        return min(7.5, max(7.5, 7.5 * delta))\n    return min(5" in changed
 
 
-def test_a_condition_asked_twice_in_a_header_gets_a_name() -> None:
+def test_a_condition_needed_twice_in_a_header_gets_a_name() -> None:
     text = "def step(delta, mud, drifted):\n    if 5 < delta < 9:\n        pass\n"
     analysis = HandMade({"node.py": text}, held=HELD)
     uses = [analysis.operand("5", 5, "5 < d"), analysis.operand("9", 9, "< 9")]
@@ -233,7 +233,7 @@ def test_a_condition_asked_twice_in_a_header_gets_a_name() -> None:
     )
 
 
-def test_the_name_of_a_condition_is_not_that_of_its_sensor() -> None:
+def test_the_name_of_a_condition_differs_from_that_of_its_sensor() -> None:
     text = dedent(
         """\
         import rospy
@@ -263,7 +263,7 @@ def test_the_condition_of_an_elif_stays_where_it_is() -> None:
     assert "    elif (7.5 if mud else 5) < delta < (7.5 if mud else 9):\n" in changed
 
 
-def test_the_condition_of_a_loop_is_asked_every_time() -> None:
+def test_the_condition_of_a_loop_is_evaluated_in_each_iteration() -> None:
     text = "def step(delta, mud):\n    while 5 < delta < 9:\n        delta = move()\n"
     analysis = HandMade({"node.py": text}, held=HELD)
     uses = [analysis.operand("5", 5, "5 < d"), analysis.operand("9", 9, "< 9")]
@@ -285,7 +285,7 @@ def test_line_endings_indentation_and_the_end_of_the_file_are_kept(
     assert changed == ending.join([*lines[:-1], *new]) + (ending if final else "")
 
 
-def test_the_guard_is_told_as_it_is_written() -> None:
+def test_the_guard_is_reported_as_it_is_written() -> None:
     text = "def step(delta, mud, pos):\n    return 5 * delta\n"
     analysis = HandMade({"node.py": text}, held=HELD)
     change = [Mutation(analysis.operand("5", 5, "5 *"), 12.0)]
@@ -305,7 +305,7 @@ def test_the_guard_is_told_as_it_is_written() -> None:
         ("5 * x", False), ("x > 5", False), ("f(5)", False), ("x % 5", False), ("a[x] * 5", False), ("x / 5", False),
     ],
 )  # fmt: skip
-def test_places_where_only_integers_make_sense_are_known(code: str, integral: bool) -> None:
+def test_places_that_need_integers_are_recognised(code: str, integral: bool) -> None:
     analysis = HandMade({"node.py": f"y = {code}\n"})
     assert is_integral(analysis, analysis.operand("5", 5, "5")) is integral
 
@@ -337,21 +337,23 @@ def test_places_where_only_integers_make_sense_are_known(code: str, integral: bo
         ("y = = 5\n", [("5", 5, 7)], Guard(), "cannot be parsed as Python"),
     ],
 )
-def test_what_cannot_be_written_is_said(text: str, changes: list[Any], guard: Guard, words: str) -> None:
+def test_changes_that_cannot_be_written_are_refused_with_a_reason(
+    text: str, changes: list[Any], guard: Guard, words: str
+) -> None:
     analysis = HandMade({"node.py": text}, held={("/terrain", "data"): ("y",)})
     made = [Mutation(analysis.operand(code, value, code, literal=True), new) for code, value, new in changes]
     with pytest.raises(RepairError, match=words):
         rewrite(analysis, made, guard, TOPICS)
 
 
-def test_a_file_that_was_not_analysed_is_named() -> None:
+def test_a_file_outside_the_analysis_is_named_in_the_error() -> None:
     analysis = HandMade({"node.py": "y = 5\n"})
     change = Mutation(analysis.operand("5", 5, "5"), 7)
     with pytest.raises(RepairError, match=r"node\.py is not among the analysed files"):
         rewrite(HandMade({"other.py": ""}), [change], Guard(), TOPICS)
 
 
-def test_the_same_question_gets_the_same_answer() -> None:
+def test_rewriting_is_deterministic() -> None:
     analysis = HandMade({"node.py": TWO}, held=HELD)
     change = [Mutation(analysis.operand("5", 5, "5 *"), 2.5)]
     assert len({rewrite(analysis, change, MUDDY_STRETCH, TOPICS)["node.py"] for _ in range(5)}) == 1
@@ -365,7 +367,7 @@ joins = st.sampled_from(["{} + {}", "{} - {}", "{} * {}", "({} + {})", "max({}, 
 
 
 def with_operand() -> st.SearchStrategy[str]:
-    """Generate an expression that holds the operand once."""
+    """Generate an expression that contains the operand once."""
     joined = st.tuples(joins, atoms, st.booleans())
     return st.lists(joined, max_size=4).map(_nested)
 
@@ -389,7 +391,7 @@ statements = st.sampled_from(
 
 
 class Log(list[float]):
-    """Notes every value it is called with, so that order and number of evaluations show."""
+    """Log every value that it is called with, to compare order and number of evaluations."""
 
     def __call__(self, value: float) -> float:
         self.append(value)
@@ -426,7 +428,7 @@ def test_a_rewritten_program_is_the_original_unless_the_guard_holds(
 
 
 class Replace(ast.NodeTransformer):
-    """Put 7.5 for 5."""
+    """Replace 5 by 7.5."""
 
     def visit_Constant(self, node: ast.Constant) -> ast.AST:
         return ast.Constant(7.5) if node.value == 5 and isinstance(node.value, int) else node
@@ -446,7 +448,7 @@ def outcome(text: str, mud: bool, a: int, b: int) -> Any:
         return type(error), list(log)
 
 
-def test_a_rewritten_node_runs_like_the_original_until_mud_comes() -> None:
+def test_a_rewritten_node_behaves_like_the_original_until_the_guard_holds() -> None:
     text = dedent(
         """\
         import rospy

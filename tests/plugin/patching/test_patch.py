@@ -1,4 +1,4 @@
-"""Patches: what `git apply` and `patch -p1` make of them."""
+"""Patches as applied by `git apply` and `patch -p1`."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def shell(command: str, cwd: Path) -> None:
 
 
 def repaired(text: str) -> str:
-    """Let the analysis read a file as Python does, and change its 5 in mud."""
+    """Analyse a file decoded as Python does, and change its 5 in mud."""
     sources = {"node.py": text.replace("\r\n", "\n")}
     flows = subscribing(
         sources, "node.py", 'rospy.Subscriber("/odom", Odometry, callback)', "rospy.Subscriber"
@@ -115,7 +115,7 @@ def test_the_patched_file_is_the_simulated_one_and_runs(
     assert ros.published == [5.0, 12.0, 5.0]
 
 
-def test_new_text_with_its_own_line_endings_is_taken_as_it_is(tmp_path: Path) -> None:
+def test_new_text_keeps_its_own_line_endings(tmp_path: Path) -> None:
     node = tmp_path / "node.py"
     node.write_bytes(b"a = 5\r\nb = 2\n")
     patch = patched(tmp_path, {node: "a = 7\r\nb = 2\n"})
@@ -123,7 +123,7 @@ def test_new_text_with_its_own_line_endings_is_taken_as_it_is(tmp_path: Path) ->
     assert node.read_bytes() == b"a = 7\r\nb = 2\n"
 
 
-def test_mixed_line_endings_are_kept_where_nothing_changes(tmp_path: Path) -> None:
+def test_mixed_line_endings_are_kept_in_unchanged_lines(tmp_path: Path) -> None:
     node = tmp_path / "node.py"
     node.write_bytes(b"a = 5\r\nb = 2\nc = 3\r\n")
     patch = patched(tmp_path, {node: "a = 5\nb = 2\nd = 4\nc = 3\n"})
@@ -132,7 +132,7 @@ def test_mixed_line_endings_are_kept_where_nothing_changes(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("at", [".", "examples/shuttle", "examples/shuttle/src", "examples", "other"])
-def test_it_applies_from_anywhere_in_the_repository(tmp_path: Path, at: str) -> None:
+def test_a_patch_applies_from_anywhere_in_the_repository(tmp_path: Path, at: str) -> None:
     top = repository(tmp_path / "robot")
     root = top / "examples" / "shuttle"
     node = root / "src" / "my node.py"
@@ -165,7 +165,7 @@ def test_a_repository_inside_the_workspace_gets_paths_of_its_own(tmp_path: Path,
     assert node.read_text() == "a = 7\n"
 
 
-def test_it_applies_where_there_is_no_repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_patch_applies_without_a_repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     nodes = [tmp_path / "src" / name for name in ("a.py", "b.py")]
     nodes[0].parent.mkdir()
     for node in nodes:
@@ -198,7 +198,7 @@ def test_files_of_two_repositories_are_refused(tmp_path: Path) -> None:
         patched(tmp_path, dict.fromkeys(nodes, "a = 7\n"))
 
 
-def test_text_that_the_encoding_cannot_hold_is_refused(tmp_path: Path) -> None:
+def test_text_that_the_encoding_cannot_represent_is_refused(tmp_path: Path) -> None:
     node = tmp_path / "node.py"
     node.write_bytes(b"# coding: ascii\na = 5\n")
     with pytest.raises(RepairError, match="encoded in ascii"):
@@ -213,7 +213,7 @@ def test_bytes_of_other_encodings_can_be_shown(tmp_path: Path) -> None:
     readable(diff).encode()
 
 
-def test_its_name_tells_test_drift_and_content(tmp_path: Path) -> None:
+def test_a_patch_is_named_after_test_drift_and_content(tmp_path: Path) -> None:
     first = write("a", tmp_path, "tests/test_x.py::test_delivers", "mud")
     assert first.name == "tests-test-x-test-delivers-mud-ca978112.patch"
     assert write("a", tmp_path, "tests/test_x.py::test_delivers", "mud") == first
@@ -264,7 +264,7 @@ def test_applying_gives_the_new_bytes(
 @pytest.mark.parametrize("tops", [(), (".",), ("ws",), ("ws/src",), (".", "ws"), ("other",), (".", "other")])
 @pytest.mark.parametrize("root", ["ws", "ws/src/pkg", "other"])
 @pytest.mark.parametrize("names", [("ws/src/pkg/node.py",), ("ws/src/pkg/node.py", "ws/src/lib/helper.py")])
-def test_the_command_changes_the_files_wherever_it_is_typed(
+def test_the_command_works_in_any_folder(
     tmp_path: Path, tops: tuple[str, ...], root: str, names: tuple[str, ...]
 ) -> None:
     files = [tmp_path / name for name in names]

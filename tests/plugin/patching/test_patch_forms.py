@@ -1,4 +1,4 @@
-"""Patches of many kinds of statements, nodes and files: both tools make the simulated program, and it runs."""
+"""Patches of many kinds of statements, nodes and files: both tools produce the simulated program, and it runs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.plugin.patching.repairs import MUD, TOPICS, HandMade, TinyRos, odomet
 from tests.plugin.patching.test_patch import patched, repository, run, shell
 from tests.plugin.patching.test_subscriptions import NODES
 
-# what is done with a value and a publish method, and what is published of 1.0 as designed and in mud
+# statements on a value and a publish method, with the published result for 1.0 as designed and in mud
 FORMS = {
     "call": ("{publish}(5 * {value})", 5.0, 12.0),
     "condition": ("if 5 * {value} > 8.0:\n    {publish}(1.0)\nelse:\n    {publish}(0.0)", 0.0, 1.0),
@@ -37,7 +37,7 @@ FORMS = {
 
 @dataclass(frozen=True)
 class Writing:
-    """How a file is written."""
+    """Encoding, line endings and indentation of a file."""
 
     ending: str = "\n"
     final: bool = True
@@ -70,7 +70,7 @@ WRITINGS = {
 
 
 def node(kind: str, form: str) -> str:
-    """Return a node of that kind that does the form's statements in place of publishing."""
+    """Return a node of this kind that executes the form's statements instead of publishing."""
     found = re.search(r"^( *)(.*)\.publish\(5 \* (.*)\)$", NODES[kind][0], re.MULTILINE)
     assert found is not None
     statements = FORMS[form][0].format(publish=f"{found[2]}.publish", value=found[3])
@@ -78,7 +78,7 @@ def node(kind: str, form: str) -> str:
 
 
 def repaired(kind: str, text: str) -> str:
-    """Let the analysis read a file as Python does, and change its 5 in mud."""
+    """Analyse a file decoded as Python does, and change its 5 in mud."""
     sources = {"node.py": text.replace("\r\n", "\n")}
     analysis = HandMade(sources, subscribing(sources, "node.py", *NODES[kind][2:]))
     return rewrite(analysis, [Mutation(analysis.operand("5", 5, "5 *"), 12.0)], MUD, TOPICS)["node.py"]
@@ -100,7 +100,7 @@ def published(text: str) -> list[float]:
 @pytest.mark.parametrize("writing", WRITINGS)
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("kind", NODES)
-def test_both_tools_make_the_simulated_program_of_the_file_and_it_runs(
+def test_git_and_patch_produce_the_simulated_program_and_it_runs(
     tmp_path: Path, kind: str, form: str, writing: str
 ) -> None:
     written = WRITINGS[writing]

@@ -1,4 +1,4 @@
-"""Templates of structural repairs: each one's example, what a user's own file may say, laws of what is written."""
+"""Templates of structural repairs: their examples, templates of the project, and properties of the written code."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def span(text: str, code: str) -> Span:
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_the_example_of_a_template_is_what_it_writes(path: Path) -> None:
+def test_a_template_writes_its_example(path: Path) -> None:
     example = contents(path)["example"]
     before = example["before"].lstrip("\n")
     partner = span(before, example["pair"]) if "pair" in example else None
@@ -35,7 +35,7 @@ def test_the_example_of_a_template_is_what_it_writes(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_under_a_condition_the_original_value_stays_otherwise(path: Path) -> None:
+def test_without_the_condition_the_original_value_stays(path: Path) -> None:
     example = contents(path)["example"]
     before = example["before"].lstrip("\n")
     partner = span(before, example["pair"]) if "pair" in example else None
@@ -95,7 +95,7 @@ def test_a_project_adds_templates_of_its_own_and_replaces_ours(tmp_path: Path) -
         ),
     ],
 )
-def test_a_template_that_is_none_is_explained(tmp_path: Path, text: str, words: str) -> None:
+def test_an_invalid_template_is_explained(tmp_path: Path, text: str, words: str) -> None:
     (tmp_path / "own.toml").write_text(text)
     with pytest.raises(SettingsError) as raised:
         template(tmp_path / "own.toml")
@@ -142,9 +142,7 @@ class Node:
         ),
     ],
 )
-def test_a_value_without_a_name_gets_one_in_front_of_its_statement(
-    statement: str, at: str, lines: list[str]
-) -> None:
+def test_an_unnamed_value_gets_a_name_before_its_statement(statement: str, at: str, lines: list[str]) -> None:
     limited = "self.last_value += max(-0.1, min(0.1, value - self.last_value))"
     before = HOLDER.format(statement=statement)
     source = document("node.py", before)
@@ -164,7 +162,7 @@ def test_a_value_without_a_name_gets_one_in_front_of_its_statement(
         ("while self.gain * error > 1.0: error -= 1.0", "self.gain * error"),
     ],
 )
-def test_a_value_that_is_not_always_calculated_gets_no_name_in_front(statement: str, at: str) -> None:
+def test_a_value_that_is_not_always_evaluated_gets_no_name_before(statement: str, at: str) -> None:
     before = HOLDER.format(statement=statement)
     source = document("node.py", before)
     form = Form(template(SHIPPED / "rate_limit.toml"))

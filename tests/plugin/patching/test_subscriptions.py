@@ -1,4 +1,4 @@
-"""Subscriptions that a guard needs: where they go, how they read, and that the node runs with them."""
+"""Subscriptions that a guard needs: their place, their text, and that the node runs with them."""
 
 from __future__ import annotations
 
@@ -275,7 +275,7 @@ def test_a_node_subscribes_to_the_sensor_as_its_author_would(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", NODES)
-def test_the_patched_node_runs_and_heeds_the_guard(kind: str) -> None:
+def test_the_patched_node_runs_and_follows_the_guard(kind: str) -> None:
     text, _, call, api = NODES[kind]
     sources = {"node.py": text}
     ros = TinyRos()
@@ -424,7 +424,7 @@ def test_the_message_type_is_imported_where_imports_are(
     assert f"    {subscriber}('/terrain', {kind}, on_terrain)\n" in changed
 
 
-def test_names_that_mean_something_are_avoided() -> None:
+def test_used_names_are_avoided() -> None:
     text = SCRIPT.replace("GAIN", "terrain").replace("def step(pub)", "def step(pub, on_terrain_reading=0)")
     sources = {"node.py": text}
     changed = repaired(
@@ -535,7 +535,7 @@ def test_a_class_that_the_node_does_not_import_directly_subscribes_itself() -> N
     assert made.command(1.0) == 12.0
 
 
-def test_a_value_that_cannot_be_brought_to_its_use_is_refused() -> None:
+def test_a_value_that_cannot_reach_its_use_is_refused() -> None:
     sources = {"control.py": LIBRARY, "node.py": SCRIPT}
     with pytest.raises(RepairError, match=r"imports nothing from control\.py"):
         repaired(sources, subscribing(sources, "node.py", NODES["rospy script"][2], "rospy.Subscriber"))
@@ -662,7 +662,7 @@ def test_the_flow_of_the_site_decides_which_node_subscribes() -> None:
     assert f'    {NODES["rospy script"][2]}\n    rospy.Subscriber("/terrain"' in changed
 
 
-def test_two_modules_of_a_node_are_each_told_of_a_sensor() -> None:
+def test_two_modules_of_a_node_each_store_a_sensor() -> None:
     node = (
         "import rospy\nfrom driving import speed\nfrom nav_msgs.msg import Odometry\nfrom steering import turn\n\n"
         "sent = []\n\n\ndef callback(msg):\n    sent.append((turn(msg), speed(msg)))\n\n\n"

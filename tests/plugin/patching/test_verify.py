@@ -1,4 +1,4 @@
-"""The last look before a patch is written."""
+"""The check for lost lines before a patch is written."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_a_change_elsewhere_is_noticed() -> None:
         nothing_lost("node.py", NODE, NODE.replace("GAIN = 5", "GAIN = 6"), {8})
 
 
-def test_exchanged_statements_are_noticed() -> None:
+def test_reordered_statements_are_noticed() -> None:
     swapped = NODE.replace("err = abs(delta); ok = err < 1", "ok = err < 1; err = abs(delta)")
     with pytest.raises(RepairError, match="would lose"):
         nothing_lost("node.py", NODE, swapped, {8})

@@ -1,4 +1,4 @@
-"""What is told of candidates that were refused."""
+"""Examination of candidates, and the reasons given for refused ones."""
 
 from __future__ import annotations
 
@@ -26,26 +26,26 @@ SOME, ANOTHER = Candidate((), Guard()), Candidate((), Guard(()))
 NONE = Refused(None, "no operand helps")
 
 
-def test_any_candidate_says_more_than_none() -> None:
+def test_any_refused_candidate_is_reported_rather_than_none() -> None:
     refused = Refused(SOME, "gain too small")
     assert furthest(NONE, refused) is refused
     assert furthest(refused, NONE) is refused
 
 
-def test_what_held_in_the_drifted_world_came_further_than_what_did_not() -> None:
+def test_a_candidate_that_held_in_the_drifted_world_came_further() -> None:
     weak, costly = Refused(SOME, "gain too small", 9.0), Refused(ANOTHER, "nominal gets worse")
     assert furthest(weak, costly) is costly
     assert furthest(costly, weak) is costly
 
 
-def test_among_equals_the_one_that_earned_most_is_told_and_the_first_where_none_did() -> None:
+def test_among_equals_the_highest_reward_is_reported_else_the_first() -> None:
     low, high = Refused(SOME, "gain too small", 3.0), Refused(ANOTHER, "gain too small", 4.0)
     assert furthest(low, high) is high
     first, second = Refused(SOME, "gain too small"), Refused(ANOTHER, "gain too small")
     assert furthest(first, second) is first
 
 
-def test_what_only_another_test_refused_came_furthest() -> None:
+def test_a_candidate_refused_only_by_another_test_came_furthest() -> None:
     costly, elsewhere = (
         Refused(SOME, "nominal gets worse", 9.0),
         Refused(ANOTHER, "another test gets worse", 8.0),
@@ -76,7 +76,7 @@ ENDS = {
 
 
 class Field:
-    """Candidates in the field: what each earns is told by its place in a line-up."""
+    """Candidates whose rewards are given by their position in a list."""
 
     def __init__(self, line_up: Sequence[str]) -> None:
         self.line_up = line_up
@@ -109,7 +109,7 @@ class Field:
         return Outcome(LOT[kind](seed, drift is not None), passed=True)
 
     def mutate(self, operand: object, factor: float) -> None:
-        """Nothing lies between."""
+        """Return None: there is no candidate in between."""
 
     def foresee(self, wanted: object, drift: str | None) -> None:
         pass
@@ -129,7 +129,7 @@ class Field:
         ("bad as designed", "worse later than the original"),
     ],
 )
-def test_one_that_fails_is_dropped_the_next_is_tried_and_the_history_says_why(
+def test_after_a_failure_the_next_candidate_is_tried_and_the_history_gives_the_reason(
     line_up: Sequence[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(
@@ -153,7 +153,7 @@ def test_one_that_fails_is_dropped_the_next_is_tried_and_the_history_says_why(
 
 
 class Window(Field):
-    """One operand: below a factor it gains too little, beyond another one it breaks the designed world."""
+    """One operand: below one factor it gains too little, above another it breaks the designed world."""
 
     def __init__(self, low: float, high: float) -> None:
         super().__init__(["window"])
@@ -191,10 +191,10 @@ def accepted_factor(field: Any, factors: Sequence[float]) -> float:
 
 @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(1.2, 3.5), st.floats(0.0, 1.0), st.floats(1.2, 2.0))
-def test_between_too_little_and_what_breaks_the_designed_world_lies_a_repair(
+def test_bisection_finds_a_repair_between_too_weak_and_harmful_values(
     low: float, share: float, further: float
 ) -> None:
-    """Windows of 30 % and wider, entered from beyond; a candidate beyond that is not even run."""
+    """Windows of at least 30 %, approached from above; candidates beyond a harmful one do not run."""
     high = low * (1.3 + share)
     field: Any = Window(low, high)
     assert low <= accepted_factor(field, (high * 1.2, high * 1.2 * further * 1.1)) <= high
@@ -207,13 +207,13 @@ def test_between_too_little_and_what_breaks_the_designed_world_lies_a_repair(
 def test_a_narrow_window_between_two_refused_values_is_bisected(
     low: float, width: float, weak: float, strong: float
 ) -> None:
-    """The bisection begins at the value that is known to gain too little, not at the original."""
+    """The bisection starts from the value that is known to gain too little, not from the original."""
     field: Any = Window(low, low * width)
     assert low <= accepted_factor(field, (low * weak, low * width * strong)) <= low * width
 
 
 class Edge(Window):
-    """One operand that suffices from a factor on; a little less suffices in seven missions of eight."""
+    """One operand that suffices above a factor; slightly below, it suffices in seven of eight missions."""
 
     def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
         if candidate == ORIGINAL or drift is None:
@@ -227,13 +227,13 @@ class Edge(Window):
 
 @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(1.4, 3.5), st.floats(0.91, 0.99))
-def test_a_value_at_the_edge_of_its_window_is_moved_on(low: float, share: float) -> None:
-    """It holds on the seeds of the search and fails here and there, so the way goes on, not back."""
+def test_a_value_at_the_edge_of_its_window_is_moved_further(low: float, share: float) -> None:
+    """The value holds on the seeds of the search but fails on others, so the factor is increased, not reduced."""
     field: Any = Edge(low, 100.0)
     assert accepted_factor(field, (low * share,)) == pytest.approx((low * share) ** 1.5, rel=1e-3)
 
 
-def test_missions_that_a_refused_candidate_lost_are_asked_of_the_next_ones_before_their_test(
+def test_later_candidates_must_first_pass_the_missions_that_a_refused_one_lost(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(
@@ -252,7 +252,9 @@ def test_missions_that_a_refused_candidate_lost_are_asked_of_the_next_ones_befor
     assert not second.fresh
 
 
-def test_what_differs_by_a_few_percent_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_candidate_within_a_few_percent_of_an_examined_one_is_not_examined(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(
         "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
     )
@@ -268,8 +270,8 @@ def test_what_differs_by_a_few_percent_is_not_asked_again(monkeypatch: pytest.Mo
     assert [one.candidate for one in examiner.tried] == [again[0], again[3]]
 
 
-def test_no_operand_takes_the_tests_of_others_and_none_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Seven values of one constant that hold on known seeds only, then the right one: it gets its test."""
+def test_no_operand_uses_up_the_tests_and_no_candidate_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seven values of one constant hold only on known seeds; the right one after them still gets its test."""
     monkeypatch.setattr(
         "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
     )
@@ -286,7 +288,7 @@ def test_no_operand_takes_the_tests_of_others_and_none_is_lost(monkeypatch: pyte
     assert len(examiner.waiting) == 5
 
 
-def test_what_had_to_wait_is_tested_once_nobody_else_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_waiting_candidates_are_tested_once_no_other_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
         "pytest_tarl.searching.candidates.firing_episodes", lambda guard, sample, _: sample.seeds
     )
@@ -302,7 +304,7 @@ def test_what_had_to_wait_is_tested_once_nobody_else_is_there(monkeypatch: pytes
 
 
 def _tested_at_once(drifted: Any, nominal: Any, designed: Any, seeds: Sequence[int], *_: Any) -> Acceptance:
-    """Take a test for each candidate, which its first mission decides."""
+    """Decide the test of each candidate by its first mission."""
     outcome = drifted.run(seeds[0])
     good = outcome.total >= DESIGNED - 0.5
     return Acceptance(good, "" if good else "gain too small", (outcome,), (), True, 1)

@@ -1,4 +1,4 @@
-"""The budget of a search is hard: whatever its phases are, they never spend more together."""
+"""The budget of a search is a hard limit: its phases together never exceed it."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_phases_never_spend_more_than_the_purse_holds(
 
 
 @pytest.mark.parametrize(("gained", "episodes"), [(7.0, 13), (5.0, 10)])
-def test_constants_that_have_come_far_get_a_reserve(gained: float, episodes: int) -> None:
+def test_constants_that_came_far_get_a_reserve(gained: float, episodes: int) -> None:
     pairs = tuple(Pair(seed, 0.0) for seed in range(40))
     goal = Goal(pairs, near=9.5, enough=10.0, online=0.0)
     trials = Trials(lambda *_: Outcome(gained, passed=True), 10, reserve=3, worth=goal)

@@ -1,4 +1,4 @@
-"""A candidate that loses much of its margin gets a better value before its test; others stay as they are."""
+"""A candidate that loses much of the margin gets a better value before its test; others stay unchanged."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NAMED = replace(operand(4, "GAIN", 2.0), definition=operand(1, "2.0", 2.0).span)
 
 
 def world(best: float, width: float) -> Trials:
-    """Return a world in which the factor `best` earns ten, and less the further a value is away."""
+    """Return a world in which the factor `best` earns 10, and other factors less in proportion to their distance."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:
         (mutation,) = candidate.mutations
@@ -37,7 +37,7 @@ def world(best: float, width: float) -> Trials:
 
 @settings(max_examples=40)
 @given(st.floats(0.3, 3.0), st.floats(0.85, 1.18), st.sampled_from([LITERAL, NAMED]))
-def test_a_value_moves_towards_the_middle_until_it_keeps_half_of_the_margin(
+def test_a_value_moves_towards_the_middle_until_it_loses_at_most_half_the_margin(
     best: float, off: float, constant: object
 ) -> None:
     trials = world(best, 0.3)
@@ -55,7 +55,7 @@ def test_a_value_moves_towards_the_middle_until_it_keeps_half_of_the_margin(
         assert trials.spent <= 3
 
 
-def test_what_fails_on_a_known_seed_is_left_as_it_is() -> None:
+def test_a_candidate_that_fails_on_a_known_seed_is_unchanged() -> None:
     trials = world(4.0, 0.1)
     found = Candidate((Mutation(LITERAL, 2.2),), ALWAYS)
     assert centred(found, trials, mutations, GOAL, REFERENCE) == found

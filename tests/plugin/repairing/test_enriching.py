@@ -1,4 +1,4 @@
-"""Rare failures: missions that are hard for a reason, of which few are seen on-line."""
+"""Rare failures: missions that are hard for a reason and occur rarely in the drifted world."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ DESIGNED, HARD, LOST = 10.0, 9.0, -20.0  # a hard mission earns less even as des
 
 
 class Road:
-    """Some missions are hard; under the drift those are lost. The second sensor sees what makes them hard."""
+    """Some missions are hard and lost under the drift. The second sensor detects the cause."""
 
     def __init__(self, share: float, online: int = 40, seed: int = 0) -> None:
         self.share, self.seed = share, seed
@@ -74,7 +74,7 @@ def never(candidate: Candidate, seed: int) -> Outcome:
 
 
 @pytest.mark.parametrize("share", [0.08, 0.12, 0.3])
-def test_recorded_missions_that_are_hard_alike_are_found_by_what_the_lost_ones_met(share: float) -> None:
+def test_recorded_missions_that_visit_the_bins_of_failed_ones_are_found(share: float) -> None:
     road: Any = Road(share)
     trials = Trials(never, 300)
     goal = enriched(road, trials)
@@ -85,7 +85,7 @@ def test_recorded_missions_that_are_hard_alike_are_found_by_what_the_lost_ones_m
     assert not any(road.hard(pair.seed) for pair in goal.controls)
 
 
-def test_a_hard_mission_is_held_against_what_it_earns_as_designed() -> None:
+def test_a_hard_mission_is_compared_with_its_own_designed_reward() -> None:
     road: Any = Road(0.12)
     goal = enriched(road, Trials(never, 300))
     seed, easy = goal.pairs[0].seed, goal.controls[0].seed
@@ -96,7 +96,7 @@ def test_a_hard_mission_is_held_against_what_it_earns_as_designed() -> None:
     assert goal.enough_on([seed]) < goal.enough_on([easy]) == goal.enough
 
 
-def test_nothing_is_run_where_most_missions_lose_or_none_does() -> None:
+def test_nothing_runs_if_most_missions_lose_or_none_does() -> None:
     for share in (0.0, 0.9):
         road: Any = Road(share)
         assert enriched(road, Trials(never, 300)) == road.order.goal
@@ -105,7 +105,9 @@ def test_nothing_is_run_where_most_missions_lose_or_none_does() -> None:
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(1, 30), st.floats(0.03, 0.45), st.integers(0, 100))
-def test_it_stays_within_its_budget_whatever_is_left(budget: int, share: float, seed: int) -> None:
+def test_the_search_for_failing_missions_stays_within_any_budget(
+    budget: int, share: float, seed: int
+) -> None:
     road: Any = Road(share, seed=seed)
     trials = Trials(never, budget)
     goal = enriched(road, trials)

@@ -1,4 +1,4 @@
-"""The patch of a repair and its page carry bounds of the repaired program in both worlds."""
+"""The patch and the report state bounds for the repaired program in both worlds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Patches of several tests at the end of a run."""
+"""Merging the patches of several tests at the end of a run."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from tests.plugin.tank import ONLINE, RECORD
 __all__ = ["robot"]
 
 
-def test_one_alone_is_applied_as_it_is(robot: Path) -> None:
+def test_a_single_patch_is_applied_unchanged(robot: Path) -> None:
     patch = repair(robot, {"node.py": guarded(NODE)})
     found = joined([patch], robot)
     assert found.lines == ()
     assert found.commands == (f"git apply .tarl/patches/{patch.name}",)
 
 
-def test_what_goes_together_becomes_one_patch_with_the_evidence_of_both(robot: Path) -> None:
+def test_patches_without_conflict_are_merged_with_the_evidence_of_both(robot: Path) -> None:
     first = repair(robot, {"node.py": guarded(NODE)})
     second = repair(robot, {"node.py": NODE.replace("low = 1", "low = 3")}, "wind")
     found = joined([first, second], robot)
@@ -35,7 +35,7 @@ def test_what_goes_together_becomes_one_patch_with_the_evidence_of_both(robot: P
     assert combined.told("again") == [AGAIN, AGAIN]
 
 
-def test_a_conflict_is_told_with_its_lines_and_both_stay(robot: Path) -> None:
+def test_a_conflict_is_reported_with_its_line_and_both_patches_stay(robot: Path) -> None:
     first = repair(robot, {"node.py": guarded(NODE)})
     second = repair(robot, {"node.py": NODE.replace("GAIN * x", "0.4 * GAIN * x")}, "wind")
     found = joined([first, second], robot)
@@ -68,7 +68,7 @@ IMPORTING = NODE.replace("import rospy\n", "import rospy\nfrom std_msgs.msg impo
 
 
 @pytest.mark.parametrize("ending", ["\n", "\r\n"])
-def test_names_that_two_repairs_add_to_one_import_go_together(robot: Path, ending: str) -> None:
+def test_names_that_two_repairs_add_to_one_import_are_merged(robot: Path, ending: str) -> None:
     (robot / "node.py").write_bytes(IMPORTING.replace("\n", ending).encode())
     git("commit", "-qam", "it imports", cwd=robot)
     bool_too = IMPORTING.replace("import Float64", "import Bool, Float64").replace("low = 1", "low = 3")
@@ -82,7 +82,7 @@ def test_names_that_two_repairs_add_to_one_import_go_together(robot: Path, endin
     assert (robot / "node.py").read_bytes() == wanted.replace("\n", ending).encode()
 
 
-def test_what_was_applied_at_once_is_reverted_at_once(robot: Path) -> None:
+def test_a_merged_patch_is_reverted_as_a_whole(robot: Path) -> None:
     (robot / "node.py").write_text(IMPORTING)
     git("commit", "-qam", "it imports", cwd=robot)
     added = "from nav_msgs.msg import Odometry\nfrom std_msgs.msg import Bool, Float64"
@@ -105,9 +105,7 @@ def test_what_was_applied_at_once_is_reverted_at_once(robot: Path) -> None:
         ("GAIN = 2", "from std_msgs.msg import Float32, Float64"),
     ],
 )
-def test_imports_that_lose_a_name_or_a_comment_or_are_none_are_a_conflict(
-    robot: Path, one: str, other: str
-) -> None:
+def test_lines_that_lose_an_import_or_a_comment_conflict(robot: Path, one: str, other: str) -> None:
     (robot / "node.py").write_text(IMPORTING)
     git("commit", "-qam", "it imports", cwd=robot)
     first, second = (
@@ -117,7 +115,7 @@ def test_imports_that_lose_a_name_or_a_comment_or_are_none_are_a_conflict(
     assert "node.py:2 is changed in two ways" in joined([first, second], robot).lines[0]
 
 
-def test_what_one_repair_adds_is_not_added_twice_when_the_other_adds_more(robot: Path) -> None:
+def test_an_insertion_contained_in_another_one_is_added_once(robot: Path) -> None:
     first = repair(robot, {"node.py": NODE.replace("low = 1\n", "low = 1\nterrain = None\n")})
     more = NODE.replace("low = 1\n", "low = 1\nterrain = None\nrain = None\n").replace("GAIN = 5", "GAIN = 6")
     second = repair(robot, {"node.py": more}, "wind")
@@ -126,7 +124,7 @@ def test_what_one_repair_adds_is_not_added_twice_when_the_other_adds_more(robot:
     assert (robot / "node.py").read_text() == more
 
 
-def test_the_same_change_is_applied_once(robot: Path) -> None:
+def test_equal_changes_are_applied_once(robot: Path) -> None:
     first = repair(robot, {"node.py": guarded(NODE)})
     second = repair(robot, {"node.py": guarded(NODE)}, "wind")
     found = joined([first, second], robot)
@@ -134,7 +132,7 @@ def test_the_same_change_is_applied_once(robot: Path) -> None:
     assert found.commands == (f"git apply .tarl/patches/{first.name}",)
 
 
-def test_what_would_not_compile_together_is_not_combined(robot: Path) -> None:
+def test_patches_that_do_not_compile_together_are_not_merged(robot: Path) -> None:
     first = repair(robot, {"node.py": NODE.replace("high = 2\n", "high = (2\n")})
     second = repair(robot, {"node.py": NODE.replace("GAIN = 5", "GAIN = 6")}, "wind")
     found = joined([first, second], robot)

@@ -1,4 +1,4 @@
-"""Which missions of other tests are run again under a candidate, and when they have lost."""
+"""Regression tests: which missions of other tests run again under a candidate, and when they lose."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NODE = Path("/project/node.py")
 def neighbour(
     number: int = 0, *, holding: range = range(3, 40), sensors: tuple[Sensor, ...] = (X,), **more: Any
 ) -> Any:
-    """Return a recorded test of 40 episodes; those in `holding` were in a cell at x = 7, each earned its number."""
+    """Return a recorded test of 40 episodes; episode i earned i, and those in `holding` visited a cell at x = 7."""
     episode = np.arange(40)
     sample = SimpleNamespace(
         seeds=tuple(FIRST + 2 * n for n in range(40)),
@@ -39,7 +39,7 @@ def neighbour(
 
 
 class Mutants:
-    """Runs what it is told to, and remembers it: a mission earns its episode's number plus `change`."""
+    """Log all runs; a mission earns its episode's number plus `change`."""
 
     def __init__(
         self, neighbours: list[Any], change: float = 0.0, *, permanent: bool = False, fails: int = -1
@@ -77,27 +77,27 @@ def test_the_first_recorded_episodes_in_which_the_guard_holds_are_run_with_their
     )
 
 
-def test_where_the_guard_holds_less_often_only_those_are_run() -> None:
+def test_only_episodes_in_which_the_guard_holds_are_run() -> None:
     mutants = Mutants([neighbour(holding=range(38, 40))])
     assert beside(mutants, guard(7.0, 8.0)).episodes == 2  # type: ignore[arg-type]
     assert [seed for _, seed in mutants.ran] == [FIRST + 76, FIRST + 78]
 
 
-def test_where_it_never_holds_nothing_is_run_and_that_is_said() -> None:
+def test_nothing_runs_if_the_guard_never_holds_and_the_result_says_so() -> None:
     mutants = Mutants([neighbour()])
     found = beside(mutants, guard(9.0, 10.0))  # type: ignore[arg-type]
     assert (mutants.ran, found.episodes, found.lost) == ([], 0, ())
     assert "the condition never holds there" in found.held[0]
 
 
-def test_where_the_recording_cannot_know_the_first_episodes_are_run() -> None:
+def test_the_first_episodes_run_if_the_recording_lacks_the_sensor() -> None:
     mutants = Mutants([neighbour(sensors=(Y,))])
     assert beside(mutants, guard(7.0, 8.0)).episodes == EPISODES  # type: ignore[arg-type]
     assert [seed for _, seed in mutants.ran] == [FIRST + 2 * n for n in range(EPISODES)]
 
 
 @pytest.mark.parametrize(("change", "lost"), [(-0.5, False), (-0.51, True), (3.0, False)])
-def test_a_mission_has_lost_when_it_earns_less_than_recorded_by_more_than_its_margin(
+def test_a_mission_loses_if_it_earns_less_than_recorded_by_more_than_the_margin(
     change: float, lost: bool
 ) -> None:
     found = beside(Mutants([neighbour()], change), guard(7.0, 8.0))  # type: ignore[arg-type]
@@ -105,7 +105,7 @@ def test_a_mission_has_lost_when_it_earns_less_than_recorded_by_more_than_its_ma
     assert bool(found.held) is not lost
 
 
-def test_one_mission_that_fails_now_is_a_loss_whatever_it_earns() -> None:
+def test_a_mission_that_now_fails_is_a_loss_whatever_it_earns() -> None:
     found = beside(Mutants([neighbour()], 5.0, fails=4), guard(7.0, 8.0))  # type: ignore[arg-type]
     assert "1 of them now fail" in found.lost[0]
 
@@ -117,7 +117,7 @@ def test_after_a_loss_no_further_test_is_run() -> None:
     assert found.episodes == EPISODES
 
 
-def test_only_so_many_tests_are_run_and_the_rest_is_counted() -> None:
+def test_a_limited_number_of_tests_runs_and_the_rest_is_counted() -> None:
     mutants = Mutants([neighbour(n) for n in range(MOST + 3)])
     found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
     assert len({rollout for rollout, _ in mutants.ran}) == MOST
@@ -125,14 +125,14 @@ def test_only_so_many_tests_are_run_and_the_rest_is_counted() -> None:
     assert found.episodes == MOST * EPISODES
 
 
-def test_under_a_drift_of_its_own_a_test_is_compared_with_the_node_as_it_is() -> None:
+def test_a_test_with_its_own_drift_is_compared_with_the_unrepaired_node() -> None:
     mutants = Mutants([neighbour(drift="mud")], -0.4)
     found = beside(mutants, guard(7.0, 8.0))  # type: ignore[arg-type]
     assert len(mutants.ran) == 2 * EPISODES
-    assert "it earns without the repair under the same drift" in found.held[0]
+    assert "6.5 without the repair under the same drift" in found.held[0]
 
 
-def test_a_permanent_change_does_not_ask_the_old_world_of_others() -> None:
+def test_losses_in_the_old_world_of_other_tests_are_allowed_under_a_permanent_drift() -> None:
     found = beside(Mutants([neighbour()], -9.0, permanent=True), guard(7.0, 8.0))  # type: ignore[arg-type]
     assert (found.lost, "its old world, in which losses are allowed" in found.held[0]) == ((), True)
     under = beside(Mutants([neighbour(drift="mud")], -9.0, permanent=True), guard(7.0, 8.0))  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Partial repairs: the best that is none, shown with its bounds, and applied by nobody by accident."""
+"""Partial repairs: shown with bounds, and never applied by accident."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ REPAIR = (*ONLINE, "--tarl-repair", "--tarl-constants", "--tarl-budget=60")
 
 @pytest.fixture
 def halfway(tank: pytest.Pytester) -> Path:
-    """The partial repair of a tank whose valve no longer opens far enough, and whose pump is clogged as well."""
+    """The partial repair of a tank whose valve no longer opens fully and whose pump is clogged."""
     changed(
         tank, "test_tank", "(valve.data if valve", "(min(valve.data, 2.0 if tarl_drift else 9.0) if valve"
     )
@@ -37,7 +37,7 @@ def halfway(tank: pytest.Pytester) -> Path:
     return tank.path / str(found["partial"]["patch"])
 
 
-def test_a_partial_repair_is_applied_only_by_who_says_so(halfway: Path, tank: pytest.Pytester) -> None:
+def test_a_partial_repair_is_applied_only_on_explicit_request(halfway: Path, tank: pytest.Pytester) -> None:
     node = (tank.path / "keeper.py").read_text()
     for tool in (("git", "apply", str(halfway)), ("patch", "-p1", "-i", str(halfway))):
         subprocess.run(tool, cwd=tank.path, capture_output=True, check=False)
@@ -57,7 +57,7 @@ def test_a_partial_repair_is_applied_only_by_who_says_so(halfway: Path, tank: py
         read(halfway)
 
 
-def test_what_does_not_help_for_certain_is_no_partial_repair(tank: pytest.Pytester) -> None:
+def test_a_candidate_without_a_certain_gain_is_not_a_partial_repair(tank: pytest.Pytester) -> None:
     changed(
         tank,
         "test_tank",

@@ -1,4 +1,4 @@
-"""Changes for good: repaired without a condition, recorded anew, and then the design."""
+"""Permanent drifts: repaired without a condition, recorded again, and from then on the design."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file, result
 REPAIR = (*ONLINE, "--tarl-repair")
 TARL = (sys.executable, "-m", "pytest_tarl")
 WORN = ("--tarl-drift", "worn")
-# What a clogged pump needs floods the tank where the pump is not clogged, and nothing tells the two apart.
+# The gain that a clogged pump needs floods the tank with an intact pump, and no sensor distinguishes the two.
 OVERFLOW = """\
         if level > 1.3:
             tarl.reward(-40.0)
@@ -23,7 +23,7 @@ OVERFLOW = """\
 
 @pytest.fixture
 def worn(tank: pytest.Pytester) -> pytest.Pytester:
-    """A tank whose pump is worn out for good, and which must not be filled by more than the pump of before can."""
+    """A tank whose pump is permanently worn out and whose inflow must not exceed that of the old pump."""
     changed(
         tank,
         "test_tank",
@@ -36,7 +36,9 @@ def worn(tank: pytest.Pytester) -> pytest.Pytester:
     return tank
 
 
-def test_a_change_for_good_is_repaired_everywhere_and_the_old_world_is_shown(worn: pytest.Pytester) -> None:
+def test_a_permanent_drift_is_repaired_unconditionally_and_the_old_world_is_shown(
+    worn: pytest.Pytester,
+) -> None:
     done = worn.runpytest(*REPAIR, *WORN)
     done.assert_outcomes(failed=1, deselected=1)
     found = result(worn)
@@ -52,7 +54,7 @@ def test_a_change_for_good_is_repaired_everywhere_and_the_old_world_is_shown(wor
     assert "# record: pytest test_tank.py::test_fills --tarl-record --tarl-drift worn\n" in header
 
 
-def test_the_same_change_not_for_good_is_refused_with_both_ways_out(worn: pytest.Pytester) -> None:
+def test_the_same_repair_of_a_temporary_drift_is_refused_with_two_suggestions(worn: pytest.Pytester) -> None:
     changed(worn, "test_tank", "Drift(0.1, permanent=True)", "0.1")
     done = worn.runpytest(*REPAIR, *WORN, "--tarl-budget=60")
     assert not result(worn)["repair"]["accepted"]
@@ -99,7 +101,7 @@ def test_workers_have_the_same_design(worn: pytest.Pytester) -> None:
     assert fixture_file(worn).read_bytes() == alone
 
 
-def test_one_can_go_back_to_the_world_as_written(worn: pytest.Pytester) -> None:
+def test_recording_can_return_to_the_world_without_drift(worn: pytest.Pytester) -> None:
     before = fixture_file(worn).read_bytes()
     changed(worn, "keeper", "GAIN = 2.0", "GAIN = 20.0")
     worn.runpytest(*RECORD, *WORN)
@@ -108,7 +110,7 @@ def test_one_can_go_back_to_the_world_as_written(worn: pytest.Pytester) -> None:
     assert fixture_file(worn).read_bytes() == before
 
 
-def test_only_what_is_for_good_can_be_recorded(worn: pytest.Pytester) -> None:
+def test_only_a_permanent_drift_can_be_recorded(worn: pytest.Pytester) -> None:
     done = worn.runpytest(*RECORD, "--tarl-drift=clogged")
     told = " ".join(done.stdout.str().split())
     assert "but 'clogged' is not permanent" in told
@@ -147,7 +149,7 @@ def test_keeps_full(tarl, tarl_drift):
         ("{}", "so this is its old world, in which losses are allowed"),
     ],
 )
-def test_other_tests_of_the_node_run_in_the_new_world_where_they_declare_it(
+def test_other_tests_that_declare_the_drift_run_in_the_new_world(
     worn: pytest.Pytester, declared: str, words: str
 ) -> None:
     path = worn.path / "test_tank.py"

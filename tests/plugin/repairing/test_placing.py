@@ -1,4 +1,4 @@
-"""Where a repair is written: at the definition that is in force in this test, else at the use."""
+"""The place of a repair: the definition that is in force in this test, else the use."""
 
 from __future__ import annotations
 
@@ -50,20 +50,20 @@ if __name__ == "__main__":
 
 @pytest.fixture
 def worn(tank: pytest.Pytester) -> pytest.Pytester:
-    """A tank whose pump is worn out for good."""
+    """A tank whose pump is permanently worn out."""
     changed(tank, "test_tank", "from pytest_tarl import Sensor", "from pytest_tarl import Drift, Sensor")
     changed(tank, "test_tank", '{"clogged": 0.25}', '{"worn": Drift(0.2, permanent=True)}')
     return tank
 
 
 def node(tank: pytest.Pytester, **parts: str) -> None:
-    """Write the node with its gain defined somewhere."""
+    """Write the node with its gain defined at a given place."""
     usual = {"before": "", "attribute": "pass", "gain": "2.0", "argument": "", "use": "self.gain"}
     (tank.path / "keeper.py").write_text(IN_CLASS.format(**usual | parts))
 
 
 def repaired(tank: pytest.Pytester, *flags: str) -> tuple[str, str, str]:
-    """Record, repair, and return the edited place, the account and the patch's lines."""
+    """Record and repair; return the edited place, the printed report and the patch's lines."""
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     done = tank.runpytest(*REPAIR, *flags)
     told = " ".join(done.stdout.str().split())
@@ -227,7 +227,7 @@ def test_a_parameter_is_changed_in_the_file_that_this_test_gets_it_from(
     worn.runpytest(*RECORD, "--tarl-drift=worn").assert_outcomes(passed=1, deselected=1)
 
 
-def test_what_the_test_itself_gives_is_said_and_never_edited(worn: pytest.Pytester) -> None:
+def test_a_parameter_that_the_test_passes_is_reported_and_never_edited(worn: pytest.Pytester) -> None:
     node(worn, gain='rospy.get_param("~gain", 0.7)')
     (worn.path / "params.yaml").write_text("gain: 2.0\n")
     changed(worn, "test_tank", 'tarl.start("keeper.py")', 'tarl.start("keeper.py", parameters={"gain": 2.0})')
@@ -237,7 +237,7 @@ def test_what_the_test_itself_gives_is_said_and_never_edited(worn: pytest.Pytest
     assert "the test itself passes it (parameters=…, argv=…), and tests are never edited" in told
 
 
-def test_a_definition_that_others_need_as_it_is_stays(worn: pytest.Pytester) -> None:
+def test_a_definition_that_other_code_depends_on_stays(worn: pytest.Pytester) -> None:
     node(worn, before="GAIN = 2.0\n", use="GAIN")
     changed(
         worn,
@@ -271,13 +271,13 @@ def test_other_users_are_named_and_their_tests_run(worn: pytest.Pytester) -> Non
 @pytest.mark.parametrize(
     ("edit", "first"), [("use", "-            self.valve"), ("definition", "-GAIN"), ("auto", "-GAIN")]
 )
-def test_the_flag_says_where(worn: pytest.Pytester, edit: str, first: str) -> None:
+def test_the_flag_chooses_use_or_definition(worn: pytest.Pytester, edit: str, first: str) -> None:
     node(worn, before="GAIN = 2.0\n", use="GAIN")
     _, _, lines = repaired(worn, f"--tarl-edit={edit}")
     assert lines.startswith(first)
 
 
-def test_a_repair_that_has_no_definition_is_refused_where_one_is_wanted(worn: pytest.Pytester) -> None:
+def test_a_repair_without_a_definition_is_refused_if_one_is_required(worn: pytest.Pytester) -> None:
     node(worn, gain='rospy.get_param("~gain", 0.7)')
     changed(worn, "test_tank", 'tarl.start("keeper.py")', 'tarl.start("keeper.py", parameters={"gain": 2.0})')
     where, told, _ = repaired(worn, "--tarl-edit=definition", "--tarl-budget=60")

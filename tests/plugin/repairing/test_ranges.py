@@ -1,4 +1,4 @@
-"""Drifts with a range: drawn from in every episode, repaired over all of it."""
+"""Drifts with a range: each episode draws a size, and a repair must hold over the whole range."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ BURST = """\
 
 @pytest.fixture
 def ranged(tank: pytest.Pytester) -> pytest.Pytester:
-    """A tank whose pump is clogged more or less."""
+    """A tank whose pump is clogged to a varying degree."""
     changed(tank, "test_tank", "from pytest_tarl import Sensor", "from pytest_tarl import Drift, Sensor")
     changed(tank, "test_tank", '{"clogged": 0.25}', '{"clogged": Drift.range(0.1, 0.3)}')
     return tank
@@ -74,7 +74,7 @@ def test_the_parts_of_a_dictionary_have_ranges_of_their_own(ranged: pytest.Pytes
     assert all(one["repaired"] is None for one in found["sizes"])
 
 
-def test_a_repair_that_fits_a_part_of_the_range_is_refused_and_told(ranged: pytest.Pytester) -> None:
+def test_a_repair_that_fits_a_part_of_the_range_is_refused_and_reported(ranged: pytest.Pytester) -> None:
     changed(ranged, "test_tank", "Drift.range(0.1, 0.3)", "Drift.range(0.1, 0.3, permanent=True)")
     changed(ranged, "test_tank", "        tarl.reward(", BURST)
     ranged.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
@@ -93,7 +93,7 @@ def test_bytes_do_not_depend_on_the_number_of_workers(ranged: pytest.Pytester) -
 
 
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=40))
-def test_pairs_are_taken_so_that_the_first_ones_span_the_sizes(sizes: list[float]) -> None:
+def test_the_first_pairs_span_the_sizes(sizes: list[float]) -> None:
     order = list(spread([(size, at) for at, size in enumerate(sizes)]))
     assert sorted(order) == list(range(len(sizes)))
     if len(sizes) >= 7:  # the median, the quarters, the eighths

@@ -1,4 +1,4 @@
-"""What is said of how certain the ranking is."""
+"""Sentences on how certain the ranking is."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ def ranked(budget: int) -> Ranking:
     return found
 
 
-def test_without_a_ranking_it_is_said_what_was_not_looked_at() -> None:
+def test_without_a_ranking_the_number_of_simulated_lines_is_stated() -> None:
     told = ranking_confidence(ORDER, EFFECTS, accepted(GAIN), None)
     assert told.startswith("the repair of the first held on 12 fresh seeds; 2 of 3 lines were simulated")
     assert "--tarl-localize=full" in told
 
 
-def test_a_ranking_tells_by_how_much_the_first_is_ahead() -> None:
+def test_a_ranking_states_how_far_the_first_is_ahead() -> None:
     told = ranking_confidence(ORDER, ranked(300).effects(), accepted(GAIN), ranked(300))
     assert "1 of 3 lines with constants gain anything alone" in told
     assert "the budget ended" not in told
@@ -54,22 +54,22 @@ def test_a_line_that_others_beat_is_not_called_the_best() -> None:
 
 
 def raced() -> Ranking:
-    """Return a ranking in which a line that does nothing ran on as many seeds as the best."""
+    """Return a ranking in which a line without effect ran on as many seeds as the best line."""
     found = ranked(300)
     found.race.run([arm for arm in found.race.gains if arm.unit.operands[0] == BIAS], 8)
     return found
 
 
-def test_several_that_were_repaired_together_are_told_as_such() -> None:
+def test_lines_repaired_together_are_reported_together() -> None:
     told = ranking_confidence(ORDER, EFFECTS, accepted(GAIN, LIMIT), ranked(300))
     assert told.startswith("the first 2 were repaired together, which held on 12 fresh seeds; alone, ")
 
 
-def test_without_a_repair_nothing_confirms_the_first_and_a_cut_ranking_says_so() -> None:
+def test_a_ranking_without_repair_and_an_incomplete_one_say_so() -> None:
     told = ranking_confidence(ORDER, EFFECTS, None, ranked(4))
     assert told.startswith("no repair confirms the first; ")
     assert told.endswith("the budget ended before all were ranked")
 
 
-def test_where_nothing_was_simulated_there_is_nothing_to_say() -> None:
+def test_without_simulation_there_is_no_sentence() -> None:
     assert ranking_confidence(ORDER, {}, None, None) == ""

@@ -1,4 +1,4 @@
-"""Repairs in a project: candidates that break the test, the budget, what is told of them."""
+"""Repairs in a project: candidates that break the test, the budget, and the report."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ INTERRUPT = """
         "        if level > 1.5:\n            tarl.reward(float('nan'))\n",
     ],
 )
-def test_a_candidate_that_breaks_the_test_is_a_bad_candidate_and_no_error(
+def test_a_candidate_that_breaks_the_test_is_refused_without_an_error(
     tank: pytest.Pytester, breaking: str
 ) -> None:
     changed(tank, "test_tank", "        tarl.reward(", f"{breaking}        tarl.reward(")
@@ -39,14 +39,14 @@ def test_a_candidate_that_breaks_the_test_is_a_bad_candidate_and_no_error(
     assert result(tank)["repair"]["accepted"]
 
 
-def test_a_node_that_a_candidate_silences_is_a_bad_candidate_and_no_error(tank: pytest.Pytester) -> None:
+def test_a_candidate_that_silences_the_node_is_refused_without_an_error(tank: pytest.Pytester) -> None:
     changed(tank, "keeper", "if level is not None:", "if level is not None and 0.5 < 1.0 - 0.1 * level:")
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     tank.runpytest(*REPAIR).assert_outcomes(failed=1, deselected=1)
     assert result(tank)["repair"]["accepted"]
 
 
-def test_sites_say_by_which_search_they_were_found(tank: pytest.Pytester) -> None:
+def test_each_site_names_the_search_that_found_it(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*REPAIR, "--tarl-search=epsilon-greedy")
     methods = {culprit["method"] for culprit in result(tank)["culprits"]}
@@ -54,7 +54,7 @@ def test_sites_say_by_which_search_they_were_found(tank: pytest.Pytester) -> Non
     assert "epsilon-greedy" in methods
 
 
-def test_a_site_that_is_new_since_the_recording_can_be_the_culprit(tank: pytest.Pytester) -> None:
+def test_a_site_added_after_the_recording_can_be_the_culprit(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     changed(tank, "keeper", "flow = GAIN * missing", "flow = 2.0 * missing")
     tank.runpytest(*REPAIR)
@@ -64,7 +64,7 @@ def test_a_site_that_is_new_since_the_recording_can_be_the_culprit(tank: pytest.
     assert (found["culprits"][0]["path"], found["culprits"][0]["line"]) in edited
 
 
-def test_a_search_that_is_out_of_time_says_that_the_clock_is_not_in_the_seed(
+def test_a_search_that_runs_out_of_time_says_how_to_repeat_it(
     tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     clock = count()
@@ -92,7 +92,7 @@ def test_a_budget_is_a_number_or_a_time(tank: pytest.Pytester, budget: str) -> N
     done.stderr.fnmatch_lines(["*--tarl-budget*"])
 
 
-def test_an_interrupted_search_tells_its_best_and_ends_the_run(tank: pytest.Pytester) -> None:
+def test_an_interrupted_search_reports_its_best_and_ends_the_run(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "    draws = ", f"{INTERRUPT}    draws = ")
     tank.runpytest(*RECORD)
     done = tank.runpytest_subprocess(*REPAIR)
@@ -104,7 +104,7 @@ def test_an_interrupted_search_tells_its_best_and_ends_the_run(tank: pytest.Pyte
     assert not list(tank.path.glob(".tarl/patches/*.patch"))
 
 
-def test_what_was_dropped_and_what_came_next_is_told(
+def test_dropped_candidates_and_their_successors_are_reported(
     tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first, accept = [], accepting.accept
@@ -133,7 +133,7 @@ def test_what_was_dropped_and_what_came_next_is_told(
     assert history.index("the designed world gets worse") < history.index("accepted,")
 
 
-def test_edits_are_numbers_that_people_expect(tank: pytest.Pytester) -> None:
+def test_edited_numbers_have_few_digits(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     tank.runpytest(*REPAIR)
     for edit in result(tank)["repair"]["edits"]:
@@ -175,7 +175,7 @@ def test_another_recorded_test_of_the_node_must_not_lose(tank: pytest.Pytester) 
     assert not list(tank.path.glob(".tarl/patches/*.patch"))
 
 
-def test_a_repair_that_leaves_other_tests_as_they_were_says_so_in_its_patch(tank: pytest.Pytester) -> None:
+def test_a_patch_names_the_other_tests_that_it_leaves_unharmed(tank: pytest.Pytester) -> None:
     with (tank.path / "test_tank.py").open("a") as file:
         file.write(NEIGHBOUR.format(name="wide_pipe", most=99.0))
     tank.runpytest(*RECORD).assert_outcomes(passed=2, deselected=1)
@@ -216,7 +216,7 @@ class Draws:
 """
 
 
-def test_a_search_of_the_users_own_is_asked_and_told_the_same_each_time(tank: pytest.Pytester) -> None:
+def test_a_plugged_in_search_is_reproducible(tank: pytest.Pytester) -> None:
     tank.makepyfile(mine=OWN)
     tank.runpytest(*RECORD)
     told = tank.path / "told"
@@ -229,13 +229,13 @@ def test_a_search_of_the_users_own_is_asked_and_told_the_same_each_time(tank: py
     assert result(tank) == found
 
 
-def test_a_search_that_is_nowhere_is_said_before_anything_runs(tank: pytest.Pytester) -> None:
+def test_an_unknown_search_is_reported_before_anything_runs(tank: pytest.Pytester) -> None:
     done = tank.runpytest(*REPAIR, "--tarl-search=nowhere:Draws")
     assert done.ret == pytest.ExitCode.USAGE_ERROR
     done.stderr.fnmatch_lines(["*--tarl-search=nowhere:Draws: No module named 'nowhere'*"])
 
 
-def test_a_search_that_fails_is_the_tests_problem_in_one_sentence(tank: pytest.Pytester) -> None:
+def test_a_search_that_raises_fails_the_test_with_one_sentence(tank: pytest.Pytester) -> None:
     tank.makepyfile(mine="class Silent:\n    def __init__(self, constants, seed):\n        pass\n")
     tank.runpytest(*RECORD)
     done = tank.runpytest(*REPAIR, "--tarl-search=mine:Silent")
@@ -243,7 +243,7 @@ def test_a_search_that_fails_is_the_tests_problem_in_one_sentence(tank: pytest.P
     done.stdout.fnmatch_lines(["*the factory returned Silent, which has no method ask and no tell*"])
 
 
-def test_a_full_ranking_goes_on_after_the_repair_and_says_how_certain_it_is(tank: pytest.Pytester) -> None:
+def test_a_full_ranking_continues_after_the_repair_and_states_its_certainty(tank: pytest.Pytester) -> None:
     tank.runpytest(*RECORD)
     done = tank.runpytest(*REPAIR)
     alone, told = result(tank), " ".join(done.stdout.str().split())
@@ -262,7 +262,7 @@ def test_a_full_ranking_goes_on_after_the_repair_and_says_how_certain_it_is(tank
     assert "Confidence in this order: the repair of the first held on" in page.read_text()
 
 
-def test_localize_takes_its_kinds_and_goes_with_a_repair(tank: pytest.Pytester) -> None:
+def test_localize_accepts_its_values_and_requires_a_repair(tank: pytest.Pytester) -> None:
     done = tank.runpytest(*ONLINE, "--tarl-localize=full")
     done.stderr.fnmatch_lines(["*--tarl-localize needs --tarl-repair*"])
     done = tank.runpytest(*REPAIR, "--tarl-localize=ful")
@@ -276,9 +276,7 @@ def test_localize_takes_its_kinds_and_goes_with_a_repair(tank: pytest.Pytester) 
         'Sensor("thick", expr="thick")',
     ],
 )
-def test_a_guard_asks_for_the_variable_of_the_node_that_a_sensor_names(
-    tank: pytest.Pytester, sensor: str
-) -> None:
+def test_a_guard_reads_the_variable_that_a_sensor_names(tank: pytest.Pytester, sensor: str) -> None:
     heard = "def on_viscosity(msg):\n    global thick\n    thick = int(msg.data > 2)\n\n\ndef main():\n"
     changed(tank, "keeper", "level = None\n", "level = None\nthick = 0\n")
     changed(tank, "keeper", "def main():\n", heard)

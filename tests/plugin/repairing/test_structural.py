@@ -1,4 +1,4 @@
-"""Repairs of structure: what no constant brings back."""
+"""Structural repairs, for drifts that no constant repairs."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def prepared(pytester: pytest.Pytester, case: str) -> None:
         ("integral", ("the sum of",)),
     ],
 )
-def test_what_no_constant_brings_back_is_brought_back_by_structure(
+def test_a_structural_change_repairs_a_drift_that_no_constant_repairs(
     pytester: pytest.Pytester, case: str, words: tuple[str, ...]
 ) -> None:
     prepared(pytester, case)
@@ -152,7 +152,7 @@ def test_what_no_constant_brings_back_is_brought_back_by_structure(
     pytester.runpytest(*RECORD, "--tarl-drift=changed").assert_outcomes(passed=1)
 
 
-def test_constants_alone_can_be_asked_for(pytester: pytest.Pytester) -> None:
+def test_the_search_can_be_limited_to_constants(pytester: pytest.Pytester) -> None:
     prepared(pytester, "sign")
     done = pytester.runpytest(*REPAIR, "--tarl-constants")
     assert not result(pytester)["repair"]["accepted"]
@@ -172,7 +172,7 @@ def test_a_template_of_the_project_is_tried(pytester: pytest.Pytester) -> None:
     assert "mirrored.toml: not a template" in " ".join(done.stdout.str().split())
 
 
-def test_axes_that_were_turned_are_swapped(pytester: pytest.Pytester) -> None:
+def test_exchanged_axes_are_swapped(pytester: pytest.Pytester) -> None:
     pytester.makefile(".py", follower=FOLLOWER, test_follow=FOLLOWS)
     pytester.makeini("[pytest]\naddopts = -p no:randomly -p no:asyncio -p no:rerunfailures\n")
     pytester.runpytest(*RECORD).assert_outcomes(passed=1)

@@ -1,4 +1,4 @@
-"""Each template from search to running source: it brings a node back that needs just this change, and no constant.
+"""Each template from search to running source: it repairs a node that needs exactly this structural change.
 
 A world tells the node values and wants the commands of a node in which the change has been made by hand.
 """
@@ -74,7 +74,7 @@ Command = Callable[[float, float], float]  # of the mended node, called with val
 
 
 def kept(step: Callable[[dict[str, float], float], float]) -> Command:
-    """Return a command that keeps state between calls."""
+    """Return a command that stores state between calls."""
     state: dict[str, float] = {}
     return lambda value, _: step(state, 2.0 * value)
 
@@ -132,7 +132,7 @@ MENDED: dict[str, tuple[str, Callable[[], Command]]] = {
 
 
 class World:
-    """Thirty values a mission, and ten points less the share of the wanted commands by which those sent are off."""
+    """Thirty values per mission; the reward is ten minus the relative error of the sent commands."""
 
     def __init__(self, name: str, folder: Path, body: str = "") -> None:
         assert name in MENDED, f"add what a node mended by {name} sends to MENDED in this file"
@@ -173,7 +173,7 @@ class World:
 
 
 @pytest.mark.parametrize("name", sorted(path.stem for path in SHIPPED.glob("*.toml")))
-def test_a_template_is_found_fitted_and_runs(
+def test_a_template_is_found_with_fitted_parameters_and_runs(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     check_found(name, World(name, tmp_path), monkeypatch)
@@ -181,7 +181,7 @@ def test_a_template_is_found_fitted_and_runs(
 
 @pytest.mark.parametrize("name", ["limit", "low_pass", "rate_limit", "integral"])
 @pytest.mark.parametrize("body", BODIES)
-def test_a_template_is_found_wherever_the_value_comes_from(
+def test_a_template_is_found_for_any_origin_of_the_value(
     name: str, body: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     world = World(name, tmp_path, BODIES[body])
@@ -191,7 +191,7 @@ def test_a_template_is_found_wherever_the_value_comes_from(
 
 
 def check_found(name: str, world: World, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Search with one template alone, and look at what was found on fresh seeds."""
+    """Search with a single template and check the result on fresh seeds."""
     monkeypatch.setattr(structural, "templates", lambda _: (template(SHIPPED / f"{name}.toml"),))
     pairs = tuple(Pair(seed, world.run(Candidate((), ALWAYS), seed).total) for seed in range(8))
     online = sum(pair.total for pair in pairs) / len(pairs)

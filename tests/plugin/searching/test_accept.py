@@ -1,4 +1,4 @@
-"""Acceptance: what holds is taken, what does not is not, however lucky a few episodes are."""
+"""Acceptance: repairs that hold are accepted, others are refused even after a few lucky episodes."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_a_repair_as_good_as_designed_is_accepted() -> None:
     assert found.episodes == len(found.drifted) + len(found.nominal) + longest + 3 * SCREEN
 
 
-def test_a_repair_that_gains_too_little_is_refused_without_asking_the_designed_world() -> None:
+def test_a_repair_that_gains_too_little_is_refused_before_the_designed_world_runs() -> None:
     found = judged(world(8.0), world(DESIGNED))
     assert (found.accepted, found.reason, found.nominal, found.tested) == (False, "gain too small", (), False)
 
@@ -72,20 +72,20 @@ def test_a_repair_that_breaks_the_designed_world_is_refused() -> None:
     assert (found.accepted, found.reason) == (False, "nominal gets worse")
 
 
-def test_no_designed_mission_of_the_candidate_is_run_where_the_guard_never_fires() -> None:
+def test_the_candidate_does_not_run_in_the_designed_world_if_its_guard_never_holds_there() -> None:
     found = judged(world(DESIGNED))
     assert found.accepted
     assert found.nominal == ()
 
 
-def test_missions_that_fail_count_even_when_the_reward_is_right() -> None:
+def test_failed_missions_count_even_if_the_reward_is_right() -> None:
     def run(episode: int) -> Outcome:
         return Outcome(DESIGNED, bool(np.random.default_rng(episode).random() > 0.3))
 
     assert judged(World(run)).reason == "fails too often"
 
 
-def test_a_mission_of_the_program_as_it_is_runs_once_a_seed() -> None:
+def test_the_unrepaired_program_runs_once_per_seed() -> None:
     runs: list[int] = []
 
     def run(episode: int) -> Outcome:
@@ -101,21 +101,21 @@ def share_accepted(make: Callable[[int], World], runs: int) -> float:
 
 
 @pytest.mark.parametrize("failing", [0.05, 0.08, 0.12])
-def test_a_repair_that_fails_at_times_is_accepted_no_more_often_than_the_risk(failing: float) -> None:
+def test_a_repair_that_fails_too_often_is_accepted_with_at_most_the_risk(failing: float) -> None:
     runs = 80
     accepted = share_accepted(lambda at: world(DESIGNED, failing=failing, seed=at + 10), runs)
     assert accepted <= RISK + 3 * np.sqrt(RISK / runs)
 
 
 @pytest.mark.parametrize("spread", [0.02, 0.3, 2.0])
-def test_a_repair_just_below_the_margin_is_accepted_no_more_often_than_the_risk(spread: float) -> None:
+def test_a_repair_just_below_the_margin_is_accepted_with_at_most_the_risk(spread: float) -> None:
     runs = 80
     below = DESIGNED - MARGIN - 0.01
     accepted = share_accepted(lambda at: world(below, spread, seed=at + 10), runs)
     assert accepted <= RISK + 3 * np.sqrt(RISK / runs)
 
 
-def test_totals_that_vary_alike_in_both_worlds_are_compared_seed_by_seed() -> None:
+def test_totals_are_compared_seed_by_seed() -> None:
     def varying(loss: float) -> World:
         def run(episode: int) -> Outcome:
             return Outcome(float(np.random.default_rng([5, episode]).normal(DESIGNED, 3.0)) - loss, True)
@@ -129,7 +129,7 @@ def test_totals_that_vary_alike_in_both_worlds_are_compared_seed_by_seed() -> No
         assert not accept(varying(0.6), None, varying(0.0), seeds(at), reference, RISK).accepted
 
 
-def test_what_cannot_be_shown_says_so() -> None:
+def test_the_reason_is_not_shown_if_the_test_remains_undecided() -> None:
     found = judged(world(DESIGNED - 0.9 * MARGIN, 0.01))
     assert found.reason == "not shown"
 
@@ -140,7 +140,7 @@ def test_the_risks_of_all_tests_add_up_to_alpha() -> None:
     assert all(later < earlier for earlier, later in itertools.pairwise(risks))
 
 
-def test_none_of_fifty_nine_shows_five_percent() -> None:
+def test_no_failure_in_59_missions_shows_five_percent() -> None:
     assert rate(59, 59, 0.95).low > 0.95 > rate(58, 58, 0.95).low
     assert acceptance_numbers((59,), 0.05, 0.05) == (0,)
     assert acceptance_numbers((58,), 0.05, 0.05) == (NEVER,)
@@ -148,7 +148,7 @@ def test_none_of_fifty_nine_shows_five_percent() -> None:
 
 @settings(max_examples=8)
 @given(st.sampled_from([0.02, 0.05, 0.1, 0.25, 0.6]), st.sampled_from([0.05, 0.0333, 0.0111, 0.0037]))
-def test_looks_together_accept_what_fails_too_often_with_the_risk_at_most(rate: float, risk: float) -> None:
+def test_all_looks_together_accept_a_failing_program_with_at_most_the_risk(rate: float, risk: float) -> None:
     numbers = acceptance_numbers(LOOKS, rate, risk)
     assert list(numbers) == sorted(numbers)
     failed = np.random.default_rng(1).random((15_000, LOOKS[-1])) < rate
@@ -164,10 +164,10 @@ def test_looks_together_accept_what_fails_too_often_with_the_risk_at_most(rate: 
     st.lists(st.floats(0.02, 1.0), min_size=1, max_size=4),
     st.integers(0, 2**16),
 )
-def test_a_bet_against_a_true_claim_is_rarely_won_whatever_the_totals_look_like(
+def test_a_bet_against_a_true_claim_is_rarely_won_for_any_distribution(
     known: list[float], margin: float, steps: list[float], seed: int
 ) -> None:
-    """Totals of a few values whose mean is exactly the margin below: skewed, bimodal, nearly constant."""
+    """Distributions with few values whose mean loses exactly the margin: skewed, bimodal, nearly constant."""
     least, draws = -20.0, np.random.default_rng(seed)
     worst = draws.uniform(least, -margin - 0.05)
     best = draws.uniform(-margin + 0.05, 2.0)
@@ -186,10 +186,10 @@ STRATA = st.lists(st.floats(0.0, 1.0), min_size=4, max_size=4).filter(lambda rat
 
 @settings(max_examples=60, deadline=None)
 @given(STRATA, st.sampled_from([0.05, 0.1, 0.25]), st.sampled_from([0.0333, 0.0111]))
-def test_failures_whose_rate_differs_over_a_range_are_accepted_no_more_often(
+def test_failure_rates_that_vary_over_a_range_do_not_raise_the_risk(
     shares: list[float], rate: float, risk: float
 ) -> None:
-    """Seeds come from four strata in turn; exact, over the paths of the count (Hoeffding 1956 for one look)."""
+    """Seeds come from four strata in turn; the probability is exact (for one look see Hoeffding 1956)."""
     rates = [min(4 * rate * share / sum(shares), 1.0) for share in shares]
     numbers = acceptance_numbers(LOOKS, sum(rates) / 4, risk)
     waiting, seen, accepted = np.ones(1), 0, 0.0
@@ -206,10 +206,10 @@ def test_failures_whose_rate_differs_over_a_range_are_accepted_no_more_often(
 
 @settings(max_examples=40, deadline=None)
 @given(STRATA, st.lists(st.floats(-20, 5), min_size=2, max_size=8), st.integers(0, 2**16))
-def test_a_bet_is_rarely_won_where_the_mean_of_the_strata_is_the_margin_below(
+def test_a_bet_is_rarely_won_if_the_strata_lose_the_margin_on_average(
     weights: list[float], known: list[float], seed: int
 ) -> None:
-    """Each stratum loses another amount, the mean of them is exactly the margin; looks come after whole blocks."""
+    """The strata lose different amounts whose mean is exactly the margin; looks come after whole blocks."""
     losses = np.array(weights) / sum(weights) * 4 * MARGIN
     draws = np.random.default_rng(seed)
     runs = -np.tile(losses, 50) + draws.choice([-1.0, 1.0], (300, 200)) * 0.3
@@ -219,7 +219,7 @@ def test_a_bet_is_rarely_won_where_the_mean_of_the_strata_is_the_margin_below(
     assert won <= RISK + 4 * np.sqrt(RISK / 300) + 0.01
 
 
-def test_a_declared_range_says_what_a_mission_can_lose_up_to_what_a_designed_one_earns() -> None:
+def test_a_declared_range_bounds_the_loss_of_a_mission_up_to_a_designed_total() -> None:
     recorded = Reference([9.9, 10.1], 1.0, MARGIN, 8.0)
     declared = Reference([9.9, 10.1], 1.0, MARGIN, 6.0, 11.0)
     failing_dearly = Reference([9.9, 10.1], 1.0, MARGIN, -500.0, 11.0)

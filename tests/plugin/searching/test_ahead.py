@@ -1,4 +1,4 @@
-"""Searches on workers: the history is the one that they have without, and the workers are kept busy."""
+"""Searches with workers have the same history as without, and keep the workers busy."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def ranking(trials: Trials) -> None:
 
 @dataclass
 class FakeExecutor:
-    """Workers that run an episode at once and hand it out when it is asked for."""
+    """Workers that run an announced episode at once and return it on request."""
 
     workers: int
     waiting: int = 0
@@ -77,7 +77,7 @@ def history(search: Callable[[Trials], None], workers: int) -> tuple[list[float]
 
 
 @pytest.mark.parametrize("search", [sweep, screening, halving, ranking])
-def test_the_history_is_the_same_whatever_the_number_of_workers(search: Callable[[Trials], None]) -> None:
+def test_the_history_does_not_depend_on_the_number_of_workers(search: Callable[[Trials], None]) -> None:
     totals, labels, alone = history(search, 1)
     assert len(alone.begun) == len(totals)
     assert alone.most == 1

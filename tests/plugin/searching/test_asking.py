@@ -1,4 +1,4 @@
-"""Searches that are plugged in: what they are asked, what they are told, what is said of those that are none."""
+"""Plugged-in searches: the ask/tell calls, and messages for faulty plug-ins."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.plugin.searching.test_search import GAIN, GOAL, NEEDED, OPERANDS, rew
 
 
 class Grid:
-    """Moves one constant after the other; of use to tests since it draws nothing."""
+    """Move one constant after the other, without random numbers."""
 
     def __init__(self, constants: Sequence[Constant], seed: int) -> None:
         self.constants = constants
@@ -44,7 +44,7 @@ def asking(make: Any, trials: Trials) -> Asking:
     return Asking("own:search", make, OPERANDS, mutations, (ALWAYS,), trials, GOAL, seed=7)
 
 
-def test_an_optimiser_is_told_of_the_constants_and_of_what_its_factors_gained() -> None:
+def test_an_optimiser_gets_the_constants_and_the_gains_of_its_factors() -> None:
     made: list[Grid] = []
 
     def make(constants: Sequence[Constant], seed: int) -> Grid:
@@ -61,7 +61,7 @@ def test_an_optimiser_is_told_of_the_constants_and_of_what_its_factors_gained() 
     assert by_point[1.0, 1.0, 2.0] == pytest.approx(6 * math.log(2.0))
 
 
-def test_what_a_repair_does_not_need_is_left_out() -> None:
+def test_unneeded_mutations_are_left_out() -> None:
     class All(Grid):
         def ask(self) -> Sequence[float]:
             return [1.0, 1.7, NEEDED]
@@ -75,7 +75,7 @@ def test_what_a_repair_does_not_need_is_left_out() -> None:
     assert list(search.effects()) == [str(GAIN.site)]
 
 
-def test_a_batch_is_asked_for_before_any_of_it_is_told() -> None:
+def test_all_proposals_of_a_batch_are_requested_before_gains_are_told() -> None:
     seen: list[str] = []
 
     class Batch(Grid):
@@ -95,7 +95,7 @@ def test_a_batch_is_asked_for_before_any_of_it_is_told() -> None:
     assert foreseen[0] == 3
 
 
-def test_an_optimiser_that_has_no_more_to_propose_ends_the_search() -> None:
+def test_stop_iteration_ends_the_search() -> None:
     def never(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(reward(None, seed), passed=False)
 
@@ -104,7 +104,7 @@ def test_an_optimiser_that_has_no_more_to_propose_ends_the_search() -> None:
     assert trials.spent < 100
 
 
-def test_an_optimiser_that_proposes_nothing_new_ends_the_search_too() -> None:
+def test_repeated_proposals_end_the_search() -> None:
     class Still(Grid):
         def ask(self) -> Sequence[float]:
             return [1.0, 1.0, 1.0]
@@ -114,7 +114,7 @@ def test_an_optimiser_that_proposes_nothing_new_ends_the_search_too() -> None:
     assert trials.spent == 0
 
 
-def test_a_spent_budget_ends_it_even_within_a_batch() -> None:
+def test_a_spent_budget_ends_the_search_even_within_a_batch() -> None:
     class Away(Grid):
         batch = 5
 
@@ -137,7 +137,7 @@ def test_a_spent_budget_ends_it_even_within_a_batch() -> None:
         (None, r"ask\(\) raised TypeError"),
     ],
 )
-def test_a_proposal_that_is_none_is_said(asked: Any, words: str) -> None:
+def test_an_invalid_proposal_is_reported(asked: Any, words: str) -> None:
     class Wrong(Grid):
         def ask(self) -> Sequence[float]:
             return asked  # type: ignore[no-any-return]
@@ -146,7 +146,7 @@ def test_a_proposal_that_is_none_is_said(asked: Any, words: str) -> None:
         next(asking(Wrong, Trials(run, 10)).candidates())
 
 
-def test_what_fails_in_the_plug_in_is_named_with_its_line() -> None:
+def test_an_exception_in_the_plug_in_is_reported_with_its_line() -> None:
     class Broken(Grid):
         def tell(self, factors: Sequence[float], gain: float) -> None:
             raise ZeroDivisionError("by nothing")
@@ -165,7 +165,7 @@ def test_what_fails_in_the_plug_in_is_named_with_its_line() -> None:
         (type("Odd", (Grid,), {"batch": 0}), "batch must be a whole number"),
     ],
 )
-def test_what_is_no_optimiser_is_said(make: Any, words: str) -> None:
+def test_an_object_that_is_not_an_optimiser_is_reported(make: Any, words: str) -> None:
     with pytest.raises(SearchError, match=words):
         asking(make, Trials(run, 10))
 
@@ -182,7 +182,7 @@ def test_what_is_no_optimiser_is_said(make: Any, words: str) -> None:
         ),
     ],
 )
-def test_a_name_that_leads_nowhere_is_said(tmp_path: Path, name: str, words: str) -> None:
+def test_an_unknown_module_or_factory_is_reported(tmp_path: Path, name: str, words: str) -> None:
     (tmp_path / "plugged_mine.py").write_text("NUMBER = 3\n")
     (tmp_path / "plugged_torn.py").write_text("nothing\n")
     with pytest.raises(SettingsError, match=words):

@@ -78,7 +78,7 @@ def test_single_sensors_come_before_pairs_and_narrow_before_wide() -> None:
     assert max(sizes) == 2
 
 
-def test_guards_to_search_under_hold_where_much_changed_and_seldom_elsewhere() -> None:
+def test_guards_to_search_under_hold_where_much_changed_and_rarely_elsewhere() -> None:
     mixed = merge([drive(3, range(4, 7)), drive(4, range(0))])
     seen = evidence(REGION, worlds=(OFFLINE, mixed), changes=CHANGES)
     assert telling(candidate_guards(seen), seen, most=2) == (Guard((Conjunct(WET, 1.0, 1.0),)), ALWAYS)
@@ -93,7 +93,7 @@ def test_changes_propose_a_guard_where_the_region_spans_everything() -> None:
 
 
 @given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 3)), min_size=1, max_size=30), st.integers(0, 3))
-def test_every_value_met_on_line_of_a_sensor_without_an_order_is_a_guard(cells: list[Cell], at: int) -> None:
+def test_every_drifted_value_of_an_unordered_sensor_is_a_guard(cells: list[Cell], at: int) -> None:
     kind = Sensor("kind", topic="/kind", field="data", categories=("a", "b", "c", "d"))
     worlds = (world(1, [(0, at), (5, (at + 1) % 4)]), world(2, cells))
     guards = candidate_guards(evidence(Region(()), (X, kind), worlds))
@@ -101,7 +101,7 @@ def test_every_value_met_on_line_of_a_sensor_without_an_order_is_a_guard(cells: 
         assert Guard((Conjunct(kind, value, value),)) in guards
 
 
-def test_a_guard_that_holds_wherever_the_robot_came_has_none_at_all_before_it() -> None:
+def test_the_unguarded_search_comes_first_if_the_best_guard_holds_everywhere() -> None:
     stuck = world(3, [(2, 0)] * 10)
     cells = [(2, 0)]
     seen = evidence(Region(tuple(cells)), worlds=(OFFLINE, stuck), changes={(2, 0): 5.0})
@@ -110,7 +110,7 @@ def test_a_guard_that_holds_wherever_the_robot_came_has_none_at_all_before_it() 
     assert share(second, stuck, (X, WET)) == 1.0
 
 
-def test_without_a_telling_guard_the_search_runs_without_one() -> None:
+def test_without_a_useful_guard_the_search_is_unguarded() -> None:
     seen = evidence(REGION, changes={})
     assert telling(candidate_guards(seen), seen, most=3) == (ALWAYS,)
     assert telling((), seen, most=3) == (ALWAYS,)
@@ -129,7 +129,7 @@ def test_a_region_that_is_everywhere_proposes_no_condition() -> None:
     assert all(conjunct.sensor == WET for guard in guards for conjunct in guard.conjuncts)
 
 
-def test_an_interval_is_open_where_nothing_lies_beyond() -> None:
+def test_an_interval_is_unbounded_if_no_bin_was_seen_beyond_it() -> None:
     guards = candidate_guards(evidence(Region(((8, 0), (9, 0)))))
     assert Guard((Conjunct(X, 8.0, math.inf),)) in guards
 
@@ -155,7 +155,7 @@ def test_share_and_firing_episodes_count_steps_and_seeds() -> None:
     assert firing_episodes(ALWAYS, OFFLINE, (X, WET)) == (1, 2)
 
 
-def test_a_wider_guard_holds_outside_of_the_range_as_a_whole_or_not_at_all() -> None:
+def test_a_widened_guard_includes_all_values_outside_the_range_or_none() -> None:
     outside = world(9, [(x, 0) for x in (-1, 0, 1, 2, 5, 8, 9, 10)])
     for region in (((1, 0), (2, 0)), ((8, 0),)):
         guards = candidate_guards(evidence(Region(region), worlds=(outside, outside)))

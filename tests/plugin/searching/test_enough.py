@@ -1,4 +1,4 @@
-"""When a candidate is confirmed: on which seeds it is tried, how many misses it may have, what it must earn."""
+"""Confirmation of a candidate: the seeds it runs on, the tolerated misses, and the required reward."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CANDIDATE = Candidate((), Guard(()))
 def asked(
     totals: list[float], first: int = 0, *, enough: float = 5.0, near: float = 4.0
 ) -> tuple[bool, list[int]]:
-    """Return whether a candidate is confirmed that earns these totals by seed, and the seeds that were run."""
+    """Return whether a candidate with these totals by seed is confirmed, and the seeds that ran."""
     pairs = tuple(Pair(seed, 0.0) for seed in range(len(totals)))
     ran: list[int] = []
 
@@ -25,28 +25,28 @@ def asked(
     return confirmed(CANDIDATE, Trials(run, 100), Goal(pairs, near, enough, 0.0), first), ran
 
 
-def test_it_is_tried_on_so_many_seeds_after_the_first_and_around_the_end() -> None:
+def test_the_seeds_follow_the_first_one_cyclically() -> None:
     assert asked([9.0] * 9) == (True, [1, 2, 3, 4, 5])
     assert asked([9.0] * 9, 6) == (True, [7, 8, 0, 1, 2])
     assert asked([9.0] * 3, 1) == (True, [2, 0])
     assert len(asked([9.0] * 40)[1]) == CONFIRMATIONS
 
 
-def test_one_seed_alone_has_nothing_to_add() -> None:
+def test_a_single_seed_needs_no_confirmation() -> None:
     assert asked([9.0]) == (True, [])
 
 
 @pytest.mark.parametrize(("total", "enough"), [(5.0, True), (4.99, False)])
-def test_it_must_earn_enough_on_average(total: float, enough: bool) -> None:
+def test_a_candidate_must_earn_enough_on_average(total: float, enough: bool) -> None:
     assert asked([0.0, *[total] * 5])[0] is enough
 
 
-def test_one_miss_is_forgiven_and_the_second_ends_it_at_once() -> None:
+def test_one_miss_is_tolerated_and_the_second_ends_the_confirmation() -> None:
     assert asked([9.0, 0.0, 9.0, 9.0, 9.0, 9.0]) == (True, [1, 2, 3, 4, 5])
     assert asked([9.0, 0.0, 9.0, 0.0, 9.0, 9.0]) == (False, [1, 2, 3])
 
 
-def test_a_total_that_is_just_near_is_no_miss() -> None:
+def test_a_total_that_is_just_near_is_not_a_miss() -> None:
     assert asked([9.0, 4.0, 4.0, 9.0, 9.0, 9.0]) == (True, [1, 2, 3, 4, 5])
     assert asked([9.0, 3.99, 3.99, 9.0, 9.0, 9.0]) == (False, [1, 2])
 

@@ -1,4 +1,4 @@
-"""The optimisers that the documentation shows do what it says: each finds the gain, twice in the same way."""
+"""The optimisers in the documentation work as described: each finds the gain, reproducibly."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ EXAMPLES = {
 
 
 def run(candidate: Candidate, seed: int) -> Outcome:
-    """Let the gain decide, whatever else is moved."""
+    """Return a reward that depends only on the gain."""
     gain = next((m for m in candidate.mutations if m.operand == GAIN), None)
     return Outcome(reward(gain, seed), passed=True)
 
@@ -47,5 +47,5 @@ def test_an_example_finds_the_gain_and_the_seed_decides_how(name: str, tmp_path:
         assert found(name, tmp_path) == found(name, tmp_path)
 
 
-def test_both_are_there() -> None:
+def test_the_page_contains_both_examples() -> None:
     assert set(EXAMPLES) == {"cma_search", "optuna_search"}

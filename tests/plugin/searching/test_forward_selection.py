@@ -1,4 +1,4 @@
-"""Constants that are one in truth move as one, and culprits that only help together are found together."""
+"""Uses of one constant move together, and culprits that only help together are found together."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ NEEDED = {GAINS[2]: 2.5, GAINS[5]: 0.4, GAINS[6]: 2.0}
 
 
 def run(candidate: Candidate, seed: int) -> Outcome:
-    """Each of three gains costs as long as it is wrong, every other one costs when it is changed."""
+    """A world with three wrong gains, each of which costs reward; changing any other gain costs, too."""
     noise = float(np.random.default_rng(seed).normal(0, 0.1))
     factors = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
     wrong = [abs(math.log(max(factors.get(gain, 1.0), 0.01) / NEEDED.get(gain, 1.0))) for gain in GAINS]
@@ -52,7 +52,7 @@ PAIRS = tuple(Pair(seed, run(Candidate((), ALWAYS), seed).total) for seed in ran
 GOAL = Goal(PAIRS, near=9.3, enough=9.5, online=fmean(pair.total for pair in PAIRS))
 
 
-def test_three_culprits_are_found_and_nothing_beside_them() -> None:
+def test_three_culprits_are_found_and_nothing_else() -> None:
     trials = Trials(run, 300)
     search = Sweep(GAINS, mutations, (ALWAYS,), trials, GOAL)
     found = next(search.candidates())
@@ -60,7 +60,7 @@ def test_three_culprits_are_found_and_nothing_beside_them() -> None:
     assert trials.spent < 150
 
 
-def test_a_sign_that_turned_is_turned_back() -> None:
+def test_a_flipped_sign_is_restored() -> None:
     def turned(candidate: Candidate, seed: int) -> Outcome:
         (mutation,) = candidate.mutations
         good = mutation.operand == GAINS[4] and mutation.value == -1.0
@@ -71,7 +71,7 @@ def test_a_sign_that_turned_is_turned_back() -> None:
     assert [(m.operand, m.value) for m in found.mutations] == [(GAINS[4], -1.0)]
 
 
-def test_what_gains_when_made_smaller_is_turned_before_anything_goes_further() -> None:
+def test_units_that_gain_from_smaller_values_are_flipped_before_larger_steps() -> None:
     def turned(candidate: Candidate, seed: int) -> Outcome:
         factors = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
         total = 5.0 - 5.0 * factors.get(GAINS[4], 1.0)
@@ -84,7 +84,7 @@ def test_what_gains_when_made_smaller_is_turned_before_anything_goes_further() -
     assert trials.spent <= 3 * len(GAINS)
 
 
-def test_a_second_culprit_that_hardly_shows_alone_is_joined_first() -> None:
+def test_a_second_culprit_with_a_small_gain_of_its_own_is_combined_first() -> None:
     def world(candidate: Candidate, seed: int) -> Outcome:
         factors = {mutation.operand: float(mutation.value) for mutation in candidate.mutations}
         steered = factors.get(GAINS[3], 1.0) > 2.0

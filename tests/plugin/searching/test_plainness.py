@@ -1,4 +1,4 @@
-"""Among what holds, what a maintainer would write: gains before offsets, names before numbers in a line."""
+"""Among repairs that hold, prefer what a maintainer would write: factors before offsets, names before literals."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ POSITION = Sensor("pos", topic="/odom", field="x", low=0, high=10, bins=10)
         (Mutation(operand(6, "True", True), value=False), Oddness.INNER),
     ],
 )
-def test_how_a_change_reads(mutation: Mutation, expected: Oddness) -> None:
+def test_the_oddness_of_changes(mutation: Mutation, expected: Oddness) -> None:
     assert oddness([mutation]) == expected
     assert oddness([Mutation(NAMED, 2.2), mutation]) == expected
 
 
-def test_only_conditions_on_numbers_have_an_edge() -> None:
+def test_only_numeric_conditions_have_a_threshold() -> None:
     wet = Sensor("wet", topic="/wet", field="data")
     assert edges(Guard((Conjunct(wet, 1, 1), Conjunct(POSITION, 4, math.inf)))) == ("pos",)
     assert edges(Guard((Conjunct(POSITION, -math.inf, math.inf),))) == ()
 
 
 def restoring(right: dict[Operand, float], window: float, harm: float = 0.0) -> Sweep:
-    """A world in which each of some operands restores the reward alone, within a window around its right factor."""
+    """A world in which any of some operands restores the reward alone, within a window around its right factor."""
 
     def run(candidate: Candidate, seed: int) -> Outcome:
         noise = float(np.random.default_rng(seed).normal(0, 0.05))
@@ -76,12 +76,12 @@ def restoring(right: dict[Operand, float], window: float, harm: float = 0.0) -> 
     )
 
 
-def test_a_gain_is_tried_before_an_offset_that_holds_too() -> None:
+def test_a_factor_is_tried_before_an_offset_that_also_holds() -> None:
     found = restoring({OFFSET: 2.2, NAMED: 0.42}, window=0.2).candidates()
     assert [next(found).mutations[0].operand for _ in range(2)] == [NAMED, OFFSET]
 
 
-def test_an_offset_is_taken_where_nothing_plainer_holds_and_few_runs_are_spent_on_that() -> None:
+def test_an_offset_is_accepted_after_few_runs_if_nothing_plainer_holds() -> None:
     search = restoring({OFFSET: 2.2}, window=0.2)
     assert next(search.candidates()).mutations[0].operand == OFFSET
     assert search.trials.spent < 30
@@ -90,7 +90,7 @@ def test_an_offset_is_taken_where_nothing_plainer_holds_and_few_runs_are_spent_o
 @settings(max_examples=25, deadline=None)
 @given(factor=st.floats(1.35, 1.7), smaller=st.booleans())
 def test_a_narrow_window_near_the_original_is_found_soon(factor: float, smaller: bool) -> None:
-    """What loses both at 2.2 and at 0.4 gets smaller steps at once, before all others are moved further."""
+    """Units that lose at both 2.2 and 0.4 get smaller steps at once, before others get larger ones."""
     right = 1 / factor if smaller else factor
     search = restoring({NAMED: right}, window=0.14, harm=3.0)
     found = next(search.candidates())
@@ -98,7 +98,7 @@ def test_a_narrow_window_near_the_original_is_found_soon(factor: float, smaller:
     assert search.trials.spent <= 60
 
 
-def test_names_are_tried_before_numbers_in_a_line_and_zeros_last() -> None:
+def test_named_constants_are_tried_before_literals_and_zeros_last() -> None:
     named_zero = replace(operand(6, "TRIM", 0.0), definition=operand(1, "0.0", 0.0).span)
     unknown = replace(operand(7, "self.k", None), definition=None)
     flag = operand(8, "False", False)

@@ -36,13 +36,13 @@ def test_arms_run_on_the_same_seeds_and_no_seed_twice() -> None:
     assert set(race.gains[arms(2.2)[0]]) == {pair.seed for pair in PAIRS[:4]}
 
 
-def test_gains_are_paired_so_noise_of_a_seed_does_not_count() -> None:
+def test_gains_are_paired_so_that_noise_of_a_seed_cancels() -> None:
     race = Race(mutations, Trials(run, 100), PAIRS)
     race.run(arms(2.0), 5)
     assert race.gains[arms(2.0)[0]] == pytest.approx(dict.fromkeys(range(5), 6 * math.log(2.0)))
 
 
-def test_between_an_arm_and_its_neighbours_lie_others_until_it_is_fine_enough() -> None:
+def test_refinement_adds_arms_between_neighbours_down_to_the_finest_ratio() -> None:
     race = Race(mutations, Trials(run, 100), PAIRS)
     race.run(arms(1.5, 2.4, 5.0), 1)
     assert [arm.factor for arm in race.around(arms(2.4)[0])] == [round(math.sqrt(1.5 * 2.4), 3), 3.464]
@@ -50,13 +50,13 @@ def test_between_an_arm_and_its_neighbours_lie_others_until_it_is_fine_enough() 
     assert 2.405 not in [arm.factor for arm in race.around(arms(2.4)[0])]
 
 
-def test_what_is_behind_on_three_common_seeds_is_known_to_be() -> None:
+def test_three_common_seeds_suffice_to_be_behind() -> None:
     assert behind({0: 1.0, 1: 1.1, 2: 0.9}, {0: 5.0, 1: 5.2, 2: 4.9})
     assert not behind({0: 1.0, 1: 1.1}, {0: 5.0, 1: 5.2})
     assert not behind({0: 1.0, 1: 9.0, 2: 5.0}, {0: 5.0, 1: 5.2, 2: 4.9})
 
 
-def test_halving_finds_the_right_gain_between_the_factors_it_began_with() -> None:
+def test_halving_finds_the_right_value_between_its_initial_factors() -> None:
     trials = Trials(run, 300)
     search = Halving(OPERANDS, mutations, (ALWAYS,), trials, GOAL)
     found = next(search.candidates())
@@ -66,7 +66,7 @@ def test_halving_finds_the_right_gain_between_the_factors_it_began_with() -> Non
     assert max(effects, key=lambda site: effects[site][0].effect) == str(GAIN.site)
 
 
-def test_halving_spends_its_later_rounds_on_what_gains() -> None:
+def test_halving_spends_its_later_rounds_on_arms_that_gain() -> None:
     ran: list[object] = []
 
     def counted(candidate: Candidate, seed: int) -> object:
@@ -78,7 +78,7 @@ def test_halving_spends_its_later_rounds_on_what_gains() -> None:
     assert ran.count(GAIN) > 2 * ran.count(LIMIT)
 
 
-def test_the_full_ranking_says_how_surely_the_first_is_ahead() -> None:
+def test_the_full_ranking_reports_how_certain_its_first_place_is() -> None:
     ranking = Ranking(OPERANDS, mutations, ALWAYS, Trials(run, 300), GOAL)
     ranking.run()
     assert ranking.whole
@@ -92,7 +92,7 @@ def test_the_full_ranking_says_how_surely_the_first_is_ahead() -> None:
     assert ranking.certainty("elsewhere") is None
 
 
-def test_two_sites_that_do_the_same_cannot_be_told_apart() -> None:
+def test_two_equivalent_sites_cannot_be_distinguished() -> None:
     twin = replace(GAIN, site=replace(GAIN.site, text="y = 2.0"))
 
     def either(candidate: Candidate, seed: int) -> object:
@@ -107,7 +107,7 @@ def test_two_sites_that_do_the_same_cannot_be_told_apart() -> None:
     assert sure.by == pytest.approx((0.0, 0.0))
 
 
-def test_a_ranking_whose_budget_ends_is_not_whole() -> None:
+def test_a_ranking_whose_budget_ends_is_incomplete() -> None:
     ranking = Ranking(OPERANDS, mutations, ALWAYS, Trials(run, 5), GOAL)
     ranking.run()
     assert not ranking.whole

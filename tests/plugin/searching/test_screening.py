@@ -1,4 +1,4 @@
-"""Screening: few runs over many operands tell which of them matter."""
+"""Screening: a few runs over many operands show which of them matter."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.plugin.searching.test_forward_selection import operand
 GOAL = Goal(tuple(Pair(seed, 0.0) for seed in range(6)), near=9.0, enough=9.0, online=0.0)
 
 
-def test_main_effects_are_told_apart_though_several_are_moved_at_once() -> None:
+def test_main_effects_are_separated_although_several_operands_move_at_once() -> None:
     draws = np.random.default_rng(3)
     design = (draws.random((60, 20)) < 0.2).astype(float)
     effects = main_effects(design, design @ np.eye(20)[7] * 5.0)
@@ -29,7 +29,7 @@ def test_main_effects_are_told_apart_though_several_are_moved_at_once() -> None:
 
 
 @pytest.mark.parametrize(("many", "most"), [(60, 140), (160, 300)])
-def test_the_search_among_many_operands_grows_slower_than_their_number(many: int, most: int) -> None:
+def test_screening_grows_more_slowly_than_the_number_of_operands(many: int, most: int) -> None:
     gains = [operand(line, "1.0", 1.0) for line in range(many)]
     right = gains[many * 3 // 4]
 
@@ -52,7 +52,7 @@ def test_the_search_among_many_operands_grows_slower_than_their_number(many: int
     assert trials.spent < most
 
 
-def test_a_run_that_holds_by_chance_is_handed_on_without_what_it_does_not_need() -> None:
+def test_a_run_that_holds_by_chance_is_yielded_without_unneeded_parts() -> None:
     gains = [operand(line, "1.0", 1.0) for line in range(50)]
 
     def run(candidate: Candidate, seed: int) -> Outcome:

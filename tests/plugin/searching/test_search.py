@@ -90,7 +90,7 @@ def test_every_run_is_paired_with_the_unmutated_run_of_its_seed() -> None:
                 )  # same seed, no influence, no noise left
 
 
-def test_epsilon_greedy_finds_it_too_and_spends_more() -> None:
+def test_epsilon_greedy_finds_the_right_gain_with_more_episodes() -> None:
     trials = Trials(run, 300)
     seeds = range(1000, 1000 + EpsilonGreedy.episodes(300))
     search = EpsilonGreedy(
@@ -123,7 +123,7 @@ def test_a_spent_budget_ends_the_search() -> None:
         list(search.candidates())
 
 
-def test_an_episode_is_run_once_for_a_candidate_and_seed() -> None:
+def test_an_episode_runs_once_per_candidate_and_seed() -> None:
     trials = Trials(run, 10)
     mutation = mutations(GAIN, 2.2)
     assert mutation is not None
@@ -132,7 +132,7 @@ def test_an_episode_is_run_once_for_a_candidate_and_seed() -> None:
     assert trials.spent == 1
 
 
-def test_what_does_no_better_than_one_that_earned_too_little_is_dropped_early() -> None:
+def test_a_candidate_no_better_than_one_that_fell_short_is_dropped_early() -> None:
     def plateau(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(9.1 + 0.01 * seed, True)
 
@@ -145,7 +145,7 @@ def test_what_does_no_better_than_one_that_earned_too_little_is_dropped_early() 
         assert trials.spent - before == runs
 
 
-def test_what_does_better_than_one_that_earned_too_little_is_confirmed() -> None:
+def test_a_candidate_better_than_one_that_fell_short_is_confirmed() -> None:
     def rising(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(7.0 + float(candidate.mutations[0].value), True)
 
@@ -156,7 +156,7 @@ def test_what_does_better_than_one_that_earned_too_little_is_confirmed() -> None
     assert confirmed(high, trials, goal, 0)
 
 
-def test_what_never_changes_a_reward_is_not_moved_further_before_all_else() -> None:
+def test_operands_that_never_change_a_reward_are_moved_further_last() -> None:
     def helpless(candidate: Candidate, seed: int) -> Outcome:
         (mutation,) = candidate.mutations
         return Outcome(reward(None, seed) - 0.1 * (mutation.operand == GAIN), True)
@@ -167,7 +167,7 @@ def test_what_never_changes_a_reward_is_not_moved_further_before_all_else() -> N
     assert [label for label in trials.labels if "40" in label] == trials.labels[0:1] + trials.labels[2:3]
 
 
-def test_an_operand_that_cannot_be_written_is_passed_over() -> None:
+def test_an_operand_that_cannot_be_written_is_skipped() -> None:
     def refusing(candidate: Candidate, seed: int) -> Outcome:
         if candidate.mutations[0].operand == LIMIT:
             raise RepairError("no way")
@@ -178,13 +178,13 @@ def test_an_operand_that_cannot_be_written_is_passed_over() -> None:
     assert str(LIMIT.site) not in search.effects()
 
 
-def test_a_candidate_is_named_by_line_and_change() -> None:
+def test_a_label_contains_line_and_change() -> None:
     mutation = mutations(GAIN, 2.2)
     assert mutation is not None
     assert label(Candidate((mutation,), ALWAYS)) == "line 3: 2.0 → 4.4"
 
 
-def test_episodes_run_elsewhere_are_of_the_same_budget() -> None:
+def test_episodes_in_the_designed_world_count_towards_the_budget() -> None:
     trials = Trials(run, 2)
     mutation = mutations(GAIN, 2.2)
     assert mutation is not None
@@ -197,13 +197,13 @@ def test_episodes_run_elsewhere_are_of_the_same_budget() -> None:
         trials(Candidate((mutation,), ALWAYS), 2)
 
 
-def test_ending_early_is_not_taken_for_doing_well() -> None:
+def test_a_failed_mission_that_ends_early_is_not_near() -> None:
     failed = Outcome(OFFLINE, passed=False)
     assert GOAL.reached(failed, 0)
     assert not replace(GOAL, passing=True).reached(failed, 0)
 
 
-def test_an_effect_is_the_mean_over_all_seeds_that_were_tried() -> None:
+def test_an_effect_is_the_mean_over_all_seeds_that_ran() -> None:
     trials = Trials(run, 300)
     search = sweep(trials)
     found = next(search.candidates())
@@ -213,7 +213,7 @@ def test_an_effect_is_the_mean_over_all_seeds_that_were_tried() -> None:
     assert len(gains) == CONFIRMATIONS + 1
 
 
-def test_epsilon_greedy_passes_over_what_cannot_be_written() -> None:
+def test_epsilon_greedy_skips_mutations_that_cannot_be_written() -> None:
     def refusing(candidate: Candidate, seed: int) -> Outcome:
         if candidate.mutations[0].operand != GAIN:
             raise RepairError("no way")
@@ -225,7 +225,7 @@ def test_epsilon_greedy_passes_over_what_cannot_be_written() -> None:
     assert set(search.effects()) == {str(GAIN.site)}
 
 
-def test_epsilon_greedy_measures_gains_from_all_on_line_episodes() -> None:
+def test_epsilon_greedy_measures_gains_over_all_drifted_episodes() -> None:
     trials = Trials(run, 300)
     goal = replace(
         GOAL, online=GOAL.online + 3.0
@@ -242,7 +242,7 @@ NARROW = 1.2  # the right factor, of which no more than 7 % may be missing
 
 
 def run_narrow(candidate: Candidate, seed: int) -> Outcome:
-    """Missions fail, each a little sooner or later, but for a narrow window of one constant."""
+    """Missions fail sooner or later, except within a narrow window of one constant."""
     (mutation,) = candidate.mutations
     factor = float(mutation.value) / float(mutation.operand.value or 1)
     if mutation.operand == GAIN and NARROW / 1.07 < factor < NARROW * 1.07:
@@ -251,7 +251,7 @@ def run_narrow(candidate: Candidate, seed: int) -> Outcome:
     return Outcome(-5.0 + moved, passed=False)
 
 
-def test_a_narrow_window_is_found_without_refining_what_gains_hardly_anything() -> None:
+def test_a_narrow_window_is_found_without_refining_tiny_gains() -> None:
     pairs = tuple(Pair(seed, -5.0) for seed in range(10))
     goal = Goal(pairs, near=OFFLINE - 1.2, enough=OFFLINE - 1.0, online=-5.0, passing=True)
     trials = Trials(run_narrow, 300)
@@ -260,7 +260,7 @@ def test_a_narrow_window_is_found_without_refining_what_gains_hardly_anything() 
     assert trials.spent < 50
 
 
-def test_a_proposed_value_is_tried_as_it_is_first() -> None:
+def test_a_proposed_value_is_first_tried_unchanged() -> None:
     def proposed(moved: Operand, factor: float) -> Mutation:
         return Mutation(moved, round(float(moved.value or 1.0) * factor, 6))
 
@@ -278,7 +278,7 @@ def test_a_proposed_value_is_tried_as_it_is_first() -> None:
     assert effect.effect == OFFLINE
 
 
-def test_a_failed_mission_ends_the_confirmation_at_once_where_designed_ones_succeed() -> None:
+def test_a_failed_mission_ends_the_confirmation_if_designed_missions_succeed() -> None:
     def once(candidate: Candidate, seed: int) -> Outcome:
         return Outcome(OFFLINE, passed=seed != 1)
 
