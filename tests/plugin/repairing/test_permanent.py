@@ -145,7 +145,7 @@ def test_keeps_full(tarl, tarl_drift):
 @pytest.mark.parametrize(
     ("declared", "words"),
     [
-        ('{"worn": Drift(0.1, permanent=True)}', "it earns without the repair under the same drift"),
+        ('{"worn": Drift(0.1, permanent=True)}', "without the repair under the same drift"),
         ("{}", "so this is its old world, in which losses are allowed"),
     ],
 )
