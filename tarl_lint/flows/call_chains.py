@@ -8,9 +8,7 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.value_flow_graph import Graph, Place
 from tarl_lint.memory.values import Branches
 
-Entrance = tuple[
-    int, list[Place], int
-]  # a condition, the calls under it (outermost first), the values made there
+Entrance = tuple[int, list[Place], int]  # (condition, calls under it, outermost first, values made there)
 
 
 def entrances(graph: Graph, nodes: set[int]) -> Iterator[Entrance]:

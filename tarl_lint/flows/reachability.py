@@ -251,7 +251,7 @@ class Tracer:
         return [*found, *before_loops(found, turns, function)]
 
     def before(self, node: int) -> Iterator[int]:
-        """Yield what a node is made from or depends on, in place of what is no statement what leads there."""
+        """Yield the nodes that a node is made from or depends on; skip through nodes without a statement."""
         pending = list(reversed(self.formers(node)))
         seen: set[int] = set()
         while pending:

@@ -1,1 +1,1 @@
-"""The abstract interpretation: transfer functions, calls, and the fixpoint over everything that runs on its own."""
+"""The abstract interpretation: transfer functions, calls, and the fixpoint over all entry points."""

@@ -1,4 +1,4 @@
-"""Branches, loops and handlers: several continuations of one state."""
+"""Transfer functions of branches, loops, handlers and `with`."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from tarl_lint.memory.store import Delta
 from tarl_lint.memory.values import BOTTOM, UNKNOWN, Value
 from tarl_lint.models import sizes, unpacking
 
-MAX_TURNS = 4  # elements of a loop that are told apart
-MAX_PASSES = 12  # over a loop's body; a safety net, since the values that can arise are finite
+MAX_TURNS = 4  # a loop over at most so many known elements is unrolled
+MAX_PASSES = 12  # over a loop's body; a safety limit, since the value domain is finite
 
 
 def decide(ctx: Interpreter, test: ir.Expr, s: ir.Stmt, frame: Frame) -> bool | None:
-    """Evaluate a condition; return which way it goes when a constant tells."""
+    """Evaluate a condition; return its truth value if it is constant, else None."""
     node = ctx.condition(frame, s)
     value = expressions.evaluate(ctx, test, frame)
     frame.statement = s
@@ -33,7 +33,7 @@ def decide(ctx: Interpreter, test: ir.Expr, s: ir.Stmt, frame: Frame) -> bool | 
 
 
 def if_statement(ctx: Interpreter, s: ir.If, frame: Frame) -> bool:
-    """Execute an `if`; join what its ways leave."""
+    """Execute an `if`; join the states after its branches. Return whether execution continues."""
     way = decide(ctx, s.test, s, frame)
     if way is not None:
         return ctx.ops.block(ctx, s.body if way else s.orelse, frame)
@@ -50,7 +50,7 @@ def if_statement(ctx: Interpreter, s: ir.If, frame: Frame) -> bool:
 
 
 def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
-    """Repeat the body until the state at its head changes no more."""
+    """Repeat the body until the state at the loop head is stable. Return whether execution continues."""
     source = expressions.evaluate(ctx, s.source, frame) if s.target is not None else BOTTOM
     if s.target is not None and (elements := _told_apart(ctx, source)):
         return _turns(ctx, s, s.target, source, elements, frame)
@@ -75,13 +75,13 @@ def loop(ctx: Interpreter, s: ir.Loop, frame: Frame) -> bool:
         if ctx.worked > MAX_STATEMENTS:
             ctx.cut[ctx.program] = None
             ctx.store.reads.whole = False
-            break  # loops in loops in loops take as many passes as all of theirs multiplied
+            break  # the passes of nested loops multiply
         head = again
     return _loop_end(ctx, s, done, table["break"], frame)
 
 
 def _told_apart(ctx: Interpreter, source: Value) -> list[Value]:
-    """Return the elements that a loop goes over one by one: a few, known, with data in them."""
+    """Return the elements for an unrolled loop: few, known, and containing data; else none."""
     elements = sizes.unpacked(ctx, source) or []
     if not 1 < len(elements) <= MAX_TURNS:
         return []
@@ -93,7 +93,7 @@ def _told_apart(ctx: Interpreter, source: Value) -> list[Value]:
 def _turns(
     ctx: Interpreter, s: ir.Loop, target: ir.Expr, source: Value, elements: Sequence[Value], frame: Frame
 ) -> bool:
-    """Execute the body once for each element."""
+    """Unroll a loop: execute the body once for each element."""
     depth, before = len(ctx.store.layers), frame.turn
     broken: list[Delta] = []
     _length(ctx, source, ctx.condition(frame, s))
@@ -117,7 +117,7 @@ def _turns(
 
 
 def _loop_head(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame) -> tuple[bool, bool]:
-    """Evaluate the condition or bind the next element; tell whether the body and the end are reached."""
+    """Evaluate the condition or bind the next element; return whether the body and the end are reachable."""
     frame.statement = s
     if ctx.watch is not None:
         ctx.watch(frame, s)
@@ -134,7 +134,7 @@ def _loop_head(ctx: Interpreter, s: ir.Loop, source: Value, frame: Frame) -> tup
 
 
 def _length(ctx: Interpreter, source: Value, node: int) -> None:
-    """How often a loop runs depends on a container's length: on what chose to add elements, not on them."""
+    """Make a loop's decision depend on the container's length: on the choice of elements, not their data."""
     ours = frozenset(o for o in source.pts if sizes.sized(ctx, o))
     ctx.graph.flow(sizes.length(ctx, source), node)
     ctx.graph.choice(sizes.placed(ctx, ours), node)
@@ -153,7 +153,7 @@ def _loop_end(ctx: Interpreter, s: ir.Loop, done: list[Delta], broken: list[Delt
 
 
 def try_statement(ctx: Interpreter, s: ir.Try, frame: Frame) -> bool:
-    """A handler can be entered from before and after every statement of the body."""
+    """Execute a `try`: a handler can be entered before and after every statement of the body."""
     depth = len(ctx.store.layers)
     ctx.condition(frame, s)
     ctx.store.push()
@@ -198,7 +198,7 @@ def _handlers(ctx: Interpreter, s: ir.Try, states: list[Delta], raised: Value, f
 
 
 def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
-    """Execute a `with`: managers that are ours enter and exit."""
+    """Execute a `with`, calling `__enter__` and `__exit__` of analysed classes."""
     managers: list[Value] = []
     for number, (context, target) in enumerate(s.items):
         value = expressions.evaluate(ctx, context, frame)
@@ -216,6 +216,6 @@ def with_statement(ctx: Interpreter, s: ir.With, frame: Frame) -> bool:
 
 
 def _taken(s: ir.Try) -> frozenset[str]:
-    """Return the names of the exceptions that a statement handles, none when it handles any."""
+    """Return the names of the exceptions that a statement handles; empty if it handles all."""
     each = [taken(types) for types, _, _ in s.handlers]
     return frozenset().union(*each) if all(each) else frozenset()

@@ -1,4 +1,4 @@
-"""Calls of analysed functions and classes: arguments go in, results and the changed state come out."""
+"""Call analysed functions and classes in their call contexts."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def invoke(
     call: ir.Call,
     owner: Obj | None = None,
 ) -> Value:
-    """Run a function on arguments; where no data goes in and nothing takes part, only so far."""
+    """Call a function. A call without data into a module that neither subscribes nor publishes has a limited budget."""
     before, start = ctx.leisure, ctx.spent
     matters = not isinstance(closure.info, tuple) or closure.info[2].takes_part or carries(ctx, arguments)
     if not matters and before is not None and start > before:
@@ -87,7 +87,7 @@ def _invoke(
 
 
 def _execute(ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments) -> Delta:
-    """Execute a function's body in a layer of its own; return what of its changes lasts."""
+    """Execute a function's body in its own layer; return the changes that outlive the call."""
     function = frame.function
     ctx.activations[function] = ctx.activations.get(function, 0) + 1
     ctx.store.push()
@@ -107,7 +107,7 @@ def _execute(ctx: Interpreter, frame: Frame, closure: Obj, passed: Arguments) ->
 
 
 def _again(ctx: Interpreter, closure: Obj, arguments: Arguments) -> Value:
-    """Return the result of a recursive call: what is known by now, and data of the arguments."""
+    """Approximate a call that is not executed: the results known so far, and the data of the arguments."""
     known = BOTTOM
     for frame in ctx.stack:
         if frame.key[3] == closure.key if isinstance(frame.key, tuple) and len(frame.key) > 3 else False:
@@ -117,12 +117,12 @@ def _again(ctx: Interpreter, closure: Obj, arguments: Arguments) -> Value:
 
 
 def _result(frame: Frame) -> Value:
-    """Return what a function has returned so far in a call context."""
+    """Return the result so far of a function in a call context."""
     return frame.result
 
 
 def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: ir.Call) -> Arguments:
-    """Let each argument pass through the calling statement."""
+    """Give each argument a node of the calling statement."""
     plain, named = arguments
     shift = len(plain) - len(call.arguments)
     passed: list[Value] = []
@@ -150,7 +150,7 @@ def pass_arguments(ctx: Interpreter, arguments: Arguments, caller: Frame, call: 
 def _note_arguments(
     ctx: Interpreter, frame: Frame, arguments: Arguments, caller: Frame, call: ir.Call
 ) -> None:
-    """Remember which parameters hold what is None only as long as nothing has come."""
+    """Note the parameters whose value is None only before the first message."""
     plain, named = arguments
     if caller.statement is None or any(isinstance(a, ir.Starred) for a in call.arguments):
         return
@@ -165,7 +165,7 @@ def _note_arguments(
 
 
 def bind_parameters(ctx: Interpreter, frame: Frame, closure: Obj, arguments: Arguments) -> None:
-    """Store arguments under the parameters' names."""
+    """Bind arguments to parameters."""
     plain, named = list(arguments[0]), dict(arguments[1])
     rest, mapping = named.pop("*", None), named.pop("**", None)
     frame.arguments = [*plain, *named.values()]
@@ -196,7 +196,7 @@ def bind_parameters(ctx: Interpreter, frame: Frame, closure: Obj, arguments: Arg
 def _missing(
     ctx: Interpreter, parameter: ir.Parameter, closure: Obj, rest: Value | None, mapping: Value | None
 ) -> Value:
-    """Return what a parameter is that no argument names."""
+    """Return the value of a parameter without an argument of its own: default, `*` or `**`."""
     value = ctx.store.get((closure, parameter.name)) if parameter.default is not None else None
     result = BOTTOM if value is None else value
     if rest is not None and parameter.kind == "plain":
@@ -209,7 +209,7 @@ def _missing(
 
 
 def instantiate(ctx: Interpreter, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-    """Make an instance, by its own `__new__` if it has one, and run its `__init__`."""
+    """Create an instance, by `__new__` if the class has one, and call its `__init__`."""
     ctx.made.add(cls.key)
     for owner in lineage(cls):
         new = ctx.store.get((owner, "__new__"))
@@ -226,7 +226,7 @@ def instantiate(ctx: Interpreter, cls: Obj, arguments: Arguments, frame: Frame, 
 
 
 def blank_instance(ctx: Interpreter, cls: Obj, frame: Frame, call: ir.Call) -> Obj:
-    """Return an instance as `object.__new__` makes it."""
+    """Return a new instance without fields, like `object.__new__`."""
     statement = frame.statement.id if frame.statement is not None else -1
     obj = recency.intern(ctx, "instance", (frame.id, statement, call.slot, cls.key, *frame.turn), cls.name)
     obj.info = cls
@@ -247,13 +247,13 @@ def _initialise(
 
 
 def _handed(frame: Frame, returned: Value) -> list[Obj]:
-    """Return the objects that a function hands out by other ways than by storing them."""
+    """Return the objects that a function returns, yields or raises."""
     raised = (o for escape in frame.escapes for o in escape.value.pts)
     return [*returned.pts, *frame.yielded.pts, *raised]
 
 
 def carries(ctx: Interpreter, arguments: Arguments) -> bool:
-    """Tell whether any data is in what is passed."""
+    """Return whether any argument carries data."""
     plain, named = arguments
     for value in (*plain, *named.values()):
         ctx.look(value.pts)
@@ -261,5 +261,5 @@ def carries(ctx: Interpreter, arguments: Arguments) -> bool:
 
 
 def _receiver(value: Value) -> bool:
-    """Tell whether an argument is an object of ours, which needs no node to be followed."""
+    """Return whether an argument is an instance or class of the analysed files, which needs no node."""
     return bool(value.pts) and not value.deps and all(o.kind in ("instance", "class") for o in value.pts)

@@ -1,4 +1,4 @@
-"""Calls: which function is meant, what goes in and what comes out."""
+"""Transfer functions of calls: find the callees, evaluate arguments, join results."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tarl_lint.memory.reachable_data import in_order
 from tarl_lint.memory.values import BOTTOM, NONE, Nodes, Obj, Value, join, join_all, pointer
 from tarl_lint.models import sizes
 
-MAX_ALIKE = 12  # objects of libraries whose methods are called one by one; of more, all at once
+MAX_ALIKE = 12  # library objects whose methods are called one by one; more are treated as one receiver
 
 
 def call(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Value:
@@ -26,7 +26,7 @@ def call(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Value:
 
 
 def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Arguments:
-    """Evaluate arguments; `*` and `**` among the keywords hold what was unpacked but not told apart."""
+    """Evaluate arguments; keywords `*` and `**` hold unpacked arguments of unknown number or name."""
     plain: list[Value] = []
     named: dict[str, Value] = {}
     for argument in expr.arguments:
@@ -51,14 +51,14 @@ def arguments(ctx: Interpreter, expr: ir.Call, frame: Frame) -> Arguments:
 def _noted(
     ctx: Interpreter, expr: ir.Call, name: str, argument: ir.Expr, value: Value, frame: Frame
 ) -> Value:
-    """Give a number that a keyword passes a node of its own, so that it is found again in what the call makes."""
+    """Give a keyword's number its own node, so that queries find the number in the object that the call makes."""
     if not ctx.thorough:
         return value
     return literals.entry(ctx, argument, value, frame, ("keyword", expr.slot, name))
 
 
 def one_by_one(ctx: Interpreter, value: Value) -> list[Value] | None:
-    """Return what `*value` passes, argument by argument; of several sequences those of one length are joined."""
+    """Return the arguments of `*value`; joins several sequences of equal length, None if lengths differ."""
     ways = [sizes.unpacked(ctx, Value(value.deps, frozenset([o]))) for o in in_order(value.pts)]
     lengths = {-1 if way is None else len(way) for way in ways}
     if -1 in lengths or len(lengths) != 1:
@@ -69,7 +69,7 @@ def one_by_one(ctx: Interpreter, value: Value) -> list[Value] | None:
 def _call_attribute(
     ctx: Interpreter, expr: ir.Call, function: ir.Attribute, base: Value, arguments: Arguments, frame: Frame
 ) -> Value:
-    """Call a method on everything the receiver may be."""
+    """Call a method of every possible receiver."""
     if ctx.nothing_yet(base):
         return BOTTOM
     if not base.pts:
@@ -127,26 +127,26 @@ def _call_member(
 
 
 def made_by_library(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return the objects of libraries that were stored in an attribute: to be called as functions are."""
+    """Return the library objects stored in an attribute; they are called like functions."""
     stored = ctx.store.get((obj, name))
     pts = frozenset(o for o in stored.pts if o.kind == "lib") if stored is not None else frozenset[Obj]()
     return Value(stored.deps if stored is not None else NONE, pts)
 
 
 def _held_by(ctx: Interpreter, obj: Obj, member: Value, name: str) -> frozenset[Obj]:
-    """Return the functions that an object holds as an attribute, not methods of its own that are not ours."""
+    """Return the callables stored in an attribute, without the object's own library methods."""
     return frozenset(o for o in member.pts if callable_held(ctx, o) and o.info != (obj, name))
 
 
 def callable_held(ctx: Interpreter, obj: Obj) -> bool:
-    """Tell whether what an attribute holds can be called: a function, or an object whose class says how."""
+    """Return whether an attribute's object is callable: a function, or an instance with `__call__`."""
     if obj.kind == "instance":
         return any(o.kind in CALLABLE for o in heap.read_field(ctx, obj, "__call__").pts)
     return obj.kind in CALLABLE
 
 
 def call_value(ctx: Interpreter, function: Value, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-    """Call whatever a value may be; what is not known passes its arguments on."""
+    """Call every object that a value may be; an unknown callee passes its arguments to the result."""
     targets = in_order(function.pts)
     if ctx.nothing_yet(function):
         return BOTTOM
@@ -169,7 +169,7 @@ def call_value(ctx: Interpreter, function: Value, arguments: Arguments, frame: F
 def call_object(
     ctx: Interpreter, target: Obj, arguments: Arguments, frame: Frame, call: ir.Call, carriers: Nodes = NONE
 ) -> Value:
-    """Call one object; a method's receiver is what `carriers` handed on, which may have been chosen by data."""
+    """Call one object; `carriers` are the nodes through which a method's receiver arrived."""
     kind = target.kind
     if kind in ("partial", "weak"):
         ctx.store.reads.look(target)

@@ -1,4 +1,4 @@
-"""Select the call context of a call: one of its own, or one that it shares where contexts are too many."""
+"""Select the call context of a call: its own, or a shared one if there are too many."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tarl_lint.memory.values import Obj
 def make_frame(
     ctx: Interpreter, closure: Obj, arguments: Arguments, caller: Frame, call: ir.Call, owner: Obj | None
 ) -> Frame | None:
-    """Return the activation for this call, None when it would be one too many."""
+    """Return the frame for this call; None if a limit is reached."""
     if not isinstance(closure.info, tuple):
         return None
     function = closure.info[0]
@@ -54,7 +54,7 @@ def _new_frame(
     ctx: Interpreter, closure: Obj, key: Hashable, caller: Frame, call: ir.Call, owner: Obj | None
 ) -> Frame:
     if not isinstance(closure.info, tuple):
-        raise TypeError(f"{closure!r} is no function")
+        raise TypeError(f"{closure!r} is not a function")
     function, outer, program, cls = closure.info
     frame = Frame(key, len(ctx.frames) + 1, function, program, ctx.module_objects[program.name])
     ctx.frames[key] = frame
@@ -66,6 +66,6 @@ def _new_frame(
 
 
 def _cut(ctx: Interpreter) -> None:
-    """Note that not everything of the program is followed."""
+    """Note that the analysis of the program is incomplete."""
     ctx.cut[ctx.program] = None
     ctx.store.reads.whole = False

@@ -1,4 +1,4 @@
-"""Functions, classes and imports: statements that define names."""
+"""Transfer functions of definitions: functions, classes, imports."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tarl_lint.models.smach import LATER
 
 
 def define(ctx: Interpreter, s: ir.Define, frame: Frame) -> bool:
-    """Execute a `def`; a property's setter is kept beside the property."""
+    """Execute a `def`; a property's setter is stored beside the property."""
     value = expressions.closure(ctx, s.function, frame, "def")
     for decorator in s.function.decorators:
         if (
@@ -34,9 +34,9 @@ def define(ctx: Interpreter, s: ir.Define, frame: Frame) -> bool:
 def decorated(
     ctx: Interpreter, value: Value, decorators: Sequence[ir.Expr], s: ir.Stmt, frame: Frame
 ) -> Value:
-    """Return what decorators of ours make of a function or class; those of libraries leave it as it is.
+    """Apply analysed decorators to a function or class; library decorators leave it unchanged.
 
-    One that is a method of a library's object, as `@server.route("/")`, hands it to that object, to be called.
+    A decorator that is a method of a library object, as `@server.route("/")`, registers it with that object.
     """
     for decorator in reversed(decorators):
         wrapper = expressions.evaluate(ctx, decorator, frame)
@@ -56,7 +56,7 @@ def _of_library(value: Value) -> bool:
 
 
 def wraps(ctx: Interpreter, obj: Obj) -> bool:
-    """Tell whether a decorator is one of ours; of classes those whose instances can be called."""
+    """Return whether a decorator is an analysed function, or an analysed class with callable instances."""
     if obj.kind == "class":
         return any(ctx.store.get((owner, "__call__")) is not None for owner in lineage(obj))
     return obj.kind in ("closure", "bound", "partial") or (
@@ -65,13 +65,13 @@ def wraps(ctx: Interpreter, obj: Obj) -> bool:
 
 
 def define_class(ctx: Interpreter, s: ir.Class, frame: Frame) -> bool:
-    """Execute a class statement; tell that execution goes on."""
+    """Execute a class statement; return True, since execution continues."""
     run_class(ctx, s, frame)
     return True
 
 
 def run_class(ctx: Interpreter, statement: ir.Class, frame: Frame) -> None:
-    """Execute a class statement: its body stores into the class."""
+    """Execute a class statement, whose body stores into the class."""
     cls = recency.intern(ctx, "class", (frame.id, statement.id), statement.name)
     info = ClassInfo(statement.name, statement.qualname, statement=statement, module=frame.program.name)
     info.fields = statement.fields
@@ -109,12 +109,12 @@ def _inherits(info: ClassInfo) -> tuple[list[Obj], list[str]]:
 
 
 def frame_number(ctx: Interpreter, key: object) -> int:
-    """Return a frame's number, the same at every run."""
+    """Return a frame's number, which is the same in every run."""
     return ctx.frame_numbers.setdefault(key, -2 - len(ctx.frame_numbers))
 
 
 def import_names(ctx: Interpreter, s: ir.Import, frame: Frame) -> bool:
-    """Bind what is imported."""
+    """Bind the imported names."""
     importer = ctx.modules[frame.program.path]
     for target, module, member in s.bindings:
         if member == "*":

@@ -1,4 +1,4 @@
-"""Special methods: what operators, subscripts and built-in functions ask of objects of ours."""
+"""Special methods of analysed classes, for operators, subscripts and built-in functions."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ METHOD_OF: Final[Mapping[str, str]] = {
 }  # fmt: skip
 FUNCTIONS: Final = frozenset(
     ["abs", "bool", "float", "int", "len", "next", "reversed", "round", "str", "format", "bytes", "hash"]
-)  # those that ask their first argument for a special method of the same name
+)  # built-in functions that call the special method of the same name
 
 
 def special(
     ctx: Interpreter, value: Value, name: str, given: Sequence[Value], frame: Frame, pos: ir.Pos
 ) -> Value | None:
-    """Return what a special method gives, None unless everything that a value may be has it."""
+    """Return the result of a special method; None unless every object that a value may be has it."""
     methods: list[Value] = []
     for obj in value.pts:
         method = _special_method(ctx, obj, name) if obj.kind == "instance" else None
@@ -51,7 +51,7 @@ def _special_method(ctx: Interpreter, obj: Obj, name: str) -> Value | None:
 
 
 def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], frame: Frame) -> Value | None:
-    """Return what an operator gives when one side is an object of ours that says so."""
+    """Return the result of an operator that an operand's analysed class overloads; None if none does."""
     if len(values) > 2 or not any(o.kind == "instance" for v in values for o in v.pts):
         return None
     operator = expr.operator
@@ -72,5 +72,5 @@ def operated(ctx: Interpreter, expr: ir.Operation, values: Sequence[Value], fram
 
 
 def _slot(name: str, pos: ir.Pos) -> int:
-    """Return a number for the call that an operator makes, apart from those of calls that are written."""
+    """Return a slot number for the call that an operator makes, distinct from those of explicit calls."""
     return -(1_000_000 + pos[0] * 100_000 + pos[1] * 100 + len(name))

@@ -1,4 +1,4 @@
-"""What nothing in the files calls, and others do: entry points, nodes to be made, methods that a framework runs."""
+"""Entry points: main functions, node classes, and methods that a framework calls."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tarl_lint.models.ros import subscriptions
 
 
 def start_programs(ctx: Interpreter) -> None:
-    """Run functions and make nodes that are there to be started from outside (entry points)."""
+    """Run main functions, and instantiate node classes, that nothing in the files calls."""
     for program in list(ctx.programs.values()):
         if ctx.modules[program.path].installed:
             continue
@@ -61,7 +61,7 @@ def _start(ctx: Interpreter, target: Obj, kind: str, path: str) -> None:
 
 
 def _plugin(ctx: Interpreter, statement: ir.Class, module: Obj) -> None:
-    """Make an instance of a class that a package names for others to make."""
+    """Instantiate a class that a package declares as plugin."""
     for cls in _values(ctx, module, statement.name):
         if cls.kind == "class" and (cls in ctx.plugins or cls.key not in ctx.made):
             _start(ctx, cls, "node", ctx.programs[module.name].path)
@@ -69,7 +69,7 @@ def _plugin(ctx: Interpreter, statement: ir.Class, module: Obj) -> None:
 
 
 def _node_class(ctx: Interpreter, statement: ir.Class, program: ir.Program, starting: bool) -> None:
-    """Make an instance of a class that registers something, or is a node, and that nothing instantiates."""
+    """Instantiate a class that registers something or is a node, if nothing in the files does."""
     for cls in _values(ctx, ctx.module_objects[program.name], statement.name):
         if cls.kind != "class" or cls.key in ctx.made:
             continue
@@ -84,7 +84,7 @@ def _node_class(ctx: Interpreter, statement: ir.Class, program: ir.Program, star
 
 
 def _last_node(ctx: Interpreter, cls: Obj, bases: Set[str]) -> bool:
-    """Tell whether a class inherits from one of a library that is made by others, and nothing inherits from it."""
+    """Return whether a class without subclasses inherits from one of these library classes."""
     if not isinstance(cls.info, ClassInfo) or _external(cls.info).isdisjoint(bases):
         return False
     return not any(o.kind == "class" and o is not cls and cls in lineage(o) for o in ctx.objects.values())
@@ -95,7 +95,7 @@ def _has_made_heir(ctx: Interpreter, cls: Obj) -> bool:
 
 
 def start_hooks(ctx: Interpreter) -> None:
-    """Run methods that a base class of a library may call: nothing in the files tells when."""
+    """Run methods that a library's base class may call at any time."""
     for obj in list(ctx.objects.values()):
         if obj.kind != "instance" or not isinstance(obj.info, Obj):
             continue
@@ -123,7 +123,7 @@ def _framework_methods(ctx: Interpreter, obj: Obj, owner: Obj, info: ClassInfo) 
 
 
 def _called_by_others(ctx: Interpreter, obj: Obj, info: ClassInfo) -> bool:
-    """Tell whether whoever made an object calls its methods: of plugins, and where nothing else registers."""
+    """Return whether outside code calls an object's methods: for plugins, and classes that register nothing."""
     return obj.info in ctx.plugins or (obj.info in ctx.guests and not _registers_itself(info))
 
 
@@ -135,7 +135,7 @@ def _start_method(ctx: Interpreter, closure: Obj, obj: Obj, owner: Obj, given: l
 
 
 def _registers_itself(info: ClassInfo) -> bool:
-    """Tell whether a class registers all it needs when it is made; else somebody calls a method for that."""
+    """Return whether a class registers callbacks in `__init__`; otherwise outside code calls a method for that."""
     body = info.statement.body if info.statement is not None else ()
     return any(
         isinstance(s, ir.Define) and s.function.name == "__init__" and starts(s.function) for s in body

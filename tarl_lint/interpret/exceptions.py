@@ -1,4 +1,4 @@
-"""Exceptions on their way from a `raise` in a function to the handler in a caller."""
+"""Exceptional control flow from a `raise` or a failing call to handlers in callers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tarl_lint.models.ros import publications
 
 
 def leave(ctx: Interpreter, escape: Escape, frame: Frame) -> None:  # noqa: ARG001 - one signature for all
-    """Hand an exception to the handlers around it in the function, else out of the function."""
+    """Pass an exception to the innermost handler in the function, or else out of the function."""
     attempt = next((t for t in reversed(frame.tries) if t.handled), None)
     if attempt is not None:
         attempt.raised = join(attempt.raised, escape.value)
@@ -19,9 +19,9 @@ def leave(ctx: Interpreter, escape: Escape, frame: Frame) -> None:  # noqa: ARG0
 
 
 def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:
-    """Let what comes after a statement depend on whether a library can do with what it is given.
+    """Make later statements depend on whether a library call raises for its arguments `deps`.
 
-    Only where somebody takes what it raises, in the function or in one that called it; `named`: by its name.
+    Applies only if the function or a caller handles the exception; with `named`, handles it by name.
     """
     statement = frame.statement
     if not deps or statement is None or frame.cls is not None:
@@ -40,10 +40,10 @@ def may_fail(ctx: Interpreter, deps: Nodes, raises: str, frame: Frame, *, named:
 
 
 def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
-    """Let what comes after a call depend on whether the called function raises, as after a `raise` of its own.
+    """Make statements after a call depend on whether the called function raises, as after a `raise`.
 
-    Where nobody takes it, assertions do not count, nor calls in a loop: what comes after the loop would depend on
-    how often it runs.
+    Without a handler, assertions and calls in a loop are ignored: otherwise the statements after the loop would
+    depend on the number of its iterations.
     """
     statement = caller.statement
     if statement is None:
@@ -64,12 +64,12 @@ def escaped(ctx: Interpreter, frame: Frame, caller: Frame) -> None:
 
 
 def _bare(statement: ir.Stmt) -> bool:
-    """Tell whether a statement raises without naming what, as an assertion does."""
+    """Return whether a statement raises without an exception, as assertions and a bare `raise` do."""
     return isinstance(statement, ir.Raise) and statement.value is None
 
 
 def _takes(attempt: Attempt, raises: str, named: bool) -> bool:
-    """Tell whether a `try` handles an exception, as far as its name tells."""
+    """Return whether a `try` handles an exception, judged by its name."""
     if named or (raises and attempt.takes):
         return raises in attempt.takes
     return attempt.handled

@@ -1,4 +1,4 @@
-"""Expressions: what each may be."""
+"""Transfer functions of expressions."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from tarl_lint.memory.values import (
 from tarl_lint.models import sizes
 
 BUILTINS = frozenset(dir(builtins))
-DEFINITIONS = frozenset(["msg", "srv", "action"])  # modules of classes that definition files make
+DEFINITIONS = frozenset(["msg", "srv", "action"])  # modules with classes generated from definition files
 
 
-LOOKUP_ERRORS = ("KeyError", "IndexError", "LookupError")  # of an element that is not there
+LOOKUP_ERRORS = ("KeyError", "IndexError", "LookupError")  # raised for a missing element
 
 
 def evaluate(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Value:
-    """Return what an expression may be."""
+    """Return the abstract value of an expression."""
     value = EVALUATE[type(expr)](ctx, expr, frame)
     if ctx.probe is not None and frame.statement is not None:
         ctx.probe(ctx, frame, frame.statement, expr, value)
@@ -59,7 +59,7 @@ def _name(ctx: Interpreter, expr: ir.Name, frame: Frame) -> Value:
 
 
 def holder(expr: ir.Name, frame: Frame) -> Obj:
-    """Return the object that holds a variable: an activation, a class being made, a module."""
+    """Return the object that holds a variable: a frame, a class under construction, or a module."""
     if expr.scope == "global":
         return frame.module
     if expr.scope == "local":
@@ -71,7 +71,7 @@ def holder(expr: ir.Name, frame: Frame) -> Obj:
 
 
 def global_name(ctx: Interpreter, name: str, frame: Frame) -> Value:
-    """Return a name that the module itself does not bind: from `import *`, else a builtin."""
+    """Return the value of a name that the module does not bind: from `import *`, or else a builtin."""
     value = ctx.store.get((frame.module, name))
     if value is None:
         value = heap.opened(ctx, frame.module, name)
@@ -87,7 +87,7 @@ def global_name(ctx: Interpreter, name: str, frame: Frame) -> Value:
 
 
 def external(ctx: Interpreter, qualified: str) -> Value:
-    """Return a library's function, class or module."""
+    """Return a function, class or module of a library."""
     return pointer(recency.intern(ctx, "ext", qualified, qualified))
 
 
@@ -107,7 +107,7 @@ def _attribute(ctx: Interpreter, expr: ir.Attribute, frame: Frame) -> Value:
 
 
 def is_property(method: Obj) -> bool:
-    """Tell whether a bound method is a property's getter."""
+    """Return whether a bound method is a property's getter."""
     function = function_of(method)
     return function is not None and any(
         (isinstance(d, ir.Name) and d.name in ("property", "cached_property"))
@@ -149,14 +149,14 @@ def read_item(ctx: Interpreter, base: Value, index: Value) -> Value:
 
 
 def member(ctx: Interpreter, cls: Obj, name: Value) -> Value:
-    """Return what `Class[name]` may be: a member of an enumeration, any of them when the name is not known."""
+    """Return the enumeration member `Class[name]`; all members if the name is unknown."""
     ctx.store.reads.look(cls)
     names = name.texts() or tuple(n for n in cls.fields if not n.startswith("_"))
     return join_all(v for n in names if not (v := heap.read_field(ctx, cls, n)).pts & functions(ctx, cls))
 
 
 def functions(ctx: Interpreter, cls: Obj) -> frozenset[Obj]:
-    """Return the functions that a class holds."""
+    """Return the functions in a class."""
     held = (ctx.store.get((cls, n)) for n in list(cls.fields))
     return frozenset(o for v in held if v is not None for o in v.pts if o.kind in ("closure", "bound"))
 
@@ -176,7 +176,7 @@ def element(ctx: Interpreter, obj: Obj, key: object) -> Value:
 
 
 def _makes(ctx: Interpreter, mapping: Obj) -> bool:
-    """Tell whether a mapping makes what is asked for and not there."""
+    """Return whether a mapping creates missing values, as a `defaultdict` does."""
     ctx.store.reads.look(mapping)
     return mapping.info is not None
 
@@ -207,7 +207,7 @@ def _choice(ctx: Interpreter, expr: ir.Choice, frame: Frame) -> Value:
 
 
 def under_guard(ctx: Interpreter, expr: ir.Expr, guard: tuple[int, str], frame: Frame) -> Value:
-    """Evaluate an expression to which a decision leads."""
+    """Evaluate an expression that is executed only for one outcome of a decision."""
     ctx.guards.append(guard)
     value = evaluate(ctx, expr, frame)
     ctx.guards.pop()
@@ -241,7 +241,7 @@ def _lambda(ctx: Interpreter, expr: ir.Lambda, frame: Frame) -> Value:
 
 
 def closure(ctx: Interpreter, function: ir.Function, frame: Frame, slot: object) -> Value:
-    """Return a function object that remembers where it was made."""
+    """Return a function object that refers to its enclosing frame."""
     outer = frame.outer if frame.owner_class() else frame
     key = (function.module, frame.id, function.pos, slot, *frame.turn)
     obj = recency.intern(ctx, "closure", key, function.name)
@@ -258,7 +258,7 @@ def closure(ctx: Interpreter, function: ir.Function, frame: Frame, slot: object)
 
 
 def default_value(ctx: Interpreter, parameter: ir.Parameter, closure: Obj, frame: Frame) -> Value:
-    """Return a parameter's default as a value made by the `def`."""
+    """Return a parameter's default value, attributed to the `def` statement."""
     assert parameter.default is not None  # noqa: S101 - asked before
     value = evaluate(ctx, parameter.default, frame)
     node = ctx.node(frame, ("default", closure.key, parameter.name), "assign")
@@ -267,7 +267,7 @@ def default_value(ctx: Interpreter, parameter: ir.Parameter, closure: Obj, frame
 
 
 def _likely(stars: list[str], name: str) -> str:
-    """Return the module that a name most likely comes from: capitalised ones from messages, others not."""
+    """Guess the module that a name comes from: message modules for capitalised names, others otherwise."""
     message = name[:1].isupper() and not name.isupper()
     likely = [s for s in stars if (s.rpartition(".")[2] in DEFINITIONS) is message]
     return (likely or stars)[-1]

@@ -1,4 +1,4 @@
-"""The whole set of modules: imports, and everything that runs on its own until nothing new is stored."""
+"""Worklist fixpoint over the roots: modules, callbacks, timers, threads and entry points."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tarl_lint.settings.config import Config
 
 
 class Linker(Interpreter):
-    """Runs modules, then callbacks, timers, threads and main functions, until the shared memory is stable."""
+    """Runs roots until the shared memory is stable."""
 
     def __init__(
         self,
@@ -29,13 +29,13 @@ class Linker(Interpreter):
         *,
         thorough: bool = True,
     ) -> None:
-        """With `failures`, what goes wrong is noted there by file, and the rest goes on.
+        """With `failures`, store an exception there by file and continue; otherwise raise it.
 
-        Unless `thorough`, values that come from no source are not followed: flows need no more.
+        Unless `thorough`, ignore values that do not come from a source; flows need only the others.
         """
         super().__init__(modules, config, wiring)
         self.thorough = thorough
-        self.took: dict[Root, int] = {}  # statements of the last run of what has run
+        self.took: dict[Root, int] = {}  # statements in the last run of each root
         self.failures = failures
         part = {m.path for m in mentioning(modules, config)} if len(modules) > 1 else self.modules.keys()
         for module in modules:
@@ -61,7 +61,7 @@ class Linker(Interpreter):
         self.failures.setdefault(path, error)
 
     def link(self) -> None:
-        """Run everything to the fixed point."""
+        """Run all roots to the fixpoint."""
         for program in self.programs.values():
             self._module_root(program)
         self._settle()
@@ -73,14 +73,14 @@ class Linker(Interpreter):
             self._settle()
             if len(self.roots) == before:
                 break
-        if self.waiting:  # all is stored by now: what is still unknown stays so
+        if self.waiting:  # nothing more will be stored: unknown values stay unknown
             self.patient = False
             self.pending.update(self.waiting)
             self._settle()
         self.graph.settle()
 
     def replay(self) -> None:
-        """Run every root once more, for a probe that looks on."""
+        """Run every root once more, observed by a probe."""
         for root, run in list(self.roots.values()):
             self._run(root, run)
 
@@ -104,12 +104,12 @@ class Linker(Interpreter):
                 self.shared.dirty.clear()
 
     def _turn(self, root: Root) -> tuple[int, int, int]:
-        """Modules run first, but again only last, since what they wait for comes from the rest; small ones first."""
+        """Return the priority of a root: new modules, then callbacks, then modules to re-run; cheapest first."""
         took = self.took.get(root)
         return 1 if root.kind != "module" else 0 if took is None else 2, took or 0, root.number
 
     def _reconsider(self) -> None:
-        """Have those run again who went by a decision to which a source leads by now."""
+        """Queue the roots that ignored a node because no source reached it, if one reaches it now."""
         for node in [n for n in self.doubts if n in self.graph.live]:
             self.pending.update(self.doubts.pop(node))
 

@@ -1,4 +1,4 @@
-"""Imports: modules of ours and names in them, else something of a library."""
+"""Resolve imports: analysed modules and their names, or else library names."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tarl_lint.read.source import Module
 
 
 def imported(ctx: Interpreter, module: str, member: str | None, importer: object) -> Value:
-    """Return what an import binds: a module of ours, a name in one, or something of a library."""
+    """Return the value that an import binds: an analysed module, a name in one, or a library name."""
     assert isinstance(importer, Module)  # noqa: S101 - what execute passes
     found = _module(ctx, module, importer)
     if member is None:
@@ -38,7 +38,7 @@ def _module(ctx: Interpreter, name: str, importer: Module) -> Value | None:
 
 
 def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return a field to which nothing was stored; of a package, its modules."""
+    """Return the value of an unset field; for a package, its submodules."""
     value = library.default(ctx, obj, name)
     if value is BOTTOM and obj.kind == "module":
         inner = ctx.module_objects.get(f"{obj.name}.{name}")

@@ -1,7 +1,7 @@
-"""The state of the abstract interpretation, which every part of it works on.
+"""The state of the abstract interpretation, shared by all its parts.
 
-The parts are modules of functions that take the interpreter as `ctx`. They call functions of lower parts directly, and
-those of higher ones through `ctx.ops` (`operations.py` declares them, `wiring.py` says which they are).
+The parts are modules of functions that take the interpreter as `ctx`. They call functions of lower parts directly,
+and those of higher parts through `ctx.ops` (declared in `operations.py`, assigned in `wiring.py`).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ Probe = Callable[["Interpreter", Frame, ir.Stmt, ir.Expr, Value], None]
 
 
 def control_of(function: ir.Function) -> object:
-    """Return a function's control dependence, which is another one when a call in it is known to raise more."""
+    """Return a function's control dependence, which is replaced when a call in it may raise a new exception."""
     return function.control
 
 
@@ -40,13 +40,13 @@ class Interpreter:
     def __init__(self, modules: Sequence[Module], config: Config, ops: Operations[Interpreter]) -> None:
         self.ops = ops
         self.config = config
-        self.thorough = True  # follow every value, not only what comes from a source
+        self.thorough = True  # follow every value, not only those from a source
         self.modules = {m.path: m for m in modules}
         self.index = Index(modules)
         self.programs: dict[str, ir.Program] = {}
         self.module_objects: dict[str, Obj] = {}
         self.by_path: dict[str, ir.Program] = {}
-        self.pending: dict[Root, None] = {}  # roots that are to run
+        self.pending: dict[Root, None] = {}  # roots to run
         self.graph = Graph()
         self.shared = Shared()
         self.store = Store(self.shared, Root("none", "none"))
@@ -54,100 +54,103 @@ class Interpreter:
         self.frames: dict[Hashable, Frame] = {}
         self.frame_numbers: dict[Hashable, int] = {}
         self.stack: list[Frame] = []
-        self.senders: dict[Obj, object] = {}  # objects of libraries that publish → what is known of them
-        self.delivered: frozenset[Obj] = frozenset()  # messages that ROS hands over in this run
-        self.vacant: set[Key] = set()  # variables and fields that None is stored in
-        self.optional: set[Key] = set()  # those that get what may be None or not
-        self.setters: set[str] = set()  # names of attributes that some class sets by a method
-        self.doubtful: set[ir.Call] = set()  # calls that give such
-        self.came: dict[Key, set[int]] = {}  # what decides whether a copy of what is vacant at first is there
-        self.came_out: dict[ir.Call, set[int]] = {}  # the same of calls that give such a copy
-        self.unchanged: set[ir.Call] = (
+        self.senders: dict[Obj, object] = {}  # library objects that publish → their description
+        self.delivered: frozenset[Obj] = frozenset()  # messages delivered in this run
+        self.vacant: set[Key] = (
             set()
-        )  # calls that pass on a value as it is; noted by thorough runs only
+        )  # variables and fields that are None before the first message (nullness)
+        self.optional: set[Key] = set()  # variables and fields whose None may be computed from data
+        self.setters: set[str] = set()  # names of properties with a setter
+        self.doubtful: set[ir.Call] = set()  # calls whose None may be computed from data
+        self.came: dict[Key, set[int]] = {}  # copy of a vacant variable → nodes that decide whether it is set
+        self.came_out: dict[ir.Call, set[int]] = {}  # the same for calls that return such a copy
+        self.unchanged: set[ir.Call] = set()  # calls that return a value unchanged; only in thorough runs
         self.settings: dict[
             Obj, tuple[str, ir.Pos]
-        ] = {}  # what was loaded from a file or the environment → path and place of the call
-        self.patient = True  # what is not known yet may be stored by a root that runs later
-        self.waiting: dict[Root, None] = {}  # roots that met such a thing
+        ] = {}  # value loaded from a file or the environment → path and position of the call
+        self.patient = True  # unknown values may still be stored by a later root
+        self.waiting: dict[Root, None] = {}  # roots that read such an unknown value
         self.doubts: dict[
             int, dict[Root, None]
-        ] = {}  # decision or node that no source led to → roots that went by that
-        self.guards: list[tuple[int, str]] = []  # decisions inside the expression that is being evaluated
-        self.spent = 0  # statements executed in this run of a root, and looks and edges for so many
-        self.saved = 0  # of it in calls that were replayed
-        self.totals: dict[str, int] = {}  # the same in all runs before, of each program
-        self.edges_of: dict[str, int] = {}  # edges that the runs of each program made
-        self.nodes_of: dict[str, int] = {}  # nodes that they made
-        self.frames_of: dict[str, int] = {}  # activations of each program
-        self.widened: set[Hashable] = set()  # calls that share a context with others
-        self.cut: dict[str, None] = {}  # programs of which not everything was followed
+        ] = {}  # node that no source reached → roots that relied on that
+        self.guards: list[tuple[int, str]] = []  # decisions inside the current expression
+        self.spent = 0  # work in this run of a root, in statements
+        self.saved = 0  # part of `spent` in replayed calls
+        self.totals: dict[str, int] = {}  # work of each program in earlier runs, without replayed calls
+        self.edges_of: dict[str, int] = {}  # edges made by each program
+        self.nodes_of: dict[str, int] = {}  # nodes made by each program
+        self.frames_of: dict[str, int] = {}  # call contexts of each program
+        self.widened: set[Hashable] = set()  # calls that share a context
+        self.cut: dict[str, None] = {}  # programs whose analysis is incomplete
         self.limit = MAX_STATEMENTS
-        self.idled = 0  # of it in calls that can matter little
-        self.leisure: int | None = None  # what may be spent until a call ends that can matter little
-        self.activations: dict[ir.Function, int] = {}  # how often each function ran in this run of a root
+        self.idled = 0  # part of `spent` in calls into modules without ROS calls
+        self.leisure: int | None = (
+            None  # value of `spent` at which the current call into a module without ROS calls ends; None outside one
+        )
+        self.activations: dict[ir.Function, int] = {}  # function → number of executions in this run of a root
         self.roots: dict[Hashable, tuple[Root, Callable[[Root], None]]] = {}
-        self.given: set[Obj] = set()  # objects that roots are run with
-        self.passed: dict[Hashable, list[Value]] = {}  # what each root is called with
+        self.given: set[Obj] = set()  # objects among the arguments of roots
+        self.passed: dict[Hashable, list[Value]] = {}  # root → its arguments
         self.sources: dict[tuple[str, ir.Pos], SourceRecord] = {}
         self.sinks: dict[tuple[str, ir.Pos], SinkRecord] = {}
-        self.called: set[tuple[str, int]] = set()  # functions that something calls: module, line
-        self.made: set[Hashable] = set()  # classes that something instantiates
-        self.guests: set[object] = set()  # classes that only others instantiate
-        self.plugins: set[object] = set()  # those that a package names for others
-        self.ended: set[str] = (
-            set()
-        )  # classes that are not here and whose methods data or callbacks are passed to
-        self.checking = os.environ.get("TARL_CHECK", "") not in ("", "0")  # execute what could be replayed
+        self.called: set[tuple[str, int]] = set()  # called functions: module, line
+        self.made: set[Hashable] = set()  # keys of instantiated classes
+        self.guests: set[object] = set()  # classes instantiated only outside of the files
+        self.plugins: set[object] = set()  # classes that a package declares as plugins
+        self.ended: set[str] = set()  # classes outside of the files whose methods get data or callbacks
+        self.checking = os.environ.get("TARL_CHECK", "") not in (
+            "",
+            "0",
+        )  # execute calls that could be replayed, and compare
         self.probe: Probe | None = None
         self.watch: Callable[[Frame, ir.Stmt], None] | None = None
 
     @property
     def total(self) -> int:
-        """Return how much work was done in all runs before."""
+        """Return the work of all earlier runs, in statements."""
         return sum(self.totals.values())
 
     @property
     def worked(self) -> int:
-        """Return what this run of a root took so far, replayed calls left out."""
+        """Return the work of this run of a root so far, without replayed calls."""
         return self.spent - self.saved
 
     @property
     def program(self) -> str:
-        """Return the program whose budget is being spent."""
+        """Return the program of the current root, whose budget is charged."""
         return self.store.root.program
 
     def hurried(self, program: str) -> bool:
-        """Tell whether there is too much in a program to follow everything to its end."""
+        """Return whether a program has exceeded its budget."""
         spent = self.totals.get(program, 0) > PATIENCE or self.edges_of.get(program, 0) >= MAX_EDGES
         if spent:
             self.cut[program] = None
         return spent
 
     def count(self, looks: int = 0) -> None:
-        """Count looks into objects, and what was asked of the graph and added to it meanwhile, as work."""
+        """Convert object reads and graph operations to statements, and add them to the work."""
         self.spent += (looks + self.graph.asked) // LOOKS
         self.graph.asked %= LOOKS
 
     def absence(self, key: Key | None) -> tuple[bool, bool, int]:
-        """Return what is known of a place where None may be stored; without one whether any may hold both."""
+        """Return the nullness facts about a variable or field; without a key, whether any may be None by data."""
         if key is None:
             return False, bool(self.optional), 0
         return key in self.vacant, key in self.optional, len(self.came.get(key, ()))
 
     def given_back(self, call: ir.Call) -> tuple[bool, int]:
-        """Return what is known of the None that a call may give."""
+        """Return the nullness facts about a call's result."""
         return call in self.doubtful, len(self.came_out[call]) if call in self.came_out else -1
 
     def look(self, objects: Iterable[Obj]) -> None:
-        """Note that it matters what objects stand for and whether data is in them."""
+        """Note that the running call depends on these objects' stamps: meaning, fields and data."""
         for obj in objects:
             self.store.reads.look(obj)
 
     # --- places -----------------------------------------------------------------------------------------
 
     def branches(self, frame: Frame, statement: ir.Stmt | None) -> Branches:
-        """Return every condition that a statement is under, callers' conditions included."""
+        """Return all conditions of a statement, including those of callers."""
         if statement is None:
             return frame.base
         known = frame.closures.get(statement.id)
@@ -158,7 +161,7 @@ class Interpreter:
         return known
 
     def branch(self, frame: Frame, branch: Branch) -> tuple[int, str]:
-        """Return a branch of a function as a branch of one of its activations."""
+        """Return a branch of a function as a branch of one of its frames."""
         number, way = branch
         key = (frame.id, number, "condition")
         node = self.graph.numbers.get(key)
@@ -193,7 +196,7 @@ class Interpreter:
         return frame.control
 
     def node(self, frame: Frame, slot: Hashable, role: str, pos: ir.Pos | None = None) -> int:
-        """Return the node of a value that the frame's current statement makes."""
+        """Return the node of a value made by the frame's current statement."""
         statement = frame.statement
         key = (frame.id, statement.id if statement is not None else -1, slot, *frame.turn)
         known = self.graph.numbers.get(key)
@@ -203,13 +206,13 @@ class Interpreter:
         return self.graph.node(key, Place(frame, statement, role, where), self.branches(frame, statement))
 
     def gathered(self, key: Key, value: Value) -> Value:
-        """Return a value that many meet in, and more may be added to, as made from one node."""
+        """Replace the nodes of a field with very many values by one merged node."""
         if not self.stack or not self.graph.meets(key, value.deps, carriers=bool(value.pts)):
             return value
         return Value(self.graph.merged(key, value.deps, self.stack[-1]), value.pts, value.consts)
 
     def carry(self, value: Value, node: int) -> Value:
-        """Return the value as passed on by a statement's node."""
+        """Return the value as passed on through a statement's node."""
         content = self.ops.deep(self, value.pts) if value.pts else NONE
         if value.deps:
             self.graph.flow(self.settled(value), node)
@@ -220,7 +223,7 @@ class Interpreter:
         return Value(frozenset([node]), value.pts, value.consts)
 
     def kept(self, node: int) -> Nodes:
-        """Return a node as what a value is made from: unless thorough, only if a source or its decisions led here."""
+        """Return a node as dependency of a value; unless thorough, only if a source reaches it or its decisions."""
         graph = self.graph
         live = graph.live
         if self.thorough or node in live:
@@ -239,7 +242,7 @@ class Interpreter:
         return NONE
 
     def use(self, value: Value) -> Nodes:
-        """Return the nodes whose data is used when the whole value is."""
+        """Return the nodes whose data is used if the whole value is."""
         if not value.pts:
             return self.settled(value)
         content = self.ops.deep(self, value.pts)
@@ -248,7 +251,7 @@ class Interpreter:
         return value.deps | self.graph.through(content, value.deps)
 
     def settled(self, value: Value) -> Nodes:
-        """Return what a value is made from. What is the same constant on every way was chosen by nothing."""
+        """Return a value's dependencies; without branch conditions if all paths give the same constant."""
         if not value.deps or not value.fixed():
             return value.deps
         free = [d for d in value.deps if not self.graph.control[d]]
@@ -257,7 +260,7 @@ class Interpreter:
         return frozenset(map(self.graph.unchosen, free))
 
     def nothing_yet(self, value: Value) -> bool:
-        """Tell whether nothing was stored so far where a value was looked for, or only None."""
+        """Return whether a value is unset so far, or is only None."""
         if value.pts or (value.deps and value.consts != NONE_ONLY):
             return False
         if value.consts == NONE_ONLY:
@@ -271,11 +274,11 @@ class Interpreter:
         return True
 
     def hopes(self) -> bool:
-        """Tell whether what is not known yet may be stored by a root that runs later."""
+        """Return whether a later root may still store unknown values."""
         return self.patient
 
     def release(self) -> None:
-        """Let go of everything, so that nothing is left that holds itself. Nothing can be asked afterwards."""
+        """Drop all references, to break cycles. The interpreter cannot be used afterwards."""
         for obj in (*self.objects.values(), *self.module_objects.values(), *self.frames.values()):
             obj.release()
         for record in self.sources.values():

@@ -1,4 +1,4 @@
-"""Calls of what is not analysed, with what is passed."""
+"""Calls of code that is not analysed, with their arguments."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Arguments = tuple[list[Value], dict[str, Value]]
 
 @dataclass(slots=True)
 class Invocation:
-    """A call of something that is not analysed. Of a method, `base` is the receiver."""
+    """A call of code that is not analysed. `base` is the receiver of a method."""
 
     name: str
     base: Value
@@ -25,11 +25,11 @@ class Invocation:
 
     @property
     def statement(self) -> int:
-        """Return the number of the calling statement, -1 when ROS itself calls."""
+        """Return the number of the calling statement; -1 if ROS is the caller."""
         return self.frame.statement.id if self.frame.statement is not None else -1
 
     def argument(self, which: tuple[int, str]) -> Value:
-        """Return an argument by position or keyword, BOTTOM where it is not given."""
+        """Return an argument by position or keyword; BOTTOM if it is missing."""
         number, name = which
         plain, named = self.arguments
         if 0 <= number < len(plain):

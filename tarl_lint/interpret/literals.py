@@ -1,4 +1,4 @@
-"""Displays of sequences and mappings, comprehensions, and taking elements out."""
+"""Transfer functions of displays and comprehensions."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from tarl_lint.memory.heap import LENGTH, item_field
 from tarl_lint.memory.values import NONE, Value, pointer
 from tarl_lint.models import sizes
 
-MAX_EACH = 4  # elements that a comprehension takes one by one
+MAX_EACH = 4  # a comprehension over at most so many known elements is unrolled
 
-READING = frozenset(["get", "getattr", "get_param"])  # calls that give what is kept somewhere as it is
+READING = frozenset(["get", "getattr", "get_param"])  # calls that return a stored value unchanged
 
 
 def sequence_display(ctx: Interpreter, expr: ir.SequenceDisplay, frame: Frame) -> Value:
-    """Return a list, tuple or set as written."""
+    """Return the value of a list, tuple or set display."""
     obj = recency.allocate(ctx, "sequence", frame, ("display", expr.slot))
     items = [
         (i, ctx.ops.evaluate(ctx, i.value if isinstance(i, ir.Starred) else i, frame)) for i in expr.items
@@ -40,7 +40,7 @@ def sequence_display(ctx: Interpreter, expr: ir.SequenceDisplay, frame: Frame) -
 
 
 def mapping_display(ctx: Interpreter, expr: ir.MappingDisplay, frame: Frame) -> Value:
-    """Return a dictionary as written."""
+    """Return the value of a dict display."""
     obj = recency.allocate(ctx, "mapping", frame, ("display", expr.slot))
     where = pointer(obj)
     for key, item in expr.items:
@@ -53,7 +53,7 @@ def mapping_display(ctx: Interpreter, expr: ir.MappingDisplay, frame: Frame) -> 
 
 
 def entry(ctx: Interpreter, expr: ir.Expr, value: Value, frame: Frame, slot: object) -> Value:
-    """Return an element of a display; numbers get a node of their own, so that they are found again."""
+    """Return an element of a display; a number gets its own node, so that queries find it."""
     if not isinstance(expr, ir.Const) or not isinstance(expr.value, (int, float)):
         return value
     node = ctx.node(frame, ("entry", slot), "assign")
@@ -89,7 +89,7 @@ def comprehension(ctx: Interpreter, expr: ir.Comprehension, frame: Frame) -> Val
 
 
 def _one_by_one_of(ctx: Interpreter, expr: ir.Comprehension, known: list[Value], frame: Frame) -> Value:
-    """Return a sequence of what a comprehension makes of elements that are told apart."""
+    """Unroll a comprehension over few known elements; return the sequence."""
     obj = recency.allocate(ctx, "sequence", frame, ("display", expr.slot))
     turn = frame.turn
     for number, value in enumerate(known):
@@ -101,7 +101,7 @@ def _one_by_one_of(ctx: Interpreter, expr: ir.Comprehension, known: list[Value],
 
 
 def mark(ctx: Interpreter, node: int, expr: ir.Expr, value: Value, frame: Frame) -> None:
-    """Note that a node is a constant, or passes on another unchanged."""
+    """Record that a node is a constant, or a copy of its only input."""
     known, constant = value.constant()
     if (_passes_on(ctx, expr) or _parameter_call(ctx, expr, value)) and not (
         isinstance(expr, (ir.Call, ir.Choice)) and known and not value.deps
@@ -114,7 +114,7 @@ def mark(ctx: Interpreter, node: int, expr: ir.Expr, value: Value, frame: Frame)
 
 
 def _passes_on(ctx: Interpreter, expr: ir.Expr) -> bool:
-    """Tell whether an expression gives something that is kept elsewhere as it is, or one of several such things."""
+    """Return whether an expression returns a stored value unchanged, or one of several."""
     if isinstance(expr, ir.Choice):
         return ctx.thorough and all(
             isinstance(arm, ir.Const) or _passes_on(ctx, arm) for arm in (expr.then, expr.other)
@@ -126,7 +126,7 @@ def _passes_on(ctx: Interpreter, expr: ir.Expr) -> bool:
 
 
 def _parameter_call(ctx: Interpreter, expr: ir.Expr, value: Value) -> bool:
-    """Tell whether an expression is a call that gives a ROS parameter."""
+    """Return whether an expression is a call that returns a ROS parameter."""
     if not isinstance(expr, ir.Call) or not value.deps:
         return False
     ctx.graph.reads.ask(ctx.graph.parameters.issuperset, value.deps)

@@ -1,4 +1,4 @@
-"""What starts a node, read off the syntax: without any of it a file only defines things."""
+"""Find, by syntax, code that starts a node; a file without it only defines names."""
 
 from __future__ import annotations
 
@@ -12,41 +12,41 @@ from tarl_lint.trees import walk
 
 KINDS = frozenset(
     ["subscribe", "receive", "filter", "service", "action"]
-)  # of calls that something comes in by
+)  # names of calls that register an input
 FACTS = {**catalog.FUNCTIONS, **catalog.METHODS}
 REGISTERING = frozenset(name.rpartition(".")[2] for name, fact in FACTS.items() if fact.kind in KINDS)
 STARTS = REGISTERING | {"init_node", "init", "create_node", "spin"}
 STARTING = re.compile(
     rf"\.\s*(?:{'|'.join(sorted(STARTS))})\s*\(|\b(?:{'|'.join(sorted(REGISTERING))})\s*\("
-)  # without it a file starts nothing
+)  # words of which a file that starts a node has at least one
 
 
 def definitions(body: Sequence[ir.Stmt]) -> Iterator[ir.Define | ir.Class]:
-    """Yield the functions and classes that a body defines itself."""
+    """Yield the functions and classes defined directly in a body."""
     for statement in body:
         if isinstance(statement, (ir.Define, ir.Class)):
             yield statement
 
 
 def starts_node(function: ir.Function) -> bool:
-    """Tell whether a function is there to be started: it is called main, or it starts a node."""
+    """Return whether a function is an entry point: its name is main, or it starts a node."""
     return function.name == "main" or starts(function)
 
 
 def registers(statement: ir.Class) -> bool:
-    """Tell whether a method of a class registers something or starts a node."""
+    """Return whether a method of a class registers something or starts a node."""
     return any(isinstance(s, ir.Define) and starts(s.function) for s in statement.body)
 
 
 def starts(function: ir.Function) -> bool:
-    """Tell whether a function calls something that registers or starts a node."""
+    """Return whether a function contains a call that registers something or starts a node."""
     if function.starts is None:
         function.starts = any(isinstance(n, ast.Call) and _starts(n.func) for n in walk(function.node))
     return function.starts
 
 
 def _starts(called: ast.expr) -> bool:
-    """Tell it of what is called: a method, or what was imported by its own name."""
+    """Return whether a callee registers something or starts a node: a method, or an imported name."""
     if isinstance(called, ast.Name):
         return called.id in REGISTERING
     return isinstance(called, ast.Attribute) and called.attr in STARTS

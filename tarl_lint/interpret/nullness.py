@@ -1,4 +1,4 @@
-"""Whether anything is there: variables and fields that hold None until something is stored."""
+"""Nullness: distinguish None that means "no message yet" from a None computed from data."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.heap import ANY, item_field
 from tarl_lint.memory.values import Key, Nodes, Obj, Value, lineage
 
-RETURNED = "<return>"  # stands for what a function gives back
-COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)  # expressions that may be another's value
+RETURNED = "<return>"  # pseudo-variable of a function's result
+COPIED = (ir.Name, ir.Attribute, ir.Item, ir.Call)  # expressions that may copy another variable's value
 
 
 def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes | None:
-    """Return what decides on `x is None` where it asks if anything was stored, None where it asks for data.
+    """Return the nodes that decide `x is None` if it only tests whether x is set; None if it tests data.
 
-    That a message has come is no data of it; what decided whether to store is.
+    The arrival of a message is not its data; conditions under which it was stored are.
     """
     first, second = expr.parts
     if not isinstance(second, ir.Const) or second.value is not None:
@@ -27,7 +27,7 @@ def only_presence(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Nodes |
 
 
 def _absence(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Nodes | None:
-    """Return what decided whether anything is there, None where that may be data."""
+    """Return the nodes that decide whether a value is set; None if data may decide."""
     if isinstance(expr, ir.Call):
         ctx.store.reads.ask(ctx.given_back, expr)
         if expr in ctx.came_out:
@@ -45,7 +45,7 @@ def _absence(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Nodes | None:
 
 
 def note_absence(ctx: Interpreter, target: ir.Expr, source: ir.Expr, value: Value, frame: Frame) -> None:
-    """Remember that a target gets None, or what may be None as well as something else."""
+    """Record that a target gets None, or a value that may be None."""
     if value.consts == NONE_ONLY and not value.pts:
         ctx.vacant.update(_keys(ctx, target, frame))
     elif _holds_data(ctx, value) and (decides := _absence(ctx, source, frame)) is not None:
@@ -55,7 +55,7 @@ def note_absence(ctx: Interpreter, target: ir.Expr, source: ir.Expr, value: Valu
 
 
 def note_passed(ctx: Interpreter, key: Key, source: ir.Expr, value: Value, frame: Frame) -> None:
-    """Remember where a value is held that is None only as long as nothing has come."""
+    """Record a variable whose value is None only before the first message."""
     if isinstance(source, COPIED) and _holds_data(ctx, value):
         decides = _absence(ctx, source, frame)
         if decides is not None:
@@ -65,7 +65,7 @@ def note_passed(ctx: Interpreter, key: Key, source: ir.Expr, value: Value, frame
 def note_taken(
     ctx: Interpreter, target: ir.Expr, held: Value, number: int, value: Value, frame: Frame
 ) -> None:
-    """Remember the same of a target that gets an element of a sequence."""
+    """Record the same for a target that gets an element of a sequence."""
     keys = [(o, item_field(number)) for o in held.pts if o.kind == "sequence"]
     for key in keys:
         ctx.store.reads.ask(ctx.absence, key)
@@ -91,7 +91,7 @@ def _holds_data(ctx: Interpreter, value: Value) -> bool:
 
 
 def note_result(ctx: Interpreter, call: ir.Call, returned: list[Value], frame: Frame) -> None:
-    """Remember a call of a function that gives None beside other things, or only as long as nothing has come."""
+    """Record a call whose result may be None by data, or is None only before the first message."""
     ctx.store.reads.ask(ctx.absence, (frame, RETURNED))
     without = [v.consts == NONE_ONLY and not v.pts for v in returned]
     if any(without) and not all(without):
@@ -118,7 +118,7 @@ def _may_be_none(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> bool:
 
 
 def _keys(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Iterator[Key]:
-    """Yield where a variable or a field of a variable is stored; a class stands for its instances too."""
+    """Yield the keys of a variable or field; for a field of an instance, also those in its classes."""
     if isinstance(expr, ir.Name):
         yield ctx.ops.holder(expr, frame), expr.name
     elif isinstance(expr, ir.Attribute) and isinstance(expr.base, (ir.Name, ir.Attribute, ir.Item)):
@@ -132,7 +132,7 @@ def _keys(ctx: Interpreter, expr: ir.Expr, frame: Frame) -> Iterator[Key]:
 
 
 def _elements(ctx: Interpreter, container: ir.Expr, frame: Frame) -> Iterator[Key]:
-    """Yield where the elements of a container of ours are stored: None in one of them may be in any."""
+    """Yield the element keys of analysed containers: a None in one element counts for all."""
     held = (
         ctx.ops.evaluate(ctx, container, frame).pts if isinstance(container, (ir.Name, ir.Attribute)) else ()
     )
@@ -142,7 +142,7 @@ def _elements(ctx: Interpreter, container: ir.Expr, frame: Frame) -> Iterator[Ke
 
 
 def _index_chosen(ctx: Interpreter, expr: ir.Item | ir.Call, frame: Frame) -> bool:
-    """Tell whether data chooses the element that is asked for."""
+    """Return whether data selects the element."""
     index = expr.index if isinstance(expr, ir.Item) else expr.arguments[0]
     if not isinstance(index, (ir.Const, ir.Name, ir.Attribute)):
         return True

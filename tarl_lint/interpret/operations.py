@@ -1,4 +1,4 @@
-"""What lower parts of the interpreter ask of higher ones: the calls that go up, wired in `wiring.py`."""
+"""The interface through which lower parts of the interpreter call higher ones; assigned in `wiring.py`."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class Operations(Protocol[Ctx]):
     """The operations, on an interpreter of type `Ctx`."""
 
     def fill(self, ctx: Ctx, obj: Obj, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-        """Store the arguments as a dataclass or named tuple does."""
+        """Store the arguments in fields, as a dataclass or named tuple does."""
         ...
 
     def add_root(self, ctx: Ctx, root: Root, run: Callable[[Root], None], *, news: bool = False) -> None:
-        """Have something run on its own; seen again, only if its arguments are news."""
+        """Queue a root; re-queue a known one only if its arguments changed."""
         ...
 
     def assign(self, ctx: Ctx, target: ir.Expr, value: Value, frame: Frame) -> None:
@@ -37,13 +37,13 @@ class Operations(Protocol[Ctx]):
         ...
 
     def assign_fallback(self, ctx: Ctx, expr: ir.Expr, value: Value, frame: Frame) -> None:
-        """Add data to the variable that holds an object of which nothing is known."""
+        """Add data to the variable that holds an unknown object."""
         ...
 
     def bind_target(
         self, ctx: Ctx, target: ir.Expr, value: Value, frame: Frame, slot: str, source: ir.Expr
     ) -> None:
-        """Let a value pass through the statement into a target, element by element."""
+        """Bind a target to a value through a node of the statement, element by element."""
         ...
 
     def block(self, ctx: Ctx, body: Sequence[ir.Stmt], frame: Frame) -> bool:
@@ -55,13 +55,13 @@ class Operations(Protocol[Ctx]):
         ...
 
     def call_later(self, ctx: Ctx, target: Obj, values: Sequence[Value]) -> None:
-        """Have a function run on its own; of other arguments than these nothing is known."""
+        """Queue a function as root; its other arguments are unknown."""
         ...
 
     def call_library(
         self, ctx: Ctx, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call
     ) -> Value:
-        """Call a function or class of a library; those that go over objects of ours ask these for iterators."""
+        """Call a library function or class; those that iterate over analysed objects call their iterators."""
         ...
 
     def call_method(
@@ -74,67 +74,67 @@ class Operations(Protocol[Ctx]):
         frame: Frame,
         call: ir.Call,
     ) -> Value:
-        """Call a method of an object that is not a class of ours."""
+        """Call a method of an object whose class is not analysed."""
         ...
 
     def call_object(
         self, ctx: Ctx, target: Obj, arguments: Arguments, frame: Frame, call: ir.Call, carriers: Nodes = NONE
     ) -> Value:
-        """Call one object; a method's receiver is what `carriers` handed on, which may have been chosen by data."""
+        """Call one object; `carriers` are the nodes through which a method's receiver arrived."""
         ...
 
     def call_value(
         self, ctx: Ctx, function: Value, arguments: Arguments, frame: Frame, call: ir.Call
     ) -> Value:
-        """Call whatever a value may be; what is not known passes its arguments on."""
+        """Call every object that a value may be; an unknown callee passes its arguments to the result."""
         ...
 
     def deep(self, ctx: Ctx, objects: frozenset[Obj]) -> Nodes:
-        """Return all nodes whose data is inside objects, as long as nothing is stored the same as before."""
+        """Return all nodes whose data is inside objects, cached until something is stored."""
         ...
 
     def default(self, ctx: Ctx, obj: Obj, name: str) -> Value:
-        """Return a field to which nothing was stored; of a package, its modules."""
+        """Return the value of an unset field; for a package, its submodules."""
         ...
 
     def entries(self, ctx: Ctx, obj: Obj, value: Value) -> None:
-        """Take over the entries of a mapping, or of a sequence of pairs."""
+        """Copy the entries of a mapping or a sequence of pairs."""
         ...
 
     def escaped(self, ctx: Ctx, frame: Frame, caller: Frame) -> None:
-        """Let what comes after a call depend on whether the called function raises, when somebody takes that."""
+        """Make statements after a call depend on whether the called function raises."""
         ...
 
     def evaluate(self, ctx: Ctx, expr: ir.Expr, frame: Frame) -> Value:
-        """Return what an expression may be."""
+        """Return the abstract value of an expression."""
         ...
 
     def gate(self, ctx: Ctx, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:
-        """Return the node of a decision which elements a new container gets, none where no data decides."""
+        """Return the node that decides which elements a new container gets; none if no data decides."""
         ...
 
     def generic(self, ctx: Ctx, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-        """Pass the arguments on to the result; write the argument that the catalog says is written."""
+        """Pass all arguments to the result; store into the argument that the catalog lists as written."""
         ...
 
     def holder(self, expr: ir.Name, frame: Frame) -> Obj:
-        """Return the object that holds a variable: an activation, a class being made, a module."""
+        """Return the object that holds a variable: a frame, a class under construction, or a module."""
         ...
 
     def imported(self, ctx: Ctx, module: str, member: str | None, importer: object) -> Value:
-        """Return what an import binds: a module of ours, a name in one, or something of a library."""
+        """Return the value that an import binds: an analysed module, a name in one, or a library name."""
         ...
 
     def may_fail(self, ctx: Ctx, deps: Nodes, raises: str, frame: Frame, *, named: bool = False) -> None:
-        """Let what comes after a statement depend on whether a library can do with what it is given."""
+        """Make later statements depend on whether a library call raises for its arguments."""
         ...
 
     def missing(self, ctx: Ctx, mapping: Obj, name: str) -> Value:
-        """Return what a mapping with a default makes for a key that it does not have."""
+        """Return the value that a mapping with a default creates for a missing key."""
         ...
 
     def named_by_settings(self, ctx: Ctx, target: Obj) -> str:
-        """Return the qualified name of a function or method of ours that the settings speak of, else ""."""
+        """Return the qualified name of an analysed function or method if the settings mention it, else ""."""
         ...
 
     def read_item(self, ctx: Ctx, base: Value, index: Value) -> Value:
@@ -146,15 +146,15 @@ class Operations(Protocol[Ctx]):
         ...
 
     def remainder(self, ctx: Ctx, values: list[Value]) -> Consts:
-        """Return `text % values` where all is known."""
+        """Return the constants of `text % values` if all parts are known."""
         ...
 
     def root_frame(self, ctx: Ctx, root: Root) -> Frame:
-        """Return the frame that stands for ROS itself, calling."""
+        """Return the frame that represents ROS as the caller."""
         ...
 
     def ros_call(self, ctx: Ctx, it: Invocation) -> Value:
-        """Do what the catalog says about a call."""
+        """Apply the catalog's entry for a call."""
         ...
 
     def run(self, ctx: Ctx, frame: Frame) -> Value:
@@ -162,17 +162,17 @@ class Operations(Protocol[Ctx]):
         ...
 
     def send(self, ctx: Ctx, it: Invocation, info: Publisher) -> Value:
-        """Record a sink: everything inside the message reaches it, and whether it is reached at all."""
+        """Record a sink, which depends on everything inside the message and on the conditions of the call."""
         ...
 
     def serve(self, ctx: Ctx, target: Obj, it: Invocation) -> Value:
-        """Call a method of an action server or of a goal's handle."""
+        """Call a method of an action server or goal handle."""
         ...
 
     def unpacked(self, ctx: Ctx, value: Value) -> list[Value] | None:
-        """Return the elements of a sequence whose elements are known one by one."""
+        """Return the elements of a sequence with known elements."""
         ...
 
     def wait(self, ctx: Ctx, frame: Frame) -> None:
-        """Let other roots see what was stored, and store what they may."""
+        """Exchange stored values with other roots, at a wait."""
         ...

@@ -1,4 +1,4 @@
-"""Operators: what data they use, and constants that are folded."""
+"""Transfer functions of operators: dependencies, and constant folding."""
 
 from __future__ import annotations
 
@@ -34,11 +34,17 @@ FOLDED: Mapping[str, Callable[..., object]] = {
     ">=": operator.ge,
 }
 MEMBER = frozenset(["in", "not in"])
-PRESENT = frozenset(["is", "is not", "==", "!="])  # operators that may ask whether a value is None
-CALLING = (ir.Call, ir.Choice, ir.Operation)  # parts in which calls may depend on those before
-OURS = frozenset(["instance", "sequence", "mapping"])  # whose type is in the files, whatever is in them
+PRESENT = frozenset(["is", "is not", "==", "!="])  # operators that can test for None
+CALLING = (
+    ir.Call,
+    ir.Choice,
+    ir.Operation,
+)  # operands that may contain calls, which then depend on earlier operands
+OURS = frozenset(
+    ["instance", "sequence", "mapping"]
+)  # kinds whose type is known from the files, independent of data
 MESSAGES = frozenset(["message", "goal"])
-THERE = frozenset([*MESSAGES, *OURS])  # never None themselves, whatever is in them
+THERE = frozenset([*MESSAGES, *OURS])  # kinds that are never None
 MAX_TEXT = 300
 
 
@@ -68,7 +74,7 @@ def operation(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
 
 
 def tested(ctx: Interpreter, name: str, value: Value, frame: Frame, slot: tuple[ir.Pos, int]) -> Nodes:
-    """Return the nodes whose data an operator uses. Whether a message is there at all is not data of it."""
+    """Return the nodes whose data an operator uses. The arrival of a message is not its data."""
     if name == "shape":
         return sizes.length(ctx, value)
     if name == "type":
@@ -85,7 +91,7 @@ def tested(ctx: Interpreter, name: str, value: Value, frame: Frame, slot: tuple[
 
 
 def membership(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes:
-    """Return the nodes that decide what is in a container: of a mapping its keys, whatever they stand for."""
+    """Return the nodes that decide membership in a container; for a mapping, those of its keys."""
     mappings = frozenset(o for o in value.pts if o.kind == "mapping")
     deps = ctx.use(Value(value.deps, value.pts - mappings))
     for obj in sorted(mappings, key=lambda o: o.number):
@@ -94,7 +100,7 @@ def membership(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> 
 
 
 def chosen(ctx: Interpreter, objects: frozenset[Obj], frame: Frame, slot: Hashable) -> Nodes:
-    """Return a node that what decided to put something into containers decides, and no data of theirs."""
+    """Return a node that depends on the decisions to add elements to containers, but not on their data."""
     node = ctx.node(frame, slot, "condition")
     ctx.graph.choice(sizes.placed(ctx, objects), node)
     return ctx.kept(node)
@@ -103,7 +109,7 @@ def chosen(ctx: Interpreter, objects: frozenset[Obj], frame: Frame, slot: Hashab
 def truth(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Nodes:
     """Return the nodes that decide whether a value counts as true.
 
-    A whole message always does, and so does an object that says nothing else; of a container it is the length.
+    A whole message and an object without `__bool__` and `__len__` are always true; a container depends on its length.
     """
     if not value.pts:
         return value.deps
@@ -125,7 +131,7 @@ def _always_true(ctx: Interpreter, obj: Obj) -> bool:
 
 
 def boolean(ctx: Interpreter, expr: ir.Operation, frame: Frame) -> Value:
-    """Return what `a or b` may be: one of them, decided by the former, on which the rest depends."""
+    """Return the value of `a or b`: one operand, chosen by the former, on which later calls depend."""
     result, deps, guards = BOTTOM, NONE, len(ctx.guards)
     for number, part in enumerate(expr.parts):
         value = ctx.ops.evaluate(ctx, part, frame)
@@ -152,7 +158,7 @@ def guard(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> int
 
 
 def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] | None:
-    """Return the constants that an operator makes of constants."""
+    """Fold an operator over constants."""
     if name == "text":
         return _fold_text(values)
     if name == "%" and len(values) == 2 and values[1].pts:
@@ -167,7 +173,7 @@ def fold(ctx: Interpreter, name: str, values: list[Value]) -> frozenset[object] 
         return None
     try:
         results = frozenset(function(*constants) for constants in itertools.product(*known))
-    except Exception:  # whatever the program itself would fail with
+    except Exception:  # any error that the program itself would raise
         return None
     if len(results) > MAX_CONSTS and not all(isinstance(r, str) for r in results):
         return None
@@ -186,7 +192,7 @@ def _fold_text(values: list[Value]) -> frozenset[object] | None:
 
 
 def _asked(expr: ir.Operation) -> str:
-    """Return an operator's name, of `is` whether it asks for None: a field of a message may be True or a number."""
+    """Return an operator's name; for `is` and `in`, distinguish tests for None."""
     first = expr.parts[0]
     if expr.operator in MEMBER and isinstance(first, ir.Const) and first.value is None:
         return "none in"
@@ -196,10 +202,10 @@ def _asked(expr: ir.Operation) -> str:
 
 
 def _whole(obj: Obj) -> bool:
-    """Tell whether an object is a thing of its own, so that which one it is says nothing of what is in it."""
+    """Return whether an object is not part of another, so that its identity reveals none of its data."""
     return _there(obj) and obj.parent is None
 
 
 def _there(obj: Obj) -> bool:
-    """Tell whether an object is never None itself, whatever is in it: one that a class made."""
+    """Return whether an object is never None, as an instance of a class."""
     return obj.kind in THERE or obj.info is BY_CLASS

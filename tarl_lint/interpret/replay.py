@@ -1,7 +1,7 @@
-"""Calls that need not run again: those whose every read is as it was when they ran last in the same context.
+"""Replay calls: skip a call whose reads are all unchanged since its last run in the same context.
 
-Nodes, objects and entry points that such a call makes are there already, since the context is the same; what is left to
-be done is to store what it stored. `memory/reads.py` holds what is read.
+Its nodes, objects and entry points exist already, since the context is the same; only its stores are repeated.
+`memory/reads.py` records the reads.
 """
 
 from __future__ import annotations
@@ -19,32 +19,32 @@ from tarl_lint.memory.store import Delta, Store
 from tarl_lint.memory.value_flow_graph import MAX_EDGES
 from tarl_lint.memory.values import Key, Value, join_all
 
-READS = 40  # facts compared in the time of a statement
+READS = 40  # compared facts that cost as much as a statement
 
 Mode = tuple[object, ...]
 
 
 @dataclass(slots=True, eq=False)
 class Run:
-    """A function's run in a call context: what went in, what it read, what came out."""
+    """One run of a function in a call context: arguments, reads, results."""
 
     passed: Arguments
     mode: Mode
     reads: Reads
-    found: dict[Key, Value | None]  # what was where it read
+    found: dict[Key, Value | None]  # values that it read
     stored: dict[Key, bool]
     cost: int
     result: Value
     returned: list[Value]
     escapes: list[Escape]
     delta: Delta
-    edges: int  # that it made
-    noted: bool  # all of it was stored before, value by value
-    heard: dict[Key, Value | None]  # what others may store while it waits
+    edges: int  # number of edges that it made
+    noted: bool  # whether `delta` was stored value by value before
+    heard: dict[Key, Value | None]  # values that other roots may store at its waits
 
 
 def run(ctx: Interpreter, frame: Frame, passed: Arguments, execute: Callable[[], Delta]) -> Run:
-    """Return the last run of a frame if it would be the same again, else execute it."""
+    """Return the last run of a frame if a new one would be equal, else execute it."""
     mode = _mode(ctx)
     last = frame.recorded
     same = isinstance(last, Run) and _same(ctx, last, passed, mode)
@@ -74,7 +74,7 @@ def _executed(
     store.reads = ctx.graph.reads = outer
     outer.add(reads)
     returned = [value for _, value in frame.returns]
-    if reads.waits:  # what is read after that may be taken in from others from now on
+    if reads.waits:  # reads after a wait may include values of other roots
         reads.stored |= reads.keys
     found, stored = store.found_by(reads)
     return Run(
@@ -85,7 +85,7 @@ def _executed(
 
 
 def _hears(store: Store, last: Run) -> bool:
-    """Tell whether others may store the same as when a call waited."""
+    """Return whether other roots may store the same values as at the call's last wait."""
     heard = store.heard()
     if last.heard is not heard and last.heard == heard:
         last.heard = heard
@@ -93,7 +93,7 @@ def _hears(store: Store, last: Run) -> bool:
 
 
 def _check(frame: Frame, last: Run, made: Run) -> None:
-    """Compare a run with the one that would have been replayed."""
+    """Compare a run with the one that would have been replayed. Raises AssertionError if they differ."""
     wrong = {
         key for key in last.delta.keys() | made.delta.keys() if last.delta.get(key) != made.delta.get(key)
     }
@@ -104,14 +104,14 @@ def _check(frame: Frame, last: Run, made: Run) -> None:
 
 
 def _wait_again(ctx: Interpreter, reads: Reads) -> None:
-    """Let others see what was stored before a call that waits, as far as that stands when it waits."""
+    """Repeat the wait of a replayed call: publish earlier stores that the call has not overwritten."""
     worklist.show(ctx, reads.own)
     for key, value in reads.admitted.items():
         ctx.store.take(key, value)
 
 
 def _mode(ctx: Interpreter) -> Mode:
-    """Return what all calls depend on."""
+    """Return the global facts on which all calls depend."""
     graph = ctx.graph
     return (
         ctx.store.waited,
@@ -123,7 +123,7 @@ def _mode(ctx: Interpreter) -> Mode:
 
 
 def _same(ctx: Interpreter, last: Run, passed: Arguments, mode: Mode) -> bool:
-    """Tell whether all that a run has read is still the same."""
+    """Return whether all reads of a run are unchanged."""
     if last.mode != mode or last.passed != passed:
         return False
     if ctx.leisure is not None and ctx.spent + last.cost > ctx.leisure:

@@ -1,8 +1,8 @@
-"""Widened call contexts: where an entry point calls one function very often, its further calls share a context.
+"""Widened call contexts: if a root calls one function very often, its further calls share a context.
 
-A context of its own for each call keeps callers apart, but the number of contexts is a product along chains of calls.
-Calls that share a context are analysed like the turns of a loop: arguments and conditions of all of them are joined, so
-that no flow is missed; data of one caller may appear to reach what only another one does.
+Separate contexts distinguish callers, but their number multiplies along call chains. Calls that share a context are
+analysed like iterations of a loop: their arguments and conditions are joined. No flow is missed, but data of one
+caller can appear to reach the effects of another.
 """
 
 from __future__ import annotations
@@ -15,34 +15,34 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.value_flow_graph import MERGED, Place
 from tarl_lint.memory.values import Branches, Value, join
 
-CALLED = -1  # stands for the statement of the decision that a shared context runs at all
+CALLED = -1  # pseudo-statement of the decision that a shared context runs
 CALLBACKS = frozenset(["closure", "bound", "partial", "method"])
 
 
 def may_share(arguments: Arguments) -> bool:
-    """Tell whether a call may share a context: a subscription is told by the call that supplies its callback."""
+    """Return whether a call may share a context; not if it passes a callback, which identifies a subscription."""
     plain, named = arguments
     return not any(obj.kind in CALLBACKS for value in (*plain, *named.values()) for obj in value.pts)
 
 
 def shared_key(own: tuple[Hashable, ...], root: Hashable, arguments: Arguments) -> Hashable:
-    """Return the key of the context that calls share: of one entry point, function, receiver and kind of arguments.
+    """Return the key of a shared context: root, function, receiver and kinds of arguments.
 
-    `own` is the key that the call would have for itself: caller, statement, slot, function, receiver.
+    `own` is the key of the call's own context: caller, statement, slot, function, receiver.
     """
     plain, named = arguments
     return ("shared", root, (len(plain), *sorted(named)), own[3], own[4])
 
 
 def conditions(ctx: Interpreter, frame: Frame) -> Branches:
-    """Return the condition of everything in a shared context: that any of its calls runs."""
+    """Return the condition of a shared context: that one of its calls runs."""
     return frozenset([ctx.branch(frame, (CALLED, "called"))])
 
 
 def enter(ctx: Interpreter, frame: Frame, caller: Frame, passed: Arguments) -> Arguments:
-    """Add a call to a shared context; return the arguments of all calls so far, joined one by one.
+    """Add a call to a shared context; return the joined arguments of all its calls so far.
 
-    The data of each parameter arrives by one node, so that one more call is an edge and no news.
+    Each parameter has one node for its data, so that another call adds an edge but changes no value.
     """
     ((called, _),) = conditions(ctx, frame)
     above = ctx.branches(caller, caller.statement) | frozenset(ctx.guards)
@@ -58,7 +58,7 @@ def enter(ctx: Interpreter, frame: Frame, caller: Frame, passed: Arguments) -> A
 
 
 def _arriving(ctx: Interpreter, frame: Frame, parameter: Hashable, value: Value) -> Value:
-    """Return an argument as it arrives in a shared context."""
+    """Return an argument as passed through its parameter's node."""
     if not value.deps:
         return value
     place = Place(frame, None, MERGED, (0, 0, 0, 0))

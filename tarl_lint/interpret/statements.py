@@ -1,4 +1,4 @@
-"""Statements: what each does to the state."""
+"""Transfer functions of statements."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def _assignment(ctx: Interpreter, s: ir.Assign, frame: Frame) -> bool:
 def bind_target(
     ctx: Interpreter, target: ir.Expr, value: Value, frame: Frame, slot: str, source: ir.Expr
 ) -> None:
-    """Let a value pass through the statement into a target, element by element."""
+    """Bind a target to a value through a node of the statement, element by element."""
     if isinstance(target, ir.SequenceDisplay):
         unpack(ctx, target, value, frame, slot, source)
         return
@@ -86,7 +86,7 @@ def bind_target(
 def unpack(
     ctx: Interpreter, target: ir.SequenceDisplay, value: Value, frame: Frame, slot: str, source: ir.Expr
 ) -> None:
-    """Take a value apart."""
+    """Unpack a value into several targets."""
     starred = next((n for n, t in enumerate(target.items) if isinstance(t, ir.Starred)), None)
     parts = unpacking.parts(ctx, value, len(target.items), starred, frame, slot)
     for number, (item, part) in enumerate(zip(target.items, parts, strict=True)):
@@ -139,7 +139,7 @@ def _assign_item(ctx: Interpreter, target: ir.Item, value: Value, frame: Frame) 
 
 
 def set_property(ctx: Interpreter, base: Value, target: ir.Attribute, value: Value, frame: Frame) -> bool:
-    """Call the setter where the attribute is a property."""
+    """Call the setter if the attribute is a property."""
     done = False
     ctx.store.reads.ask(ctx.setters.__contains__, target.name)
     if target.name not in ctx.setters:
@@ -157,7 +157,7 @@ def set_property(ctx: Interpreter, base: Value, target: ir.Attribute, value: Val
 
 
 def assign_fallback(ctx: Interpreter, expr: ir.Expr, value: Value, frame: Frame) -> None:
-    """Add data to the variable that holds an object of which nothing is known."""
+    """Add data to the variable that holds an unknown object."""
     if ctx.nothing_yet(expressions.evaluate(ctx, expr, frame)):
         return
     while isinstance(expr, (ir.Item, ir.Attribute)):
@@ -191,7 +191,7 @@ def _returned(ctx: Interpreter, s: ir.Return, frame: Frame) -> bool:
 
 
 def base_layer(frame: Frame) -> int:
-    """Return the number of layers below a frame's own."""
+    """Return the number of layers below the frame's."""
     return frame.depth_of_layers
 
 
@@ -202,7 +202,9 @@ def _raised(ctx: Interpreter, s: ir.Raise, frame: Frame) -> bool:
         frame.statement = s
         if any(o.kind == "class" for o in value.pts):
             value = calls.call_value(ctx, value, ([], {}), frame, ir.Call(s.value, (), (), s.pos, -1))
-        whole = Value(ctx.use(value), value.pts)  # what is inside is forgotten with the function's state
+        whole = Value(
+            ctx.use(value), value.pts
+        )  # the objects' contents are discarded with the function's state
         value = ctx.carry(whole, ctx.node(frame, ("raise",), "call"))
     if frame.tries:
         attempt = frame.tries[-1]
@@ -228,7 +230,7 @@ def _delete(ctx: Interpreter, s: ir.Delete, frame: Frame) -> bool:
 
 
 def remove(ctx: Interpreter, base: Value, index: ir.Expr, frame: Frame) -> None:
-    """Take an element out of a mapping, or all elements out of a sequence."""
+    """Remove an element of a mapping, or all elements of a sequence."""
     known, key = expressions.evaluate(ctx, index, frame).constant()
     for obj in base.pts if len(base.pts) == 1 else ():
         if isinstance(index, ir.Slice) and not index.parts:
@@ -238,7 +240,7 @@ def remove(ctx: Interpreter, base: Value, index: ir.Expr, frame: Frame) -> None:
 
 
 def _answer(s: ir.Return) -> ir.Call:
-    """Return the call that ROS makes of what a handler returns."""
+    """Return a call that represents ROS sending a handler's result."""
     return ir.Call(ir.Const(None, s.pos), (), (), s.pos, 0)
 
 

@@ -1,4 +1,4 @@
-"""The parts of the interpreter that others reach only through `ctx.ops`: which function does what."""
+"""Assign the functions that lower parts call through `ctx.ops`."""
 
 from __future__ import annotations
 

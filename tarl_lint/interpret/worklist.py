@@ -1,4 +1,4 @@
-"""What is to run on its own, and what one that waits sees of the others."""
+"""The worklist of roots, and the exchange of values between them at waits."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tarl_lint.memory.values import ABSENT, Key
 
 
 def add_root(ctx: Interpreter, root: Root, run: Callable[[Root], None], *, news: bool = False) -> None:
-    """Have something run on its own; seen again, only if its arguments are news."""
+    """Queue a root; re-queue a known one only if its arguments changed."""
     root = ctx.roots.get(root.key, (root,))[0]
     if root.key not in ctx.roots:
         root.number = len(ctx.roots)
@@ -23,7 +23,7 @@ def add_root(ctx: Interpreter, root: Root, run: Callable[[Root], None], *, news:
 
 
 def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - one signature for all
-    """Let other roots see what was stored, and store what they may."""
+    """Exchange stored values with other roots, at a wait."""
     store, heeds = ctx.store, ctx.store.root.heeds
     reads = store.reads
     reads.wait(len(heeds))
@@ -35,7 +35,7 @@ def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - one signatur
         if news is None:
             continue
         value = store.now[key]
-        former = ctx.ops.default(ctx, *key) if value is ABSENT else value  # a field of a new object
+        former = ctx.ops.default(ctx, *key) if value is ABSENT else value  # field of a new object
         both = store.admit(key, former, news)
         if both is not value:
             store.put(key, both)
@@ -43,7 +43,7 @@ def wait(ctx: Interpreter, frame: Frame) -> None:  # noqa: ARG001 - one signatur
 
 
 def show(ctx: Interpreter, but: Set[Key] = frozenset()) -> list[Key]:
-    """Let other roots see what was stored since this one waited last; return where that was."""
+    """Publish the stores since the last wait to other roots; return their keys."""
     store, root, exchanged = ctx.store, ctx.store.root, ctx.store.exchanged
     store.waited = True
     changed = [
@@ -59,7 +59,7 @@ def show(ctx: Interpreter, but: Set[Key] = frozenset()) -> list[Key]:
 
 
 def root_frame(ctx: Interpreter, root: Root) -> Frame:
-    """Return the frame that stands for ROS itself, calling."""
+    """Return the frame that represents ROS as the caller."""
     key = ("root", root.key)
     frame = ctx.frames.get(key)
     if frame is None:

@@ -1,4 +1,4 @@
-"""Expressions that are put together from literals alone: `math.pi / 6`, `math.radians(20.0)`."""
+"""Expressions composed of literals alone: `math.pi / 6`, `math.radians(20.0)`."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from typing import Final
 
 from tarl_lint.ir import nodes as ir
 
-CONSTANTS: Final = frozenset(["pi", "tau", "e"])  # of math and numpy
+CONSTANTS: Final = frozenset(["pi", "tau", "e"])  # names in math and numpy
 
 
 def computed(expr: ir.Expr) -> ir.Pos | None:
-    """Return the place of a number that is computed from literals; None where an expression is none.
+    """Return the position of a number computed from literals; None for other expressions.
 
-    That is the place of the literal where there is only one, and of the whole expression otherwise.
+    That is the position of the literal if there is only one, else of the whole expression.
     """
     if not isinstance(expr, (ir.Operation, ir.Call)) or not of_literals(expr):
         return None
@@ -21,7 +21,7 @@ def computed(expr: ir.Expr) -> ir.Pos | None:
 
 
 def of_literals(expr: ir.Expr) -> bool:
-    """Tell whether an expression is put together from literals and constants of mathematics, by any functions."""
+    """Return whether an expression is composed of literals and mathematical constants, by any functions."""
     if isinstance(expr, ir.Const):
         return isinstance(expr.value, (int, float, str))
     if isinstance(expr, ir.Attribute):
@@ -36,7 +36,7 @@ def of_literals(expr: ir.Expr) -> bool:
 
 
 def numbers(expr: ir.Expr) -> list[ir.Const]:
-    """Return the numbers that stand in an expression, in the order of the text."""
+    """Return the numbers in an expression, in source order."""
     if isinstance(expr, ir.Const):
         return [expr] if isinstance(expr.value, (int, float)) and not isinstance(expr.value, bool) else []
     if isinstance(expr, ir.Operation):

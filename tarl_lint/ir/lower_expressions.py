@@ -40,7 +40,7 @@ OPERATORS: dict[type[ast.AST], str] = {
     ast.Or: "or",
 }
 
-AS_TEXT = (-1, ord("s"))  # conversions of a formatted value that equal `str`
+AS_TEXT = (-1, ord("s"))  # f-string conversions equivalent to `str`
 
 
 def position(node: ast.expr | ast.stmt | ast.excepthandler) -> ir.Pos:

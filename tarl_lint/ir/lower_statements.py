@@ -13,7 +13,7 @@ from tarl_lint.ir.scopes import Scope, collect, plain
 from tarl_lint.read.source import Module
 
 MADE = (ir.Call, ir.SequenceDisplay, ir.Walrus, ir.Yield)  # subjects of `match` that are evaluated once
-NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # no fields of a dataclass
+NO_FIELDS = ("ClassVar", "KW_ONLY", "dataclasses.KW_ONLY")  # annotations that are not dataclass fields
 
 
 def lower_module(module: Module) -> ir.Program:

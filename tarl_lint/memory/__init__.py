@@ -1,1 +1,1 @@
-"""What the abstract interpretation works on: objects, values, the heap and the value-flow graph."""
+"""The abstract domain: objects, values, the heap and the value-flow graph."""

@@ -1,7 +1,7 @@
-"""What is left of a function's changes when it returns: not its variables, nor objects that nothing leads to any more.
+"""Drop a returning function's variables, and the objects that are no longer reachable.
 
-Abstract garbage collection, after Might and Shivers (ICFP 2006): states stay small, and what no one can reach takes
-part in no join.
+Abstract garbage collection, after Might and Shivers (ICFP 2006): states stay small, and unreachable objects do not
+take part in joins.
 """
 
 from __future__ import annotations
@@ -14,14 +14,13 @@ from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.store import BORN, Delta
 from tarl_lint.memory.values import Obj, Value
 
-TEMPORARY: Final = frozenset(["lib", "sequence", "mapping"])  # objects that a function makes by the way
+TEMPORARY: Final = frozenset(["lib", "sequence", "mapping"])  # kinds of objects that can be temporary
 
 
 def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj], reads: Reads) -> Delta:
-    """Return what others can see of an activation's changes.
+    """Return the changes of a frame that are visible after it returns.
 
-    `returned` are objects that it hands out by other ways than by storing them, `given` those that anything on its
-    own is run with.
+    `returned` are the objects that it returns, yields or raises; `given` are arguments of roots. Both stay reachable.
     """
     local = {owner for owner, name in delta if name == BORN and owner.kind in TEMPORARY}
     if not local:
@@ -29,7 +28,7 @@ def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]
     kept: Delta = {}
     inside: dict[Obj, list[tuple[str, Value]]] = {}
     pending = [*returned, *(local & given)]
-    followed: set[frozenset[Obj]] = set()  # many values point to the same objects
+    followed: set[frozenset[Obj]] = set()  # sets already followed, since many values share one
     for key, value in delta.items():
         owner = key[0]
         if owner is frame and not frame.captured:
@@ -60,7 +59,7 @@ def lasting(delta: Delta, frame: Frame, returned: Iterable[Obj], given: Set[Obj]
 
 
 def together(objects: Iterable[Obj]) -> Set[Obj]:
-    """Return objects and what is part of what makes them, outermost ones."""
+    """Return the outermost objects that contain the given ones, with the objects in their definition."""
     found: set[Obj] = set()
     pending = [*objects]
     while pending:
@@ -72,7 +71,7 @@ def together(objects: Iterable[Obj]) -> Set[Obj]:
 
 
 def _about(info: object) -> Iterator[Obj]:
-    """Yield the objects that are part of what makes another one, such as a bound method's receiver."""
+    """Yield the objects in the definition of another one, such as a bound method's receiver."""
     if isinstance(info, Obj):
         yield info
     elif isinstance(info, Value):

@@ -1,4 +1,4 @@
-"""Activations of functions, and exceptions on their way out of them."""
+"""Frames of function calls, and exceptions that leave them."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from tarl_lint.memory.values import BOTTOM, Branches, Key, Obj, Value
 
 @dataclass(slots=True, eq=False)
 class Attempt:
-    """A `try` whose body is being executed: states in which a handler can be entered, and what it is given."""
+    """A `try` whose body is being executed: the states in which a handler can be entered, and the exceptions."""
 
     depth: int
     states: list[dict[Key, Value]]
     handled: bool
     raised: Value
-    takes: frozenset[str] = frozenset()  # names of the exceptions that are handled; none: any
+    takes: frozenset[str] = frozenset()  # names of the handled exceptions; empty: all
 
 
 @dataclass(slots=True, eq=False)
 class Escape:
-    """An exception that leaves a function: where, what, and the decision of the call that it comes from."""
+    """An exception that leaves a function: place, name, value, and the decision of the call that raised it."""
 
     frame: Frame
     statement: ir.Stmt
@@ -31,7 +31,7 @@ class Escape:
 
 
 class Frame(Obj):
-    """One activation of a function, known by its chain of calls. Its fields are the local variables."""
+    """A frame, identified by its chain of calls. Its fields are the local variables."""
 
     __slots__ = (
         "answer",
@@ -79,12 +79,14 @@ class Frame(Obj):
         self.call: ir.Stmt | None = None
         self.call_pos: ir.Pos | None = None
         self.slot: object = 0
-        self.turn: tuple[int, ...] = ()  # which element a comprehension is at, where these are told apart
-        self.answer: object = None  # who gets what the function returns, when ROS asked for it
+        self.turn: tuple[
+            int, ...
+        ] = ()  # numbers of the current elements of unrolled loops and comprehensions
+        self.answer: object = None  # receiver of the function's result, if ROS is the caller
         self.guards: Branches = frozenset()  # decisions inside the calling expression
         self.outer: Frame | None = None
-        self.owner: Obj | None = None  # the class a method is defined in, for super()
-        self.cls: Obj | None = None  # the class that is being made, when this is a class body
+        self.owner: Obj | None = None  # the class that defines the method, for super()
+        self.cls: Obj | None = None  # the class under construction, if this is a class body
         self.base: Branches = frozenset()
         self.statement: ir.Stmt | None = None
         self.closures: dict[int, Branches] = {}
@@ -93,24 +95,24 @@ class Frame(Obj):
         self.returns: list[tuple[dict[Key, Value], Value]] = []
         self.jumps: list[tuple[int, dict[str, list[dict[Key, Value]]]]] = []
         self.depth_of_layers = 0
-        self.root_waits = False  # runs beside callbacks: every turn of a loop may find news
+        self.root_waits = False  # runs concurrently with callbacks: values can change in every loop iteration
         self.tries: list[Attempt] = []
         self.escapes: list[Escape] = []
         self.result = BOTTOM
-        self.recorded: object = None  # the last run, to be replayed
-        self.shared = False  # by calls from several places, whose arguments are joined
+        self.recorded: object = None  # the last run, for replay
+        self.shared = False  # whether calls from several places share this frame, with joined arguments
         self.passed: tuple[list[Value], dict[str, Value]] | None = (
-            None  # arguments of all calls that share it
+            None  # joined arguments of all calls that share it
         )
         self.yielded = BOTTOM
         self.arguments: list[Value] = []
 
     def release(self) -> None:
-        """Let go of what may lead back here."""
+        """Drop references, to break cycles."""
         super().release()
         self.returns, self.jumps, self.tries, self.escapes, self.arguments = [], [], [], [], []
         self.recorded = self.passed = None
 
     def owner_class(self) -> Obj | None:
-        """Return the class whose body this is, None in functions."""
+        """Return the class whose body this is; None for functions."""
         return self.cls

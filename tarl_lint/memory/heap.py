@@ -1,4 +1,4 @@
-"""Objects: their fields, what is inside them, and new ones."""
+"""Read fields and elements of abstract objects."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from tarl_lint.memory.values import (
     pointer,
 )
 
-ANY = "*"  # the field that stands for all elements
-KEYS = "<keys>"  # of a mapping: what its keys are made of
-LENGTH = "<length>"  # of a container: what its length is made of
-HELD = "<callables>"  # of an object of a library: the callables that it was given
-SENT = "<sent>"  # the field of a port, file or socket that holds what was written to it
+ANY = "*"  # summary field of all elements
+KEYS = "<keys>"  # of a mapping: dependencies of its keys
+LENGTH = "<length>"  # of a container: dependencies of its length
+HELD = "<callables>"  # of a library object: callables among its arguments
+SENT = "<sent>"  # of a port, file or socket: data written to it
 METHODS_OF = {
     "publisher": frozenset(["publish"]),
     "sequence": frozenset(
@@ -40,11 +40,11 @@ DICTIONARIES = frozenset(["dict", "OrderedDict", "defaultdict", "UserDict", "Cou
 HOLLOW = frozenset(
     ["closure", "bound", "class", "module", "ext", "publisher", "partial", "method", "frame", "super", VIEW]
 )
-RENAMING = frozenset(["closure", VIEW])  # objects whose attributes are kept elsewhere or under other names
+RENAMING = frozenset(["closure", VIEW])  # kinds whose attributes are stored elsewhere or under other names
 
 
 def item_field(constant: object) -> str:
-    """Return the field that a constant index or key stands for."""
+    """Return the field name of a constant index or key."""
     return f"[{constant!r}]"
 
 
@@ -52,7 +52,7 @@ def item_field(constant: object) -> str:
 
 
 def content(ctx: Interpreter, obj: Obj) -> Value:
-    """Return what any element or unknown field of an object may be."""
+    """Return the join of all elements and unknown fields of an object."""
     own = ctx.store.get((obj, ANY))
     if own is not None:
         return own
@@ -65,7 +65,7 @@ def content(ctx: Interpreter, obj: Obj) -> Value:
 
 
 def read_field(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return what a field of one object may be."""
+    """Return the value of a field of one object."""
     if obj.kind in RENAMING:
         obj, name = renamed(ctx, obj, name)
     stored = ctx.store.get((obj, name))
@@ -73,23 +73,23 @@ def read_field(ctx: Interpreter, obj: Obj, name: str) -> Value:
         if obj.kind == "class":
             return bind_class(ctx, stored, obj)
         if obj.whole.kind == "message" and not written_here(ctx, obj, name):
-            return join(stored, pointer(obj.sub(name)))  # each message brings its own
+            return join(stored, pointer(obj.sub(name)))  # each message has its own
         return stored
     return ctx.ops.default(ctx, obj, name)
 
 
 def renamed(ctx: Interpreter, obj: Obj, name: str) -> tuple[Obj, str]:
-    """Return where an attribute is kept, and under which name: those of functions beside their defaults."""
+    """Return the object that stores an attribute, and its name there; function attributes are stored with defaults."""
     return (obj, f"<{name}>") if obj.kind == "closure" else userdata.seen_through(ctx, obj, name)
 
 
 def written_here(ctx: Interpreter, obj: Obj, name: str) -> bool:
-    """Tell whether this run has stored to a field."""
+    """Return whether this run has stored to a field."""
     return ctx.store.stored((obj, name))
 
 
 def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return what a field is to which nothing was stored."""
+    """Return the value of an unset field."""
     kind = obj.kind
     if name in METHODS_OF.get(kind, ()):
         return held_method(ctx, obj, name)
@@ -129,14 +129,14 @@ def _inherited(ctx: Interpreter, obj: Obj, cls: Obj, name: str) -> Value:
             return held_method(ctx, obj, name)
         holder = recency.intern(ctx, "lib", ("inherited", obj.key, name), name)
         return pointer(holder)
-    result = content(ctx, obj)  # elements, and attributes whose names are made at run time
+    result = content(ctx, obj)  # elements, and attributes with computed names
     for attributes in replaced_attributes(ctx, obj):
         result = join(result, read_field(ctx, attributes, item_field(name)))
     return result
 
 
 def replaced_attributes(ctx: Interpreter, obj: Obj) -> frozenset[Obj]:
-    """Return the mappings that were stored as an object's `__dict__`, which others may share."""
+    """Return the mappings stored as an object's `__dict__`, which other objects can share."""
     held = ctx.store.get((obj, "__dict__")) if "__dict__" in obj.fields else None
     return held.pts - {obj} if held is not None else frozenset()
 
@@ -165,7 +165,7 @@ def bind_class(ctx: Interpreter, value: Value, cls: Obj) -> Value:
 
 
 def held_method(ctx: Interpreter, owner: Obj, name: str) -> Value:
-    """Return a method of an object that is not of a class of ours, to be called later."""
+    """Return a bound method of a library object."""
     method = recency.intern(ctx, "method", (owner, name), name)
     method.info = (owner, name)
     return pointer(method)
@@ -187,7 +187,7 @@ def _class_field(ctx: Interpreter, cls: Obj, name: str) -> Value:
 
 
 def opened(ctx: Interpreter, module: Obj, name: str) -> Value:
-    """Return a name of a module that came in through `import *`."""
+    """Return the value of a name that a module got through `import *`."""
     result = BOTTOM
     for star in opened_by(ctx, module):
         target = ctx.module_objects.get(star)
@@ -198,7 +198,7 @@ def opened(ctx: Interpreter, module: Obj, name: str) -> Value:
 
 
 def opened_by(ctx: Interpreter, module: Obj) -> list[str]:
-    """Return the modules that a module opens by `import *`, and those that these open in turn."""
+    """Return the modules that a module imports by `import *`, directly or indirectly."""
     found: dict[str, None] = {}
     pending = [module.name]
     while pending:
@@ -211,7 +211,7 @@ def opened_by(ctx: Interpreter, module: Obj) -> list[str]:
 
 
 def read_any(ctx: Interpreter, obj: Obj) -> Value:
-    """Return what any element of an object may be."""
+    """Return the join of all elements of an object."""
     result = content(ctx, obj)
     ctx.store.look(obj)
     ctx.graph.asked += len(obj.fields)
@@ -228,7 +228,7 @@ def read_any(ctx: Interpreter, obj: Obj) -> Value:
 
 
 def read(ctx: Interpreter, base: Value, name: str) -> Value:
-    """Return a field read through a pointer, as it arrives through all who passed the pointer on."""
+    """Return a field read through a pointer, passed through the pointer's carriers."""
     if len(base.pts) == 1:
         (obj,) = base.pts
         return arrive(ctx, read_field(ctx, obj, name), base.deps)
@@ -240,7 +240,7 @@ def read(ctx: Interpreter, base: Value, name: str) -> Value:
 
 
 def elements(ctx: Interpreter, value: Value) -> Value:
-    """Return what iterating over a value gives."""
+    """Return the join of the values that iteration over a value yields."""
     if not value.pts:
         return Value(value.deps)
     result = Value(value.deps, consts=frozenset())
@@ -256,13 +256,13 @@ def elements(ctx: Interpreter, value: Value) -> Value:
 
 
 def keys(ctx: Interpreter, mapping: Obj, carriers: Nodes) -> Value:
-    """Return what the keys of a mapping may be: data only where they were made of data."""
+    """Return the keys of a mapping; they depend on data only if computed from data."""
     stored = ctx.store.get((mapping, KEYS))
     return UNKNOWN if stored is None else join(arrive(ctx, stored, carriers), UNKNOWN)
 
 
 def arrive(ctx: Interpreter, value: Value, carriers: Nodes) -> Value:
-    """Return a field's value with the carriers of the pointer it was read through."""
+    """Return a field's value, passed through the carriers of the pointer."""
     if not carriers:
         return value
     deps = ctx.graph.through(value.deps, carriers) | carriers
@@ -270,7 +270,7 @@ def arrive(ctx: Interpreter, value: Value, carriers: Nodes) -> Value:
 
 
 def attribute_of_item(obj: Obj, key: object) -> str:
-    """Return the field of `vars(obj)[key]`: of what is no dictionary itself an attribute."""
+    """Return the field that `vars(obj)[key]` accesses: an attribute, unless the object is a dictionary."""
     if obj.kind == "instance" and isinstance(key, str) and isinstance(obj.info, Obj):
         infos = [c.info for c in lineage(obj.info)]
         external = {e for i in infos if isinstance(i, ClassInfo) for e in i.external}
@@ -280,7 +280,7 @@ def attribute_of_item(obj: Obj, key: object) -> str:
 
 
 def _binding(obj: Obj) -> str:
-    """Return how what is found in a class is bound: not at all, to the class, else to the instance."""
+    """Return how a class attribute is bound: not at all, to the class, or to the instance."""
     if obj.kind != "closure":
         return "staticmethod"
     function = obj.info[0] if isinstance(obj.info, tuple) else None

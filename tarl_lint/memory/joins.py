@@ -1,4 +1,4 @@
-"""States that come together: after branches, loops, alternative callees."""
+"""Join states after branches, loops and alternative callees."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from tarl_lint.memory.values import (
     join,
 )
 
-JOINS = 40  # values joined in the time of a statement
+JOINS = 40  # joined values that cost as much as a statement
 
 
 def merge(ctx: Interpreter, deltas: Sequence[Delta]) -> None:
-    """Let the state be what it is after any of several continuations of it."""
+    """Set the state to the join of several continuations of the current one."""
     if len(deltas) == 1:
         ctx.store.absorb(deltas[0])
         return
@@ -29,7 +29,7 @@ def merge(ctx: Interpreter, deltas: Sequence[Delta]) -> None:
 
 
 def joined(ctx: Interpreter, deltas: Sequence[Delta]) -> Delta:
-    """Return the join of continuations of the present state."""
+    """Return the join of continuations of the current state."""
     if len(deltas) == 1:
         return deltas[0]
     keys: dict[tuple[Obj, str], None] = {}
@@ -57,7 +57,7 @@ def joined(ctx: Interpreter, deltas: Sequence[Delta]) -> Delta:
 
 
 def _unset(ctx: Interpreter, key: tuple[Obj, str], value: Value) -> bool:
-    """Tell whether a value is a field of a new message, to which nothing was stored yet."""
+    """Return whether a value is an unset field of a new message."""
     owner = key[0]
     if owner.kind == "lib":
         ctx.look(value.pts)
@@ -71,7 +71,7 @@ def _unset(ctx: Interpreter, key: tuple[Obj, str], value: Value) -> bool:
 
 
 def _former(ctx: Interpreter, key: tuple[Obj, str]) -> Value | None:
-    """Return what a continuation that does not store leaves."""
+    """Return the value of a key in a continuation that does not store to it."""
     value = ctx.store.get(key)
     if value is not None:
         return value
@@ -84,6 +84,6 @@ def _former(ctx: Interpreter, key: tuple[Obj, str]) -> Value | None:
 
 
 def _zero(value: Value) -> bool:
-    """Tell whether a value is what a field of a message is at first: zero, false, an empty text."""
+    """Return whether a value equals a message field's default: zero, false or an empty string."""
     known, constant = value.constant()
     return known and constant is not None and not constant

@@ -1,4 +1,4 @@
-"""What is inside objects, at any depth."""
+"""Data reachable inside objects, at any depth."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tarl_lint.memory.values import NONE, ClassInfo, Nodes, Obj, Value
 
 
 def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
-    """Return all nodes whose data is inside objects, as long as nothing is stored the same as before."""
+    """Return all nodes whose data is inside objects; the result is cached until something is stored."""
     if len(objects) == 1:
         (obj,) = objects
         if not obj.laden:
@@ -40,7 +40,7 @@ def deep(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
 
 
 def _still(ctx: Interpreter, last: Inside) -> bool:
-    """Tell whether what was inside objects is inside them still."""
+    """Return whether a cached result is still valid."""
     store, graph = ctx.store, ctx.graph
     if last.tick == store.tick and last.grown == graph.grown:
         return True
@@ -51,10 +51,10 @@ def _still(ctx: Interpreter, last: Inside) -> bool:
 
 
 def _deep(ctx: Interpreter, obj: Obj, known: dict[Obj, Nodes], depth: int, *, counted: bool = False) -> Nodes:
-    """Return what is inside one object. What holds itself is left out at the second time.
+    """Return the nodes inside one object; cycles are entered once.
 
-    `counted`: what may be anywhere in the object that it is part of was found there. Who comes to the part by
-    another way asks again.
+    With `counted`, the summary field of the enclosing object has been added already, so the result is incomplete for
+    the part alone and is not cached.
     """
     if obj.kind in HOLLOW or depth > MAX_NESTING:
         return NONE
@@ -90,9 +90,9 @@ def _deep(ctx: Interpreter, obj: Obj, known: dict[Obj, Nodes], depth: int, *, co
 
 
 def _parts(ctx: Interpreter, obj: Obj, overwritten: bool) -> list[Obj]:
-    """Return the parts of an object that may hold data of their own.
+    """Return the parts of an object that can hold data of their own.
 
-    An empty one has none beside that of the whole, and a field that appears in it is news for who looked at the whole.
+    An empty part holds only data of the whole; a field added to it later notifies the readers of the whole.
     """
     ctx.look(obj.subs.values())
     return [
@@ -105,7 +105,7 @@ def _parts(ctx: Interpreter, obj: Obj, overwritten: bool) -> list[Obj]:
 
 
 def defined(ctx: Interpreter, obj: Obj) -> str:
-    """Return the name of a message's definition where that is known, of a message inside one too."""
+    """Return the name of a message's definition, also for a nested message; empty if unknown."""
     if obj.parent is None:
         return obj.defined
     outer = FIELDS.get(defined(ctx, obj.parent), {})
@@ -113,7 +113,7 @@ def defined(ctx: Interpreter, obj: Obj) -> str:
 
 
 def replaced(ctx: Interpreter, obj: Obj, kind: str) -> bool:
-    """Tell whether every field of a message, or of a copy of one, was overwritten in this run."""
+    """Return whether this run has overwritten every field of a message or of its copy."""
     fields = FIELDS.get(kind)
     if fields is not None:
         ctx.store.reads.look(obj)
@@ -125,7 +125,7 @@ def replaced(ctx: Interpreter, obj: Obj, kind: str) -> bool:
 
 
 def _behind(ctx: Interpreter, value: Value, known: dict[Obj, Nodes], depth: int) -> Nodes:
-    """Return what is inside the objects that a field holds, as it arrives through the field."""
+    """Return the nodes inside the objects of a field, passed through the field's carriers."""
     inner = NONE
     for target in in_order(value.pts):
         if target.laden:
@@ -136,7 +136,7 @@ def _behind(ctx: Interpreter, value: Value, known: dict[Obj, Nodes], depth: int)
 
 
 def _node_like(ctx: Interpreter, obj: Obj) -> bool:
-    """Tell whether an instance is a program rather than data: passing it on passes no data."""
+    """Return whether an instance is a program rather than data: passing it on passes no data."""
     info = obj.info.info if isinstance(obj.info, Obj) else None
     if not isinstance(info, ClassInfo):
         return False
@@ -149,5 +149,5 @@ def _is_self(ctx: Interpreter, frame: Frame, obj: Obj) -> bool:
 
 
 def in_order(objects: frozenset[Obj]) -> list[Obj]:
-    """Return objects in the order in which they were made: that of a set depends on where they are in memory."""
+    """Return objects in order of creation; the order of a set depends on memory addresses."""
     return sorted(objects, key=lambda obj: obj.number) if len(objects) > 1 else list(objects)

@@ -1,4 +1,4 @@
-"""What a call has read of the state, so that it need not run again as long as all of that is the same."""
+"""The reads of a call: while all of them are unchanged, the call can be replayed."""
 
 from __future__ import annotations
 
@@ -8,55 +8,61 @@ from typing import Any
 
 from tarl_lint.memory.values import Key, Obj, Value, join
 
-Fact = tuple[Callable[[Any], object], object]  # a question and what it is asked of
+Fact = tuple[Callable[[Any], object], object]  # (function, its argument)
 
 
 @dataclass(slots=True, eq=False)
 class Reads:
-    """Reads of one running call, those of the calls that it makes included.
+    """The reads of a running call, including those of nested calls.
 
-    Of the heap it holds only what was there when the call began: what a call reads after it has stored there
-    itself is its own. Everything else only grows; it is noted as it was at the first look.
+    Heap reads count only if the call has not stored to the key before. All other facts grow monotonically and are
+    recorded as at the first read.
     """
 
-    keys: set[Key] = field(default_factory=set)  # read by value
-    stored: set[Key] = field(default_factory=set)  # asked whether the run has stored there
-    written: set[Key] = field(default_factory=set)  # stored by the call on the path that is being followed
-    objects: dict[Obj, int] = field(default_factory=dict)  # which fields, parts and data one has: its stamp
-    unreached: set[int] = field(default_factory=set)  # nodes that no source led to
-    held: dict[int, int] = field(default_factory=dict)  # carrier → how much it has passed on inside objects
+    keys: set[Key] = field(default_factory=set)  # keys whose value was read
+    stored: set[Key] = field(
+        default_factory=set
+    )  # keys for which it was asked whether the run has stored there
+    written: set[Key] = field(default_factory=set)  # keys stored by the call on the current path
+    objects: dict[Obj, int] = field(
+        default_factory=dict
+    )  # object → stamp, the version of its fields, parts and data
+    unreached: set[int] = field(default_factory=set)  # nodes that no source reached
+    held: dict[int, int] = field(
+        default_factory=dict
+    )  # carrier → number of nodes that it has passed on inside objects
     facts: dict[Fact, object] = field(default_factory=dict)
-    whole: bool = True  # nothing was left out because too much was spent
+    whole: bool = True  # False if a budget limit cut the call short
     waits: bool = False
-    heeds: int = 0  # how many places the root heeded at the first wait
-    own: frozenset[Key] = frozenset()  # where the call had stored by then
-    admitted: dict[Key, Value] = field(default_factory=dict)  # what came from others while it waited
-    left: int = 0  # how often a path was left, so that what was written on it was not any more
-    taken: dict[Reads, int] = field(default_factory=dict)  # reads that were taken over → `left` at that time
+    heeds: int = 0  # size of the root's `heeds` at the first wait
+    own: frozenset[Key] = frozenset()  # keys that the call had stored by the first wait
+    admitted: dict[Key, Value] = field(default_factory=dict)  # values from other roots, taken in at waits
+    left: int = 0  # number of paths left so far, whose stores no longer count as `written`
+    taken: dict[Reads, int] = field(default_factory=dict)  # merged reads → `left` at that time
 
     def look(self, obj: Obj) -> None:
-        """Note that it matters which fields and parts an object has, and whether data is in it."""
+        """Record a dependency on an object's stamp: its fields, parts and data."""
         if obj not in self.objects:
             self.objects[obj] = obj.stamp
 
     def ask(self, question: Callable[[Any], object], of: object) -> None:
-        """Note that the present answer to a question matters."""
+        """Record a dependency on the current result of `question(of)`."""
         if (question, of) not in self.facts:
             self.facts[question, of] = question(of)
 
     def wait(self, heeds: int, own: Set[Key] = frozenset()) -> None:
-        """Note that others may see what is stored by now, and store themselves."""
+        """Record a wait, at which other roots can see the stores so far, and store."""
         if not self.waits:
             self.waits, self.heeds = True, heeds
             self.own = frozenset(self.written | own)
 
     def admit(self, key: Key, value: Value) -> None:
-        """Note what others may have stored."""
+        """Record a value that other roots may have stored."""
         known = self.admitted.get(key)
         self.admitted[key] = value if known is None else join(known, value)
 
     def add(self, inner: Reads) -> None:
-        """Take over what a call has read that was made by this one."""
+        """Merge the reads of a nested call."""
         if self.taken.get(inner) == self.left:
             return
         self.taken[inner] = self.left

@@ -1,4 +1,7 @@
-"""Objects: one per key, the newest of an allocation site apart from the older ones."""
+"""Create abstract objects, with the newest object of an allocation site separate from the older ones.
+
+Recency abstraction, after Balakrishnan and Reps (SAS 2006).
+"""
 
 from __future__ import annotations
 
@@ -10,11 +13,11 @@ from tarl_lint.memory.store import BORN
 from tarl_lint.memory.values import ABSENT, BOTTOM, Obj, Value, join
 
 MAX_NESTING = 7
-NEW = -1  # the stamp of an object that was not there yet
+NEW = -1  # stamp of an object that did not exist yet
 
 
 def intern(ctx: Interpreter, kind: str, key: Hashable, name: str = "") -> Obj:
-    """Return the object with this key, made at the first time."""
+    """Return the object with this key; create it at first use."""
     found = ctx.objects.get((kind, key))
     if found is None:
         found = ctx.objects[kind, key] = Obj(kind, key, name)
@@ -22,7 +25,7 @@ def intern(ctx: Interpreter, kind: str, key: Hashable, name: str = "") -> Obj:
 
 
 def allocate(ctx: Interpreter, kind: str, frame: Frame, slot: Hashable) -> Obj:
-    """Return the newest object of an allocation site; what it stood for until now becomes the older ones."""
+    """Return the newest object of an allocation site; merge the former newest into the older ones."""
     statement = frame.statement
     key = (frame.id, statement.id if statement is not None else -1, slot, *frame.turn)
     obj = ctx.objects.get((kind, key))
@@ -39,7 +42,7 @@ def allocate(ctx: Interpreter, kind: str, frame: Frame, slot: Hashable) -> Obj:
 
 
 def _age(ctx: Interpreter, obj: Obj) -> None:
-    """Where the former object is still held, let it be one of the older ones."""
+    """Replace pointers to the former newest object by pointers to the summary of older ones."""
     ctx.store.reads.ask(held_at, obj)
     holders = [k for k in obj.holders if k[0] is not obj and _holds(ctx, k, obj)]
     if not holders:
@@ -50,7 +53,7 @@ def _age(ctx: Interpreter, obj: Obj) -> None:
         older.many = True
     copy_fields(ctx, obj, older)
     ctx.graph.asked += len(obj.holders)
-    without: dict[frozenset[Obj], frozenset[Obj]] = {}  # many hold the same objects
+    without: dict[frozenset[Obj], frozenset[Obj]] = {}  # cache, since many values share a set
     for key in holders:
         value = ctx.store.get(key)
         if value is not None:
@@ -61,7 +64,7 @@ def _age(ctx: Interpreter, obj: Obj) -> None:
 
 
 def held_at(obj: Obj) -> int:
-    """Return at how many places pointers to an object were ever stored."""
+    """Return the number of keys to which a pointer to an object was ever stored."""
     return len(obj.holders)
 
 
@@ -71,7 +74,7 @@ def _holds(ctx: Interpreter, key: tuple[Obj, str], obj: Obj) -> bool:
 
 
 def copy_fields(ctx: Interpreter, obj: Obj, older: Obj, depth: int = 0) -> None:
-    """Copy the fields of an object, and of its parts, to what stands for older ones."""
+    """Join the fields of an object and its parts into the summary of older ones."""
     ctx.store.reads.look(obj)
     for name in list(obj.fields):
         value = ctx.store.get((obj, name))
@@ -84,7 +87,7 @@ def copy_fields(ctx: Interpreter, obj: Obj, older: Obj, depth: int = 0) -> None:
 
 
 def clear_fields(ctx: Interpreter, obj: Obj, depth: int = 0) -> None:
-    """Let an object and its parts be as if nothing had been stored."""
+    """Reset all fields of an object and its parts to unset."""
     ctx.store.reads.look(obj)
     for name in list(obj.fields):
         ctx.store.put((obj, name), ABSENT)

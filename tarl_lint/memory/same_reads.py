@@ -1,4 +1,4 @@
-"""Whether the state is, in all that was read of it, as it was."""
+"""Compare the state with recorded reads."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tarl_lint.memory.values import ABSENT, Key, Value
 def unchanged(
     reads: Reads, found: Mapping[Key, Value | None], stored: Mapping[Key, bool], store: Store, graph: Graph
 ) -> bool:
-    """Tell whether all that was read is the same still: the values `found`, and whether the run had `stored`."""
+    """Return whether all recorded reads are unchanged, including the values `found` and the flags `stored`."""
     if not reads.unreached.isdisjoint(graph.live):
         return False
     current, waited = store.now, store.waited

@@ -1,4 +1,4 @@
-"""Memory: the state of one run in layers, and what all runs have stored."""
+"""Memory: the state of one root's run in layers, and the stores of all runs."""
 
 from __future__ import annotations
 
@@ -12,26 +12,29 @@ from tarl_lint.memory.values import ABSENT, Key, Obj, Value, join
 
 Delta = dict[Key, Value]
 
-ADDING = frozenset(["*", "<keys>", "<length>"])  # fields where everything adds up
-BORN = "<born>"  # the field that every object has which exists
+ADDING = frozenset(["*", "<keys>", "<length>"])  # fields with weak updates only
+BORN = "<born>"  # pseudo-field that marks an existing object
 
 
 @dataclass(slots=True, eq=False)
 class Root:
-    """What ROS, the interpreter or a thread runs on its own. `once`: it does not run beside an earlier self."""
+    """A unit of the worklist: a module, callback, timer, thread or entry point.
+
+    With `once`, it never runs concurrently with itself.
+    """
 
     key: Hashable
     kind: str
     name: str = ""
     once: bool = False
-    function: ir.Function | None = None  # what it runs, where that is known
-    maker: Root | None = None  # in whose run it was added
-    program: str = ""  # the file that it is of, whose budget it spends
-    number: int = 0  # in the order in which they were added
-    heeds: set[Key] = field(default_factory=set)  # what it stores itself and reads after it has waited
+    function: ir.Function | None = None  # its function, if known
+    maker: Root | None = None  # the root that added it
+    program: str = ""  # the file whose budget it uses
+    number: int = 0  # in order of addition
+    heeds: set[Key] = field(default_factory=set)  # keys that it stores itself and reads after a wait
 
     def generations(self) -> int:
-        """Count the roots before that run the same function, each of which led to the next."""
+        """Return the number of ancestors, by `maker`, with the same function."""
         count, maker = 0, self.maker
         while maker is not None:
             count += maker.function is self.function
@@ -44,18 +47,18 @@ NOBODY: set[Root] = set()
 
 @dataclass(slots=True)
 class Shared:
-    """What each root leaves behind at its end, and what others can see of it while it waits."""
+    """The stores of all roots: at their ends, and at their waits (`pauses`)."""
 
     ends: dict[Key, dict[Root, Value]] = field(default_factory=dict)
     pauses: dict[Key, dict[Root, Value]] = field(default_factory=dict)
     readers: dict[Key, set[Root]] = field(default_factory=dict)
     watchers: dict[Obj, set[Root]] = field(default_factory=dict)
-    doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # roots that found no data inside an object
+    doubters: dict[Obj, set[Root]] = field(default_factory=dict)  # object → roots that found no data inside
     dirty: set[Root] = field(default_factory=set)
-    edition: int = 0  # how often a class, a `from … import *` or a whole `__dict__` was news
+    edition: int = 0  # number of changes of a class, a `from … import *` or a `__dict__`
 
     def entry(self, key: Key, root: Root) -> Value | None:
-        """Return what a root finds when it starts: the join of all that any other can have stored."""
+        """Return the initial value of a key for a root: the join of the stores of all other roots."""
         self.readers.setdefault(key, set()).add(root)
         result: Value | None = None
         for owner, value in self.ends.get(key, {}).items():
@@ -67,7 +70,7 @@ class Shared:
         return result
 
     def others(self, key: Key, root: Root) -> Value | None:
-        """Return what other roots may store while this one waits."""
+        """Return the join of the stores that other roots may make while this one waits."""
         result: Value | None = None
         for table in (self.ends, self.pauses):
             for owner, value in table.get(key, {}).items():
@@ -77,11 +80,11 @@ class Shared:
         return result
 
     def look(self, obj: Obj, root: Root) -> None:
-        """Remember that a root has seen which fields an object has."""
+        """Register a root as reader of the set of an object's fields."""
         self.watchers.setdefault(obj, set()).add(root)
 
     def load(self, obj: Obj, root: Root) -> None:
-        """Note that data was stored in an object, so that it is inside all that hold it, too."""
+        """Mark an object, and all that contain it, as holding data."""
         pending = [obj]
         while pending:
             current = pending.pop()
@@ -96,24 +99,24 @@ class Shared:
             current.inside.clear()
 
     def _appeared(self, obj: Obj, root: Root) -> None:
-        """Let those run again who have seen an object, or what it is inside, without this field."""
+        """Mark the roots dirty that have read the fields of an object, or of an enclosing one, without this field."""
         inside: Obj | None = obj
         while inside is not None:
             self.dirty |= self._others(self.watchers.get(inside), root)
             inside = inside.parent
 
     def _others(self, roots: set[Root] | None, root: Root) -> set[Root]:
-        """Return those for whom it is news what a root did: itself only if it may run beside itself."""
+        """Return the readers to notify of a root's change; itself only if it can run concurrently with itself."""
         if not roots:
             return NOBODY
         return roots - {root} if root.once else roots
 
     def leave(self, table: dict[Key, dict[Root, Value]], root: Root, key: Key, value: Value) -> None:
-        """Record a value; roots that read it have to run again when it is news."""
+        """Store a root's value in a table; mark its readers dirty if it changed."""
         owners = table.setdefault(key, {})
         before = owners.get(root)
         after = value if before is None else join(before, value)
-        if key[1] == BORN:  # who can see the object has seen what holds it
+        if key[1] == BORN:  # readers of the object have read the field that holds it
             owners[root] = after
             return
         if not owners:
@@ -124,25 +127,25 @@ class Shared:
 
 
 def private(key: Key) -> bool:
-    """Tell whether a variable dies with its function."""
+    """Return whether a variable is visible only inside its function call."""
     owner = key[0]
     return isinstance(owner, Frame) and not owner.captured
 
 
 @dataclass(slots=True, eq=False)
 class Inside:
-    """The data inside objects when somebody looked last, and what was read to find it."""
+    """A cached result of `deep`: the data inside objects, and the reads it depends on."""
 
     nodes: frozenset[int]
     reads: Reads
     found: dict[Key, Value | None]
     stored: dict[Key, bool]
     tick: int
-    grown: int  # how often something new was inside an object that was passed on
+    grown: int  # value of `Graph.grown` at that time
 
 
 def as_it_is(key: Key, value: Value) -> Value:  # noqa: ARG001 - as other ways to gather
-    """Return a value unchanged."""
+    """Return the value unchanged."""
     return value
 
 
@@ -150,8 +153,8 @@ def as_it_is(key: Key, value: Value) -> Value:  # noqa: ARG001 - as other ways t
 class Store:
     """The state of one root's run: writes go to the top layer, reads fall through to the shared memory.
 
-    `now` is what all layers together say, so that reading takes one step however many there are; `hidden` holds
-    for each layer what its keys were before, None where nothing was stored.
+    `now` is the union of all layers, so that a read takes one look-up; `hidden` holds for each layer the former
+    values of its keys, None if unset.
     """
 
     shared: Shared
@@ -159,31 +162,31 @@ class Store:
     layers: list[Delta] = field(default_factory=lambda: [{}])
     seen: set[Obj] = field(default_factory=set)
     found: dict[Key, Value | None] = field(default_factory=dict)
-    exchanged: dict[Key, Value] = field(default_factory=dict)  # at the last wait
-    foreign: dict[Key, Value] = field(default_factory=dict)  # what others stored while this root waited
+    exchanged: dict[Key, Value] = field(default_factory=dict)  # values at the last wait
+    foreign: dict[Key, Value] = field(
+        default_factory=dict
+    )  # values that other roots stored while this one waited
     now: Delta = field(default_factory=dict)
     hidden: list[dict[Key, Value | None]] = field(default_factory=lambda: [{}])
-    insides: dict[object, Inside] = field(
-        default_factory=dict
-    )  # data inside objects when somebody looked last
-    tick: int = 0  # how often the state outside of activations may have changed
+    insides: dict[object, Inside] = field(default_factory=dict)  # cached results of `deep`
+    tick: int = 0  # counter of changes of the state outside of frames
     elsewhere: dict[Key, Value | None] = field(
         default_factory=dict
-    )  # what other roots may store while this one waits
+    )  # values that other roots may store while this one waits
     hearing: dict[Key, Value | None] = field(default_factory=dict)
-    waited: bool = False  # so that others may have stored meanwhile
-    reads: Reads = field(default_factory=Reads)  # of the call that is running
-    gather: Callable[[Key, Value], Value] = as_it_is  # what becomes of a value where everything adds up
+    waited: bool = False  # whether other roots may have stored since the start
+    reads: Reads = field(default_factory=Reads)  # reads of the running call
+    gather: Callable[[Key, Value], Value] = as_it_is  # maps a value stored to a field with weak updates
 
     def get(self, key: Key) -> Value | None:
-        """Return the value now, None where nothing was stored."""
+        """Return the current value; None if unset. Records the read."""
         reads = self.reads
         if key not in reads.written:
             reads.keys.add(key)
         return self.peek(key)
 
     def peek(self, key: Key) -> Value | None:
-        """Return the value now without noting that the running call reads it."""
+        """Return the current value without recording the read for the running call."""
         value = self.now.get(key)
         if value is not None:
             if self.waited and key not in self.root.heeds and not private(key):
@@ -196,7 +199,7 @@ class Store:
         return value
 
     def _heed(self, key: Key, value: Value) -> None:
-        """From now on, take in what others store here meanwhile; run again if they have."""
+        """Take in stores of other roots at this key from now on; re-run this root if there are any."""
         self.root.heeds.add(key)
         self.exchanged.pop(key, None)
         news = self.others(key)
@@ -204,13 +207,13 @@ class Store:
             self.shared.dirty.add(self.root)
 
     def others(self, key: Key) -> Value | None:
-        """Return what other roots may store here, which does not change while this one runs."""
+        """Return the value that other roots may store here; constant during this run."""
         if key not in self.elsewhere:
             self.elsewhere[key] = self.shared.others(key, self.root)
         return self.elsewhere[key]
 
     def found_by(self, reads: Reads) -> tuple[dict[Key, Value | None], dict[Key, bool]]:
-        """Return what is where something was read, and whether this run stored there where that was asked."""
+        """Return the current values of the keys read, and whether this run stored to the keys asked about."""
         now, found = self.now, self.found
         values: dict[Key, Value | None] = {}
         for key in reads.keys:
@@ -221,13 +224,13 @@ class Store:
         return values, {key: key in now for key in reads.stored}
 
     def stored(self, key: Key) -> bool:
-        """Tell whether this run has stored here."""
+        """Return whether this run has stored here. Records the read."""
         if key not in self.reads.written:
             self.reads.stored.add(key)
         return key in self.now
 
     def put(self, key: Key, value: Value) -> None:
-        """Store for certain."""
+        """Store a value (strong update)."""
         if key[1] in ADDING and len(value.deps) > 1:
             value = self.gather(key, value)
         layer = self.layers[-1]
@@ -250,7 +253,7 @@ class Store:
             self.shared.load(owner, self.root)
 
     def absorb(self, delta: Delta) -> None:
-        """Store for certain what was stored before in a layer that is closed."""
+        """Store the changes of a closed layer, whose values were all stored before."""
         layer, hidden, now = self.layers[-1], self.hidden[-1], self.now
         for key, value in delta.items():
             if key not in layer:
@@ -260,7 +263,7 @@ class Store:
         self.tick += 1
 
     def _note(self, key: Key, held: frozenset[Obj]) -> bool:
-        """Have objects know where they are held; tell whether data is in one of them."""
+        """Record the holder of objects; return whether one of them holds data."""
         owner, laden = key[0], False
         for obj in held:
             if obj.kind == "lib":
@@ -272,12 +275,12 @@ class Store:
         return laden
 
     def doubt(self, obj: Obj) -> None:
-        """Remember that this run found no data inside an object."""
+        """Record that this run found no data inside an object."""
         self.reads.look(obj)
         self.shared.doubters.setdefault(obj, set()).add(self.root)
 
     def look(self, obj: Obj) -> None:
-        """Remember that this run depends on which fields an object has."""
+        """Record that this run depends on the set of an object's fields."""
         self.reads.look(obj)
         if obj not in self.seen:
             self.seen.add(obj)
@@ -309,19 +312,19 @@ class Store:
         return self.layers.pop()
 
     def cut(self, depth: int) -> None:
-        """Close all layers above a number of them."""
+        """Close all layers above the first `depth`."""
         while len(self.layers) > depth:
             self.pop()
 
     def since(self, depth: int) -> Delta:
-        """Return all that was stored above a number of layers."""
+        """Return the stores in all layers above the first `depth`."""
         merged: Delta = dict(self.layers[depth])
         for layer in self.layers[depth + 1 :]:
             merged.update(layer)
         return merged
 
     def admit(self, key: Key, mine: Value, news: Value) -> Value:
-        """Return a value joined with what others may have stored, and remember which part is theirs."""
+        """Return a value joined with that of other roots, and record their part."""
         both = join(mine, news)
         if both is not mine:
             theirs = Value(both.deps - mine.deps, both.pts - mine.pts, frozenset())
@@ -329,12 +332,12 @@ class Store:
         return both
 
     def take(self, key: Key, theirs: Value) -> None:
-        """Remember which part of what is stored came from others."""
+        """Record the part of a stored value that came from other roots."""
         self.foreign[key] = join(self.foreign.get(key, theirs), theirs)
         self.reads.admit(key, theirs)
 
     def mine(self, key: Key, value: Value) -> Value | None:
-        """Return the part of a value that this root stored itself, None when there is none."""
+        """Return the part of a value that this root stored itself; None if there is none."""
         known = [v for v in (self.foreign.get(key), self.found.get(key)) if v is not None]
         if not known:
             return value
@@ -344,11 +347,11 @@ class Store:
         return part if news or not (value.deps or value.pts) else None
 
     def heard(self) -> dict[Key, Value | None]:
-        """Return what others may store where this root takes it in, which does not change while it runs."""
+        """Return the values that other roots may store at the keys that this root heeds; constant during its run."""
         if len(self.hearing) != len(self.root.heeds):
             self.hearing = {key: self.others(key) for key in self.root.heeds}
         return self.hearing
 
     def own(self) -> list[Key]:
-        """Return the keys written in this run which others can see."""
+        """Return the keys written in this run that are visible to other roots."""
         return [key for key in self.now if not private(key)]

@@ -1,4 +1,4 @@
-"""Stores into fields and elements."""
+"""Store into fields and elements: strong and weak updates."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from tarl_lint.memory import heap
 from tarl_lint.memory.heap import ANY, HOLLOW, KEYS, RENAMING, item_field
 from tarl_lint.memory.values import Obj, Value, join
 
-MAX_KEYS = 8  # of a mapping, one of which a store may be for
+MAX_KEYS = 8  # candidate keys of a mapping for one store
 
 
 def write_field(ctx: Interpreter, base: Value, name: str, value: Value) -> None:
-    """Store into a field; for certain when there is only one object that it can be."""
+    """Store into a field: a strong update if the pointer has one target, else weak updates."""
     certain = len(base.pts) == 1
     for held in base.pts:
         if held.kind in ("bound", "ext", "method"):
@@ -26,7 +26,7 @@ def write_field(ctx: Interpreter, base: Value, name: str, value: Value) -> None:
 
 
 def weaken(ctx: Interpreter, obj: Obj, name: str, value: Value) -> None:
-    """Store into a field of one of several objects."""
+    """Store into a field of an object by a weak update."""
     before = ctx.store.get((obj, name))
     if before is None:
         before = ctx.ops.default(ctx, obj, name)
@@ -34,7 +34,7 @@ def weaken(ctx: Interpreter, obj: Obj, name: str, value: Value) -> None:
 
 
 def add_element(ctx: Interpreter, base: Value, value: Value) -> None:
-    """Store into an element that is not known."""
+    """Store into an unknown element."""
     for obj in base.pts:
         if obj.kind in HOLLOW:
             continue
@@ -70,7 +70,7 @@ def write_item(ctx: Interpreter, base: Value, index: Value, value: Value) -> Non
 
 
 def _write_some(ctx: Interpreter, base: Value, index: Value, value: Value) -> None:
-    """Store into one of several elements: of mappings those of known keys, else any."""
+    """Store into one of several elements: the known keys of mappings, else any element."""
     known = sorted(index.consts or (), key=repr) if len(index.consts or ()) <= MAX_KEYS else []
     mappings = frozenset(o for o in base.pts if o.kind == "mapping" and known and not index.pts)
     for obj in sorted(mappings, key=lambda o: o.number):
@@ -80,6 +80,6 @@ def _write_some(ctx: Interpreter, base: Value, index: Value, value: Value) -> No
 
 
 def from_end(ctx: Interpreter, base: Value, key: int) -> int:
-    """Return a negative index counted from the start, where the length is known."""
+    """Convert a negative index to one from the start, if the length is known."""
     known = ctx.ops.unpacked(ctx, base)
     return key + len(known) if known and -key <= len(known) else key

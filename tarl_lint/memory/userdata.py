@@ -1,4 +1,4 @@
-"""State machines of smach: the userdata that their states share, under the names that each state has for them."""
+"""Userdata of smach state machines, shared by their states under remapped names."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from tarl_lint.interpret.interpreter import Interpreter
 from tarl_lint.memory import recency
 from tarl_lint.memory.values import Obj, Value, pointer
 
-VIEW = "view"  # the kind of what a state is handed: the shared fields under names of its own
-MACHINE_FIELD = "userdata"  # the attribute of a state machine that holds the shared fields
+VIEW = "view"  # kind of a state's userdata: the shared fields under remapped names
+MACHINE_FIELD = "userdata"  # attribute of a state machine that holds the shared fields
 
 
 def userdata(ctx: Interpreter, state: Obj | None = None) -> Value:
-    """Return the userdata as a state sees it, without one as the machine does."""
+    """Return the userdata of a state, or of the machine itself without one."""
     if state is None:
         return pointer(recency.intern(ctx, "record", MACHINE_FIELD, MACHINE_FIELD))
     view = recency.intern(ctx, VIEW, (MACHINE_FIELD, state))
@@ -23,7 +23,7 @@ def userdata(ctx: Interpreter, state: Obj | None = None) -> Value:
 
 
 def rename(ctx: Interpreter, state: Obj, names: Iterable[tuple[str, str]]) -> None:
-    """Remember what a state's own names stand for."""
+    """Record a state's remapping of names."""
     for view in userdata(ctx, state).pts:
         if isinstance(view.info, dict):
             before = dict(view.info)
@@ -32,7 +32,7 @@ def rename(ctx: Interpreter, state: Obj, names: Iterable[tuple[str, str]]) -> No
 
 
 def seen_through(ctx: Interpreter, view: Obj, name: str) -> tuple[Obj, str]:
-    """Return the shared object and the name there of a field that a state sees."""
+    """Return the shared object of a state's field, and its name there."""
     ctx.store.reads.look(view)
     names = view.info if isinstance(view.info, dict) else {}
     shared = next(iter(userdata(ctx).pts))

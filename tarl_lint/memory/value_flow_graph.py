@@ -1,4 +1,8 @@
-"""The value-flow graph: nodes are values that statements make, edges say what each is made from."""
+"""The value-flow graph: nodes are values made by statements, edges are their dependencies.
+
+Terms: content are nodes inside an object; a carrier is a node that passed a pointer to the object on; a choice is the
+set of branches that selected a value; a node is live if a source reaches it.
+"""
 
 from __future__ import annotations
 
@@ -11,19 +15,19 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.reads import Reads
 from tarl_lint.memory.values import Branches, Nodes
 
-MAX_NODES = 6_000  # of a program; after that, content is taken to arrive as it is, too
-MAX_EDGES = 200_000  # of data; then few of very many values that meet in one are followed
+MAX_NODES = 6_000  # nodes of a program; beyond that, content arrives without carriers
+MAX_EDGES = 200_000  # data edges of a program; then only FEW of a value's dependencies get edges
 FEW = 8
-MANY = 16  # nodes that meet in a field where everything adds up and are told apart
-MANY_CARRIERS = 64  # the same of pointers to objects with data in them
-MERGED = "merged"  # the role of nodes that stand for all that meets in a field
+MANY = 16  # separate nodes in a field with weak updates; more are merged
+MANY_CARRIERS = 64  # the same for pointers to objects with content
+MERGED = "merged"  # role of the merged node of a field
 NOTHING: Set[int] = frozenset()
-MAX_CARRIED = 500  # content times carriers; beyond that, content is taken to arrive as it is
+MAX_CARRIED = 500  # content × carriers; beyond that, content arrives without carriers
 
 
 @dataclass(slots=True)
 class Place:
-    """Where a node belongs: a statement in an activation; no statement for a message arriving."""
+    """The place of a node: a statement in a frame; no statement for an arriving message."""
 
     frame: Frame
     statement: ir.Stmt | None
@@ -33,10 +37,10 @@ class Place:
 
 @dataclass(slots=True, eq=False)
 class Graph:
-    """Edges lead backwards, from a node to what it depends on.
+    """The graph. Edges lead backwards, from a node to its dependencies.
 
-    `held[c]` holds the nodes that were inside an object when `c` passed the object on; so a value read
-    out of it later is known to have come that way.
+    `held[c]` holds the nodes that were inside an object when carrier `c` passed it on; so a value read from it later
+    depends on `c`.
     """
 
     places: list[Place] = field(default_factory=list)
@@ -46,31 +50,33 @@ class Graph:
     gates: dict[int, tuple[int, Branches]] = field(default_factory=dict)  # node → value, choice
     counts: dict[int, set[int]] = field(
         default_factory=dict
-    )  # node that counts elements → what those are made from
-    stands_for: dict[int, int] = field(default_factory=dict)  # node → another that nothing chose
+    )  # node of an element count → dependencies of the elements
+    stands_for: dict[int, int] = field(default_factory=dict)  # node without choice → the original node
     held: dict[int, set[int]] = field(default_factory=dict)
     numbers: dict[Hashable, int] = field(default_factory=dict)
-    literals: dict[int, tuple[object, ir.Pos, str]] = field(default_factory=dict)  # node → constant it is
+    literals: dict[int, tuple[object, ir.Pos, str]] = field(default_factory=dict)  # node → its constant
     parameters: set[int] = field(default_factory=set)  # nodes of ROS parameters
     copies: set[int] = field(default_factory=set)  # nodes that pass on their only input unchanged
     carried: dict[int, tuple[int, int]] = field(
         default_factory=dict
-    )  # node → who passed on what inside an object
-    passed_on: dict[tuple[int, int], int] = field(default_factory=dict)  # (carrier, item) → its node of that
+    )  # carry node → (carrier, origin of the content)
+    passed_on: dict[tuple[int, int], int] = field(default_factory=dict)  # (carrier, item) → carry node
     arriving: dict[tuple[int, int], None] = field(
         default_factory=dict
-    )  # (node of a carrier, what it carries)
-    edges: int = 0  # of data, that the program at work made
-    made: int = 0  # nodes that the program at work made
-    grown: int = 0  # how often something new was inside an object that was passed on
-    live: set[int] = field(default_factory=set)  # nodes that sources lead to, by data or by decisions
-    onward: dict[int, list[int]] = field(default_factory=dict)  # where nodes lead that are not live yet
-    asked: int = 0  # edges, and how much was looked at to tell through whom content arrives
-    asking: set[tuple[int, int]] = field(default_factory=set)  # questions that are being answered
-    reads: Reads = field(default_factory=Reads)  # of the call that is running
+    )  # (carry node, item), in order of creation
+    edges: int = 0  # data edges of the current program
+    made: int = 0  # nodes of the current program
+    grown: int = 0  # number of growths of any `held` set
+    live: set[int] = field(default_factory=set)  # nodes reached by sources, by data or control
+    onward: dict[int, list[int]] = field(default_factory=dict)  # node that is not live yet → its successors
+    asked: int = 0  # graph operations, charged as work
+    asking: set[tuple[int, int]] = field(
+        default_factory=set
+    )  # arguments of active calls of `_by`, against infinite recursion
+    reads: Reads = field(default_factory=Reads)  # reads of the running call
 
     def node(self, key: Hashable, place: Place, branches: Branches) -> int:
-        """Return the node with this key, made at the first time."""
+        """Return the node with this key; create it at first use."""
         number = self.numbers.get(key)
         if number is None:
             number = self.numbers[key] = len(self.places)
@@ -82,13 +88,15 @@ class Graph:
         return number
 
     def flow(self, deps: Iterable[int], node: int) -> None:
-        """Let data of `deps` reach `node`, and the choice that was made for them."""
+        """Add data edges from `node` to `deps`, and gates for the choices that selected them."""
         edges = self.data[node]
         mine = self.branches[node]
         for dep in deps if self.edges < MAX_EDGES else islice(deps, FEW):
             self.asked += 1
             if dep == node:
-                self.depend(node, [branch[0] for branch in mine])  # how often it ran is a choice, too
+                self.depend(
+                    node, [branch[0] for branch in mine]
+                )  # a value that depends on itself depends on the number of iterations
             if dep in edges or dep == node:
                 continue
             edges.add(dep)
@@ -99,7 +107,7 @@ class Graph:
                 self._choose(dep, theirs - mine, node)
 
     def unchosen(self, dep: int) -> int:
-        """Return a node that stands for another one where it does not matter what led there."""
+        """Return a copy of a node without its branches, for values that do not depend on the path."""
         if dep in self.stands_for:
             return dep
         node = self.node((dep, "unchosen"), self.places[dep], frozenset())
@@ -110,37 +118,37 @@ class Graph:
         return node
 
     def meets(self, key: Hashable, deps: Nodes, *, carriers: bool) -> bool:
-        """Tell whether too many values meet in a field to be told apart, or did before and more are added.
+        """Return whether a field has too many values for separate nodes, or is merged already.
 
-        `carriers`: they are pointers, whose content arrives by each of them as long as these are few.
+        With `carriers`, the values are pointers, for which the limit is MANY_CARRIERS.
         """
         return len(deps) > (MANY_CARRIERS if carriers else MANY) or self.numbers.get(("merged", key)) in deps
 
     def merged(self, key: Hashable, deps: Nodes, frame: Frame) -> Nodes:
-        """Return one node in place of the many that meet in a field where everything adds up.
+        """Return the merged node of a field with weak updates, with edges to all of `deps`.
 
-        Whoever reads the field depends on this node; what is added later is an edge, and news to nobody.
+        Readers of the field depend on this node, so a later value adds an edge without changing the field.
         """
         node = self.node(("merged", key), Place(frame, None, MERGED, (0, 0, 0, 0)), frozenset())
         self.flow([dep for dep in deps if dep != node], node)
         return frozenset([node])
 
     def choice(self, deps: Iterable[int], node: int) -> None:
-        """Let only the choice that was made for `deps` reach `node`, not their data."""
+        """Make `node` depend on the choices that selected `deps`, but not on their data."""
         mine = self.branches[node]
         for dep in deps:
             if not self.branches[dep] <= mine:
                 self._choose(dep, self.branches[dep] - mine, node)
 
     def _choose(self, dep: int, choice: Branches, node: int) -> None:
-        """Say that which value arrives at `node` was decided by conditions that `node` is not under."""
+        """Add a gate: `node` depends on the conditions that selected `dep`, beyond its own conditions."""
         gate = self.node((dep, choice), self.places[dep], self.branches[node])
         self.gates[gate] = (dep, choice)
         self.depend(gate, [branch[0] for branch in choice])
         self.depend(node, (gate,))
 
     def depend(self, node: int, decisions: Iterable[int]) -> None:
-        """Let a node depend on decisions."""
+        """Add control edges from a node to decisions."""
         edges = self.control[node]
         for decision in decisions:
             if decision not in edges:
@@ -148,7 +156,7 @@ class Graph:
                 self._lead(decision, node)
 
     def begin(self, node: int) -> None:
-        """Say that a node is a source, which makes all that it leads to live, now and later."""
+        """Make a node live, and with it everything that depends on it, now or later."""
         pending = [node]
         while pending:
             current = pending.pop()
@@ -157,17 +165,16 @@ class Graph:
                 pending += self.onward.pop(current, ())
 
     def _lead(self, former: int, node: int) -> None:
-        """Let a node be live as soon as what it is made from or depends on is."""
+        """Make a node live as soon as its dependency `former` is."""
         if former not in self.live:
             self.onward.setdefault(former, []).append(node)
         elif node not in self.live:
             self.begin(node)
 
     def through(self, content: Nodes, carriers: Nodes) -> Nodes:
-        """Return content as it arrives through pointers that the carriers passed on.
+        """Return content as passed on through carriers of a pointer.
 
-        Where a carrier passed the object when the content was already inside, a node of the carrier
-        stands between.
+        If the content was already inside when a carrier passed the object on, a carry node takes its place.
         """
         if not content or not carriers or len(content) * len(carriers) > MAX_CARRIED:
             return content
@@ -193,11 +200,11 @@ class Graph:
         return (content - taken) | found if found else content
 
     def large(self) -> bool:
-        """Tell whether the program at work made too many nodes to say how content arrives."""
+        """Return whether the current program has too many nodes to track carriers."""
         return self.made > MAX_NODES
 
     def _consult(self, carriers: Nodes) -> None:
-        """Note that it matters what carriers have passed on by now, and those through which they were carried."""
+        """Record a dependency on the numbers of nodes that carriers, and their own carriers, have passed on."""
         noted = self.reads.held
         for carrier in carriers:
             while carrier not in noted:
@@ -206,21 +213,21 @@ class Graph:
                     carrier = self.carried[carrier][1]
 
     def passed_by(self, carrier: int) -> int:
-        """Return how many nodes were inside what a carrier passed on: they only become more."""
+        """Return the number of nodes inside the objects that a carrier passed on; it never decreases."""
         return len(self.held.get(carrier, NOTHING))
 
     def free(self, node: int) -> bool:
-        """Tell whether no decision led to a node so far."""
+        """Return whether a node has no control dependencies so far."""
         return not self.control[node]
 
     def _first(self, carrier: int) -> int:
-        """Return who first held what arrives by a carrier: what was not inside then does not come this way."""
+        """Return the first holder in a chain of carriers: content that it did not hold did not come this way."""
         while carrier in self.carried:
             carrier = self.carried[carrier][1]
         return carrier
 
     def _by(self, carrier: int, item: int) -> Nodes | set[int]:
-        """Return an item as passed on by one carrier, nothing when it was not inside then."""
+        """Return an item as passed on by one carrier; nothing if it was not inside then."""
         parts = self.carried.get(carrier)
         if parts is None:
             return {self._carry(carrier, item)} if item in self.held.get(carrier, ()) else set()
@@ -233,10 +240,9 @@ class Graph:
         return self.through(frozenset(inner), frozenset([outer])) if inner else inner
 
     def _carry(self, carrier: int, item: int) -> int:
-        """Return the node of `item` being passed on inside an object by `carrier`.
+        """Return the carry node of `item`, passed on inside an object by `carrier`.
 
-        What was passed on before is the same thing still, so there are no more such nodes than pairs of a
-        carrier and a first maker.
+        A carried item keeps its origin, so there are at most as many carry nodes as pairs of carrier and origin.
         """
         known = self.passed_on.get((carrier, item))
         if known is not None:
@@ -256,7 +262,7 @@ class Graph:
         return node
 
     def settle(self) -> None:
-        """Follow everything that was passed on inside objects back through those who passed it before."""
+        """Connect every carry node to its item through the carriers before it."""
         done = self.made = 0
         while done < len(self.arriving):
             pending = list(islice(self.arriving, done, None))
@@ -267,7 +273,7 @@ class Graph:
         self._feed()
 
     def _feed(self) -> None:
-        """Let what goes in circles between objects begin somewhere: each maker feeds all that only pass it round."""
+        """Connect cycles of carry nodes to their origin, so that each has an entry."""
         circles: dict[int, list[int]] = {}
         for node, (_, origin) in self.carried.items():
             circles.setdefault(origin, []).append(node)
@@ -280,7 +286,7 @@ class Graph:
                 self.flow([origin], node)
 
     def hold(self, carrier: int, content: Nodes) -> None:
-        """Remember what was inside an object when `carrier` passed it on."""
+        """Record the content of an object that `carrier` passes on."""
         if not content:
             return
         held = self.held.setdefault(carrier, set())

@@ -10,23 +10,23 @@ from typing import Final
 from tarl_lint.ir import nodes as ir
 
 Nodes = frozenset[int]
-Consts = frozenset[object] | None  # None: anything
+Consts = frozenset[object] | None  # None: unknown
 Branches = frozenset[tuple[int, str]]
 
 NONE: Nodes = frozenset()
-BY_CLASS: Final = "by its class"  # `info` of a library's object that a class made: a message, mostly
+BY_CLASS: Final = "by its class"  # `info` of an instance of a library class, usually a message
 PLAIN_BASES = frozenset(["typing.NamedTuple", "typing.Protocol", "abc.ABC", "enum.Enum", "enum.IntEnum"])
-NUMBERS = count()  # of objects in the order in which they are made
+NUMBERS = count()  # numbers of objects, in order of creation
 MAX_CONSTS = 4
-MAX_TEXTS = 24  # names of topics, mostly: a table of them may be long
-MAX_DEPTH = 6  # of objects embedded in objects
-MAX_ELEMENTS = 2  # elements of elements that are told apart: beyond, their indices give a power of objects
-MAX_CELLS = 16  # elements of elements of one object of a library that are told apart: of a matrix, mostly
-MESSAGES = frozenset(["message", "goal"])  # objects that bring data with them
+MAX_TEXTS = 24  # string constants of a value; high, for tables of topic names
+MAX_DEPTH = 6  # nesting depth of embedded objects
+MAX_ELEMENTS = 2  # nesting of separate elements; more would give exponentially many objects
+MAX_CELLS = 16  # separate nested elements of a library object, such as a matrix
+MESSAGES = frozenset(["message", "goal"])  # kinds of objects that are data themselves
 
 
 class Obj:
-    """An object, known by what makes it: allocation site, definition, or the object it is embedded in."""
+    """An abstract object, identified by its allocation site, definition, or enclosing object."""
 
     __slots__ = (
         "cells",
@@ -59,20 +59,20 @@ class Obj:
         self.depth: int = parent.depth + 1 if parent is not None else 0
         self.elements: int = parent.elements + 1 if parent is not None and name.startswith("[") else 0
         self.many: bool = parent.many if parent is not None else False
-        # every field ever stored, in order, with objects that are known to be held there (`holders`, `inside`)
+        # every field ever stored, in order, with the objects registered as held there (`holders`, `inside`)
         self.fields: dict[str, frozenset[Obj]] = {}
         self.subs: dict[str, Obj] = {}
-        self.holders: dict[tuple[Obj, str], None] = {}  # where pointers to it were stored
+        self.holders: dict[tuple[Obj, str], None] = {}  # keys to which pointers to it were stored
         self.info: object = None
-        self.defined = ""  # of a message: the name of its definition
+        self.defined = ""  # name of a message's definition
         self.laden: bool = (
             parent.laden if parent is not None else kind in MESSAGES
-        )  # data may be in it, at any depth
-        self.cells = 0  # elements of elements that it has by now
+        )  # whether it may hold data, at any depth
+        self.cells = 0  # number of nested elements so far
         self.stamp = (
-            0  # how often a field or part was added to it, data came into it, or what it stands for changed
+            0  # version: grows with new fields or parts, with the first data, and with a change of meaning
         )
-        self.inside: dict[Obj, None] = {}  # objects that a pointer to it was stored in while it was not laden
+        self.inside: dict[Obj, None] = {}  # objects that hold a pointer to it, stored while it was not laden
 
     def sub(self, name: str) -> Obj:
         """Return the object embedded under a field; deep nesting folds into one."""
@@ -89,7 +89,7 @@ class Obj:
         return found
 
     def path(self) -> str:
-        """Return the dotted field that leads here from the outermost object."""
+        """Return the dotted path from the outermost object."""
         if self.parent is None:
             return ""
         outer = self.parent.path()
@@ -97,17 +97,17 @@ class Obj:
 
     @property
     def whole(self) -> Obj:
-        """Return the outermost object that it is part of."""
+        """Return the outermost enclosing object."""
         return self.outermost or self
 
     def describe(self, info: object) -> None:
-        """Say what the object stands for, which may be another thing than before."""
+        """Set the object's meaning, and increment the stamp if it changed."""
         if info is not self.info and info != self.info:
             self.stamp += 1
         self.info = info
 
     def release(self) -> None:
-        """Let go of what may lead back here."""
+        """Drop references, to break cycles."""
         for sub in self.subs.values():
             if sub is not self:
                 sub.release()
@@ -125,7 +125,7 @@ Key = tuple[Obj, str]
 
 
 class Value:
-    """What an expression may be: the nodes its data comes from, the objects it may be, its constants."""
+    """An abstract value: the nodes of its data, the objects that it may be, its constants."""
 
     __slots__ = ("consts", "deps", "pts")
 
@@ -148,21 +148,21 @@ class Value:
         return f"Value({sorted(self.deps)}, {list(self.pts)}, {self.consts})"
 
     def constant(self) -> tuple[bool, object]:
-        """Return whether the value is one known constant, and it."""
+        """Return (whether the value is one known constant, the constant)."""
         if self.consts is not None and len(self.consts) == 1 and not self.pts:
             return True, next(iter(self.consts))
         return False, None
 
     def fixed(self) -> bool:
-        """Tell whether the value is one constant, whichever way it came."""
+        """Return whether the value is the same constant on all paths."""
         return self.consts is not None and len(self.consts) == 1 and not self.pts
 
     def consts_in(self, other: Value) -> bool:
-        """Tell whether another value may be every constant that this one may be."""
+        """Return whether the constants of this value are a subset of another's."""
         return other.consts is None or (self.consts is not None and self.consts <= other.consts)
 
     def texts(self) -> tuple[str, ...]:
-        """Return the texts it may be, sorted; none when it may be another thing."""
+        """Return its possible strings, sorted; empty if it may be anything else."""
         if self.consts is None or not all(isinstance(c, str) for c in self.consts):
             return ()
         return tuple(sorted(str(c) for c in self.consts))
@@ -170,11 +170,11 @@ class Value:
 
 BOTTOM = Value(consts=frozenset())
 UNKNOWN = Value()
-ABSENT = Value(consts=frozenset(["<absent>"]))  # a field that a new object does not have yet
+ABSENT = Value(consts=frozenset(["<absent>"]))  # marks an unset field of a new object
 
 
 def join(a: Value, b: Value) -> Value:
-    """Return what is either; `a` itself when it covers `b`."""
+    """Return the join of two values; `a` itself if it covers `b`."""
     if a is b or b is BOTTOM:
         return a
     if a is BOTTOM:
@@ -188,7 +188,7 @@ def join(a: Value, b: Value) -> Value:
 
 
 def join_consts(a: Consts, b: Consts) -> Consts:
-    """Return the constants of either, None when there are too many."""
+    """Return the union of constants; None (unknown) if there are too many."""
     if a is None or b is None:
         return None
     if b <= a:
@@ -208,12 +208,12 @@ def join_all(values: Iterable[Value]) -> Value:
 
 
 def pointer(obj: Obj, deps: Nodes = NONE) -> Value:
-    """Return a value that is one object."""
+    """Return a value that points to one object."""
     return Value(deps, frozenset([obj]))
 
 
 def const(value: object) -> Value:
-    """Return a value that is one constant; what cannot be hashed is anything."""
+    """Return a value of one constant; unknown if the constant is not hashable."""
     try:
         return Value(consts=frozenset([value]))
     except TypeError:
@@ -222,7 +222,7 @@ def const(value: object) -> Value:
 
 @dataclass(slots=True, eq=False)
 class ClassInfo:
-    """A class of the analysed files. `opaque` when a base is not among them."""
+    """A class of the analysed files. `opaque` if a base class is not among them."""
 
     name: str
     qualname: str
@@ -230,32 +230,32 @@ class ClassInfo:
     external: list[str] = field(default_factory=list)
     statement: ir.Class | None = None
     module: str = ""
-    fields: tuple[str, ...] = ()  # annotated in its body, as dataclasses have them
-    named: bool = False  # a named tuple: its fields are its elements too
+    fields: tuple[str, ...] = ()  # names annotated in its body, the fields of a dataclass
+    named: bool = False  # a named tuple, whose fields are also elements
 
     @property
     def opaque(self) -> bool:
-        """Tell whether code that is not analysed may see its instances' attributes and call its methods."""
+        """Return whether code outside of the files can access its instances' attributes and call its methods."""
         inherited = any(isinstance(b.info, ClassInfo) and b.info.opaque for b in self.bases)
         return inherited or any(not _plain(e) for e in self.external)
 
 
 def inherited_from(value: Value) -> set[str]:
-    """Return the classes that are not here and that objects of ours inherit from: a method may be theirs."""
+    """Return the base classes outside of the files, which may define a missing method."""
     classes = {o.info for o in value.pts if o.kind == "instance" and isinstance(o.info, Obj)}
     infos = [c.info for cls in classes for c in lineage(cls)]
     return {e for i in infos if isinstance(i, ClassInfo) for e in i.external if "." in e and not _plain(e)}
 
 
 def function_of(target: Obj) -> ir.Function | None:
-    """Return the function of ours that a call of an object runs, None where nothing tells."""
+    """Return the analysed function that a call of an object runs; None if unknown."""
     closure = target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
     found = closure.info[0] if closure.kind == "closure" and isinstance(closure.info, tuple) else None
     return found if isinstance(found, ir.Function) else None
 
 
 def _plain(base: str) -> bool:
-    """Tell whether a class of a library calls no methods that its heirs add: exceptions, containers, and the like."""
+    """Return whether a library class calls no methods of subclasses, such as exceptions and containers."""
     return base in PLAIN_BASES or base.startswith("builtins.")
 
 

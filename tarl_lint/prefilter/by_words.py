@@ -32,7 +32,7 @@ DOTTED: Final = re.compile(r"(?:^|,)[\s\\(]*([.\w]+)")
 
 
 def concerned(modules: Sequence[Named], config: Config) -> bool:
-    """Return whether a word in any module suggests that it subscribes or publishes; otherwise nothing can be found."""
+    """Return whether a word in any module suggests that it subscribes or publishes; otherwise there are no flows."""
     return any(True for _ in mentioning(modules, config))
 
 

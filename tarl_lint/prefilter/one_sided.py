@@ -1,4 +1,4 @@
-"""Groups of modules that only subscribe or only publish, by words and syntax: most need not be run.
+"""Find, by words and syntax, groups of modules that only subscribe or only publish: most need not be run.
 
 A flow needs both sides. Each hazard rule decides whether it can find nothing in such a group (`ruled_out`); a group
 that an enabled rule does not rule out is run like any other.
@@ -66,13 +66,13 @@ def one_sided(modules: Sequence[Module], config: Config, rules: Sequence[Rule]) 
     if hears and any(
         _inherits_from_elsewhere(m.tree, {m.name.partition(".")[0] for m in modules}) for m in modules
     ):
-        return False  # messages may go into a base class outside the files, which a note names
+        return False  # messages can reach a base class outside of the files, which a note then names
     side = Side(modules, texts, hears, says)
     return all(_ruled_out(rule, side) for rule in rules if config.enabled(rule.CODE))
 
 
 def _inherits_from_elsewhere(tree: ast.Module, ours: Set[str]) -> bool:
-    """Return whether a class inherits from a package outside the files that is not Python's or ROS's own."""
+    """Return whether a class inherits from an external package that is not part of Python or ROS."""
     known = KNOWN | ours
     names: set[str] = set()
     for node in tree.body:

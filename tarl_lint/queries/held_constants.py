@@ -21,7 +21,7 @@ class Origin:
     value: bool | int | float | None
     path: str
     pos: ir.Pos
-    setting: str = ""  # the key that it has in the file that it was loaded from
+    setting: str = ""  # its key in the file from which it was loaded
 
 
 class Origins:
@@ -51,7 +51,7 @@ class Origins:
         return frozenset(found) if found is not None else frozenset()
 
     def _loaded(self, value: Value) -> frozenset[Origin]:
-        """Return the origin of what was loaded from a file; nothing for a table, of which parts were taken."""
+        """Return the origin of a value loaded from a file; nothing for a table, of which only parts are used."""
         settings = self.machine.settings
         if len(value.pts) != 1:
             return frozenset()
@@ -71,7 +71,7 @@ class Origins:
         return frozenset(found) if found and numbers else frozenset()
 
     def _trace(self, deps: Iterable[int], seen: set[int]) -> set[Origin] | None:
-        """Return the constants from which nodes come, None if one comes from anything else."""
+        """Return the constants from which nodes come; None if one has another origin."""
         found: set[Origin] = set()
         for node in sorted(deps):
             if node in seen:
@@ -80,7 +80,7 @@ class Origins:
             literal = self.graph.literals.get(node)
             if literal is not None:
                 if not self.graph.live.isdisjoint(self.graph.data[node]):
-                    return None  # a constant only as long as no message had come: `gain * self.error`
+                    return None  # constant only before the first message, as in `gain * self.error`
                 value, pos, path = literal
                 found.add(Origin(value if isinstance(value, (bool, int, float)) else None, path, pos))
                 continue
@@ -91,12 +91,12 @@ class Origins:
                 found |= inner
             elif node not in self.graph.held and not self._settled(
                 node
-            ):  # a node that only passes an object on has no constant
+            ):  # a node that only passes on an object has no constant
                 return None
         return found
 
     def _settled(self, node: int) -> bool:
-        """Tell whether a node is None, or only chooses between constants, and no message has a say in it."""
+        """Return whether a node is None or chooses only between constants, independent of any message."""
         place = self.graph.places[node]
         if self.graph.data[node] or node in self.graph.live:
             return False

@@ -18,10 +18,10 @@ NOT_BEHAVIOUR: Final = frozenset(
 )  # fmt: skip
 TIMING: Final = frozenset(
     ["sleep", "Rate", "create_rate", "create_timer", "Timer"]
-)  # the first argument says when
+)  # calls whose first argument is a time
 PERIODS: Final = frozenset(["period", "timer_period_sec", "seconds", "secs", "hz", "frequency"])
 PARAMETER_CALLS: Final = frozenset(["get_param"])
-READING: Final = frozenset(["get", "getattr"])  # calls that read what is kept, whatever else they are given
+READING: Final = frozenset(["get", "getattr"])  # calls that read a stored value
 LOGGING: Final = frozenset(
     [
         "info",
@@ -40,14 +40,14 @@ LOGGING: Final = frozenset(
 
 
 class Constants(Protocol):
-    """Decides whether an expression is a constant."""
+    """The interface of a query for constants."""
 
     def of(self, expr: ir.Expr, value: Value | None) -> object:
-        """Return the origins of the constants, a false value if it is not a constant."""
+        """Return the origins of an expression's constants; a false value if it is not constant."""
         ...
 
     def entries(self, value: Value | None, index: Value | None) -> object:
-        """Return the origins of the entries of a table of constants, a false value if it is not one."""
+        """Return the origins of the entries of a table of constants; a false value for other expressions."""
         ...
 
 
@@ -60,14 +60,14 @@ def uses(statement: ir.Stmt, values: Mapping[ir.Pos, Value], constants: Constant
 def timing_uses(
     statement: ir.Stmt, values: Mapping[ir.Pos, Value], constants: Constants
 ) -> Iterator[ir.Expr]:
-    """Yield the expressions that may be constants and say how long a statement waits, or how often something runs."""
+    """Yield possibly constant expressions that set a waiting time or a rate."""
     for call in _timing_calls(_expressions(statement)):
         for when in [*call.arguments[:1], *(value for name, value in call.keywords if name in PERIODS)]:
             yield from _inside(when, values, constants)
 
 
 def sets_timing(statement: ir.Stmt) -> bool:
-    """Tell whether a statement waits, or says how often something runs."""
+    """Return whether a statement waits or sets a rate."""
     return any(True for _ in _timing_calls(_expressions(statement)))
 
 
@@ -143,7 +143,7 @@ def _call(expr: ir.Call, values: Mapping[ir.Pos, Value], constants: Constants) -
 
 
 def _literals(expr: ir.Call) -> bool:
-    """Tell whether a call is given a number where it is written."""
+    """Return whether a call has a literal number as argument."""
     given = [*expr.arguments, *(value for _, value in expr.keywords)]
     return any(isinstance(each, ir.Const) and isinstance(each.value, (int, float)) for each in given)
 

@@ -37,7 +37,7 @@ class Prober:
             (step.span.path, step.span.line, step.span.column): step.site for f in flows for step in f.steps
         }
         self.seen: dict[SiteId, Seen] = {}
-        self.timing: dict[SiteId, Step] = {}  # statements beside the flows that wait or set a rate
+        self.timing: dict[SiteId, Step] = {}  # statements outside of the flows that wait or set a rate
         self._files = {step.span.path for f in flows for step in f.steps}
         self._columns: dict[tuple[str, ir.Pos], SiteId | None] = {}
         machine.probe, machine.watch = self._look, self._arrive
@@ -86,7 +86,7 @@ class Prober:
         return self._columns[key]
 
     def _timing(self, frame: Frame, statement: ir.Stmt) -> SiteId | None:
-        """Take a statement that waits or sets a rate, in a file that flows pass through, for a site of its own."""
+        """Add a site for a statement that waits or sets a rate, in a file on a flow."""
         path = frame.program.path
         if path not in self._files or not sets_timing(statement):
             return None

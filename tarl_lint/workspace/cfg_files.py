@@ -1,4 +1,4 @@
-"""The configurations that dynamic_reconfigure generates from `.cfg` files: names, types, defaults, ranges, groups.
+"""Read dynamic_reconfigure's `.cfg` files: names, types, defaults, ranges and groups of parameters.
 
 A `.cfg` file is a Python program; the calls `gen.add`, `add_group`, `const`, `enum` and `generate` are interpreted. The
 result has the structure of `config_description` in the generated module `PACKAGE.cfg.NAMEConfig`.
@@ -35,12 +35,12 @@ _LEVELS: Final = {
     "RECONFIGURE_CLOSE": 3,
     "RECONFIGURE_STOP": 1,
     "RECONFIGURE_RUNNING": 0,
-}  # driver_base/SensorLevels
+}  # constants of driver_base/SensorLevels
 
 
 @dataclass(frozen=True)
 class Configuration:
-    """One generated configuration: the module is `PACKAGE.cfg.{name}Config`."""
+    """One generated configuration, the module `PACKAGE.cfg.{name}Config`."""
 
     name: str
     description: dict[str, Any]
@@ -50,7 +50,7 @@ class Configuration:
 
 @dataclass
 class _Group:
-    """A group of parameters, as `gen.add_group` returns it."""
+    """A group of parameters, the result of `gen.add_group`."""
 
     generator: _Generator
     name: str
@@ -105,7 +105,7 @@ class _Group:
         return one
 
     def described(self) -> dict[str, Any]:
-        """Return the group as the generated module describes it."""
+        """Return the group in the form of the generated module."""
         path = [one.name for one in reversed(list(self._upwards()))]
         upper = [name.upper() for name in path]
         return {
@@ -135,7 +135,7 @@ class _Group:
 
 @dataclass
 class _Generator:
-    """A `ParameterGenerator`."""
+    """The model of a `ParameterGenerator`."""
 
     file: Interpreter
     groups: int = 0
@@ -170,14 +170,14 @@ class _Generator:
         return repr({"enum": constants, "enum_description": description})
 
     def generate(self, pkgname: Any, nodename: Any, name: Any) -> int:  # noqa: ARG002 (the generator's signature)
-        """Take note of the configuration."""
+        """Record the configuration."""
         if isinstance(name, str):
             named = {f"{name}_{key}": value for key, value in self.constants.items()}
             self.made.append(Configuration(name, self.top.described(), named))
         return 0
 
     def typed(self, name: str, kind: str, what: str, value: Any, otherwise: Mapping[str, Any]) -> Any:
-        """Return a value in the type of its parameter."""
+        """Convert a value to its parameter's type."""
         if value is None:
             return otherwise[kind]
         if isinstance(value, Unknown | Library):
@@ -191,7 +191,7 @@ class _Generator:
 
 
 def configurations(path: Path) -> tuple[list[Configuration], list[Problem]]:
-    """Return the configurations that a `.cfg` file generates, and what in it could not be read."""
+    """Return the configurations that a `.cfg` file generates, and the problems in reading it."""
     made: list[_Generator] = []
 
     def generator() -> _Generator:

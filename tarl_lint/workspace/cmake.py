@@ -1,4 +1,4 @@
-"""Read from `CMakeLists.txt` what is installed of Python: programs, modules, packages. Nothing is executed."""
+"""Read the Python programs, modules and packages that `CMakeLists.txt` installs. Nothing is executed."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ _KEYWORDS: Final = frozenset(
      "COMPONENT", "USE_SOURCE_PERMISSIONS", "CONFIGURATIONS", "EXCLUDE", "REGEX", "RUNTIME", "LIBRARY", "ARCHIVE",
      "FILES_MATCHING", "SCRIPTS_DESTINATION"]
 )  # fmt: skip
-_PROGRAMS: Final = re.compile(r"BIN_DESTINATION|^lib/|^bin$")  # where `ros2 run` and `rosrun` look
+_PROGRAMS: Final = re.compile(r"BIN_DESTINATION|^lib/|^bin$")  # folders of `ros2 run` and `rosrun`
 
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A call in a CMake file, with variables replaced where they are known."""
+    """A call in a CMake file, with known variables replaced."""
 
     name: str
     words: tuple[str, ...]
@@ -36,7 +36,7 @@ class Command:
 
 @dataclass(frozen=True, slots=True)
 class Cmake:
-    """What a package installs: programs (a pair of file and installed name) and Python packages (name and folder)."""
+    """The installed programs (file, installed name) and Python packages (name, folder) of a package."""
 
     programs: tuple[tuple[str, str], ...] = ()
     python_packages: tuple[tuple[str, str], ...] = ()
@@ -45,7 +45,7 @@ class Cmake:
 
 
 def cmake(folder: Path, package: str) -> Cmake:
-    """Return what the `CMakeLists.txt` in a folder installs, nothing without such a file."""
+    """Return what the `CMakeLists.txt` in a folder installs; nothing if there is no such file."""
     path = folder / "CMakeLists.txt"
     try:
         text = read_text(path, LARGEST) if path.is_file() else ""
@@ -97,7 +97,7 @@ def _calls(text: str) -> Iterator[tuple[str, list[str]]]:
 
 
 def _replaced(word: str, variables: dict[str, list[str]]) -> list[str]:
-    """Replace the variables of a word; a list that stands alone becomes several words."""
+    """Replace the variables in a word; a variable that is the whole word can become several words."""
     quoted = word.startswith('"')
     word = word.strip('"') if quoted else word
     alone = _VARIABLE.fullmatch(word)
@@ -124,7 +124,7 @@ def _globbed(folder: Path, patterns: tuple[str, ...], *, deep: bool) -> Iterator
 
 
 def _programs(folder: Path, words: tuple[str, ...]) -> Iterator[tuple[str, str]]:
-    """Yield the files that an `install` command installs as programs: by name, or all files of a folder."""
+    """Yield the files that an `install` command installs as programs: named files, or all files of a folder."""
     groups: dict[str, list[str]] = {}
     within: list[str] = []
     for word in words:

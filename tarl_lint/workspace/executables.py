@@ -1,4 +1,4 @@
-"""Find what a package installs: programs by the name that starts them, and top-level Python modules."""
+"""Find the programs, by command name, and the top-level Python modules that a package installs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def installed(
     declared = setup(folder)
     built = Cmake() if manifest.kind == "ament_python" else cmake(folder, manifest.name)
     programs = {one.name: one for one in _programs(folder, declared, built)}
-    if manifest.kind == "catkin":  # rosrun also finds what is executable in the source folder
+    if manifest.kind == "catkin":  # rosrun also starts executable files of the source folder
         programs |= {one.name: Executable(one.name, one) for one in scripts if one.name not in programs}
     modules = {one.name: one for one in _modules(folder, manifest, declared, built)}
     missing = [Problem(folder / "CMakeLists.txt" if not one.entry else folder / "setup.py", 0,
@@ -47,14 +47,14 @@ def _programs(folder: Path, declared: Setup, built: Cmake) -> Iterator[Executabl
 
 
 def module_file(folder: Path, declared: Setup, module: str) -> Path | None:
-    """Return the file of a module that a package installs, None where there is none."""
+    """Return the file of a module that a package installs; None if it does not exist."""
     first, *rest = module.split(".")
     base = _package_folder(folder, declared, first).joinpath(*rest)
     return _existing(base.with_suffix(".py")) or _existing(base / "__init__.py")
 
 
 def _package_folder(folder: Path, declared: Setup, package: str) -> Path:
-    """Return the folder of a top-level package, as `package_dir` says."""
+    """Return the folder of a top-level package according to `package_dir`."""
     if package in declared.folders:
         return folder / declared.folders[package]
     return folder / declared.folders.get("", "") / package
@@ -94,12 +94,12 @@ def _existing(path: Path) -> Path | None:
 
 
 def is_python(path: Path) -> bool:
-    """Tell whether a file is Python, by its name or its first line."""
+    """Return whether a file is Python, by its name or first line."""
     return path.suffix == ".py" or (not path.suffix and has_shebang(path))
 
 
 def has_shebang(path: Path) -> bool:
-    """Tell whether a file's first line names Python."""
+    """Return whether a file's first line is a Python shebang."""
     try:
         with path.open("rb") as file:
             first = file.read(120).split(b"\n", 1)[0]
@@ -109,5 +109,5 @@ def has_shebang(path: Path) -> bool:
 
 
 def may_be_started(path: Path) -> bool:
-    """Tell whether `rosrun` would start a file from the source folder."""
+    """Return whether `rosrun` can start a file in the source folder."""
     return os.access(path, os.X_OK) and has_shebang(path)

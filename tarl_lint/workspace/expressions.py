@@ -1,7 +1,8 @@
-"""Evaluate Python expressions whose value is constant, without executing anything.
+"""Evaluate constant Python expressions without executing code.
 
-A value is a constant, a list, tuple or dict of values, a `Library` (a name imported from elsewhere), a function of the
-file itself, or whatever the models of library functions return. What is not constant is an `Unknown`, never an error.
+A value is a constant, a list, tuple or dict of values, a `Library` (a name imported from another module), a function
+of the file itself, or a result of the models of library functions. A value that is not constant is an `Unknown`,
+never an error.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-LARGEST: Final = 100_000  # characters or elements of a computed value
-_WIDTH: Final = re.compile(r"\d{4,}")  # a format with such a width makes a text without bounds
+LARGEST: Final = 100_000  # limit on a computed value, characters or elements
+_WIDTH: Final = re.compile(r"\d{4,}")  # a format width that makes a huge string
 _BINARY: Final[Mapping[type[ast.operator], Callable[[Any, Any], Any]]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
     ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.BitOr: operator.or_, ast.BitAnd: operator.and_,
@@ -77,13 +78,13 @@ LIBRARIES: Final[Mapping[str, Any]] = {
 
 
 class Evaluator:
-    """Evaluates the expressions of one file. `models` are functions and values of libraries, by full name."""
+    """Evaluates the expressions of one file. `models` holds functions and values of libraries by full name."""
 
     def __init__(self, models: Mapping[str, Any]) -> None:
         self.models = {**LIBRARIES, **models}
 
     def value(self, node: ast.expr, names: Mapping[str, Any]) -> Any:
-        """Return the value of an expression, `Unknown` where it is not constant."""
+        """Return the value of an expression; `Unknown` if it is not constant."""
         visit = getattr(self, f"_{type(node).__name__.lower()}", None)
         if visit is None:
             return unknown(node)
@@ -93,7 +94,7 @@ class Evaluator:
             return unknown(node)
 
     def call(self, function: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
-        """Return what a call returns. Functions of the file are for subclasses."""
+        """Return the value of a call. Subclasses handle functions of the file."""
         if isinstance(function, Library) or not callable(function):
             return unknown(node)
         plain = function in BUILTINS.values() or function in LIBRARIES.values()
@@ -255,7 +256,7 @@ class Evaluator:
 
 
 def unknown(node: ast.AST) -> Unknown:
-    """Return the unknown value of an expression."""
+    """Return an `Unknown` for an expression."""
     return Unknown(getattr(node, "lineno", 0), ast.unparse(node)[:80])
 
 

@@ -1,4 +1,4 @@
-"""Walk through the source folders of a workspace, and find where a workspace begins."""
+"""Walk the source folders of a workspace, and find a workspace's root."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-LIMIT: Final = 20_000  # folders of one workspace
+LIMIT: Final = 20_000  # limit on the folders of one workspace
 MARKERS: Final = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE", "pyvenv.cfg", ".catkin")
 _BUILT: Final = frozenset({"build", "install", "log", "devel", "logs"})
 _NEVER: Final = frozenset({"__pycache__", "node_modules", "site-packages", "dist-packages"})
 
 
 def folders(root: Path, kept: frozenset[Path] = frozenset()) -> Iterator[tuple[Path, list[str]]]:
-    """Yield the folders that hold sources, with their files, sorted; what building leaves is skipped.
+    """Yield the source folders with their files, sorted; skip build output.
 
-    A folder with a marker such as COLCON_IGNORE is skipped too, unless one of the folders `kept` is in it.
+    Also skip a folder with a marker such as COLCON_IGNORE, unless it contains one of the folders `kept`.
     """
     for looked, (folder, names, files) in enumerate(os.walk(root)):
         if looked >= LIMIT:
@@ -36,16 +36,16 @@ def _holds_sources(folder: str, name: str) -> bool:
 
 
 def is_ignored(folder: Path, root: Path) -> bool:
-    """Tell whether a folder, or one around it below the root, has a marker such as COLCON_IGNORE."""
+    """Return whether a folder or one of its parents below the root has a marker such as COLCON_IGNORE."""
     around = [one for one in (folder, *folder.parents) if one != root and one.is_relative_to(root)]
     return any((one / marker).exists() for one in around for marker in MARKERS)
 
 
 def workspace_root(path: Path) -> Path | None:
-    """Return the folder of the workspace around a file or folder, None without a package or repository.
+    """Return the root of the workspace around a file or folder; None without a package or repository.
 
-    That is the `src` of a colcon or catkin workspace, else the outermost folder of the git repository, else the folder
-    that holds the outermost package.
+    That is the `src` of a colcon or catkin workspace, else the outermost folder of the git repository, else the
+    folder that contains the outermost package.
     """
     around = (path, *path.parents) if path.is_dir() else tuple(path.parents)
     for folder in around:

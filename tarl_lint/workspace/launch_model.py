@@ -1,4 +1,4 @@
-"""The values of a launch file that was read: nodes, their names, remappings and parameters."""
+"""The contents of a launch file: nodes, their names, remappings and parameters."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ Kind = Literal["node", "container", "component"]
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """A parameter, or several as YAML. `name` is absolute or begins with `~`; for YAML it is the name above them.
+    """A parameter, or several as YAML. `name` is absolute or begins with `~`; for YAML it is their namespace.
 
-    `file` is where the value stands: the launch file, or the YAML file that it loads.
+    `file` contains the value: the launch file, or the YAML file that it loads.
     """
 
     name: str
@@ -27,7 +27,7 @@ class Setting:
 
 @dataclass(frozen=True, slots=True)
 class LaunchedNode:
-    """A node that a launch file starts. `settings` are its private parameters, in the order in which they are set.
+    """A node in a launch file. `settings` are its private parameters, in the order of setting.
 
     Names that only the robot knows stay symbolic: `/$(arg robot)`. `condition` is the condition of which only the
     robot knows whether it holds, "" if the node is started in any case. For a component, `executable` is its class.
@@ -48,7 +48,7 @@ class LaunchedNode:
 
 @dataclass(frozen=True, slots=True)
 class Launch:
-    """A launch file with what it includes. `settings` are the parameters outside of nodes."""
+    """A launch file with its included files. `settings` are the parameters outside of nodes."""
 
     file: Path
     nodes: tuple[LaunchedNode, ...] = ()

@@ -1,4 +1,4 @@
-"""Read ROS 1 launch files: nodes with namespaces, remappings and parameters. Nothing is started, no command is run."""
+"""Read ROS 1 launch files: nodes with namespaces, remappings and parameters. No command is run."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from tarl_lint.workspace.model import Problem, Workspace
 from tarl_lint.workspace.ros_names import joined
 from tarl_lint.workspace.substitutions import Scope, SymbolicError, scalar
 
-DEEPEST: Final = 20  # files that include each other
-LARGEST: Final = 1_000_000  # bytes of a launch, text or YAML file
-MOST: Final = 5_000  # elements of a launch file with all that it includes
+DEEPEST: Final = 20  # limit on nested includes
+LARGEST: Final = 1_000_000  # bytes, limit on a launch, text or YAML file
+MOST: Final = 5_000  # limit on the elements of a launch file and its includes
 
 
 @dataclass(frozen=True)
 class _Place:
-    """Where an element stands: its file's names, and what groups around it say."""
+    """The context of an element: the substitutions of its file, and the settings of enclosing groups."""
 
     scope: Scope
     namespace: str = "/"
     remaps: tuple[tuple[str, str], ...] = ()
-    private: tuple[Setting, ...] = ()  # of all nodes that follow
+    private: tuple[Setting, ...] = ()  # private parameters of all following nodes
     depth: int = 0
     condition: str = ""  # around this place, known on the robot only
 
@@ -41,7 +41,7 @@ class _Reader:
     seen: int = 0
 
     def file(self, path: Path, arguments: Mapping[str, str | None], place: _Place | None) -> None:
-        """Read a launch file with the arguments that it is given."""
+        """Read a launch file with its arguments."""
         root = xml_root(path, self.problems)
         if root is not None:
             scope = Scope(self.workspace, path, dict(arguments))
@@ -63,7 +63,7 @@ class _Reader:
                 self._problem(element, place, f"<{element.tag}>: {reason}")
 
     def _element(self, element: Element, place: _Place) -> _Place:
-        """Read one element; return the place of those that follow."""
+        """Read one element; return the context of the following ones."""
         if element.tag == "arg":
             return self._argument(element, place)
         if element.tag == "remap":
@@ -86,7 +86,7 @@ class _Reader:
     def _argument(self, element: Element, place: _Place) -> _Place:
         name = element.get("name", "")
         if name in place.scope.arguments and "value" not in element.attrib:
-            return place  # given from outside
+            return place  # set by the including file
         stated = element.get("value", element.get("default"))
         value: str | None = None
         try:
@@ -202,14 +202,14 @@ class _Reader:
 
 
 def read_xml(path: Path, workspace: Workspace, arguments: Mapping[str, str] | None = None) -> Launch:
-    """Return what a ROS 1 launch file starts, with the defaults of the arguments that are not given."""
+    """Read a ROS 1 launch file, with defaults for missing arguments."""
     reader = _Reader(workspace)
     reader.file(path, dict(arguments or {}), None)
     return Launch(path, tuple(reader.nodes), tuple(reader.settings), tuple(reader.problems))
 
 
 def _parameter(above: str, name: str) -> str:
-    """Return the name of a parameter: private within a node, or with `~`; else absolute."""
+    """Return the name of a parameter: private inside a node or with `~`, else absolute."""
     if name.startswith("~") or (above == "~" and not name.startswith("/")):
         return "~" + name.lstrip("~").strip("/")
     return joined(above if above != "~" else "/", name)

@@ -1,4 +1,4 @@
-"""Read `package.xml`: the name of a package, how it is built, what it depends on."""
+"""Read `package.xml`: name, build type and dependencies of a package."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _BUILD_TYPES: Final[tuple[Kind, ...]] = ("ament_python", "ament_cmake", "catkin"
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """What `package.xml` says of a package."""
+    """The contents of `package.xml`."""
 
     name: str
     kind: Kind
@@ -27,7 +27,7 @@ class Manifest:
 
 
 def manifest(folder: Path) -> tuple[Manifest, list[Problem]]:
-    """Return the manifest in a folder; the folder's name stands for one that cannot be read."""
+    """Return the manifest in a folder; if it cannot be read, the package has the folder's name."""
     path = folder / "package.xml"
     root, problem = _root(path)
     if root is None:
@@ -53,7 +53,7 @@ def _root(path: Path) -> tuple[ElementTree.Element | None, str]:
 
 
 def _kind(folder: Path, stated: str, depends: tuple[str, ...]) -> Kind:
-    """Return the build type: as stated, else as the build tool depended on, else as the files tell."""
+    """Return the build type: as stated, else by the build tool dependency, else by the files."""
     for kind in _BUILD_TYPES:
         if stated == kind:
             return kind

@@ -22,9 +22,9 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Executable:
-    """A Python program of a package: its name for `ros2 run` or `rosrun`, its file, the function of an entry point.
+    """A Python program of a package: name for `ros2 run` or `rosrun`, file, and function of the entry point.
 
-    `path` is None where the declared file does not exist.
+    `path` is None if the declared file does not exist.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Executable:
 
 @dataclass(frozen=True, slots=True)
 class ImportRoot:
-    """A top-level module or package that installing makes importable, and the folder or file it comes from."""
+    """A top-level module or package that the installation makes importable, with its folder or file."""
 
     name: str
     path: Path
@@ -60,7 +60,7 @@ class Package:
 
 @dataclass(frozen=True, slots=True)
 class Workspace:
-    """All packages below a folder, sorted by name; the first of two packages with the same name counts."""
+    """All packages below a folder, sorted by name; of packages with the same name, the first counts."""
 
     root: Path
     packages: tuple[Package, ...] = ()

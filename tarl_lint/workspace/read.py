@@ -1,4 +1,4 @@
-"""Read a workspace: every package below a folder, and what it holds."""
+"""Read a workspace: every package below a folder, with its contents."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _YAML: Final = (".yaml", ".yml")
 
 @dataclass
 class _Found:
-    """The files of a package, while folders are walked."""
+    """Collects the files of a package while folders are walked."""
 
     folder: Path
     declared: bool
@@ -28,7 +28,7 @@ class _Found:
     scripts: list[Path] = field(default_factory=list)
 
     def take(self, path: Path) -> None:
-        """Sort a file in by its name."""
+        """Classify a file by its name."""
         name, above = path.name, path.parent.name
         if name.endswith(_LAUNCH) or (above == "launch" and _is_launch_file(path)):
             self.launch_files.append(path)
@@ -43,7 +43,7 @@ class _Found:
 def read(root: Path, kept: frozenset[Path] = frozenset()) -> Workspace:
     """Return the description of the workspace below a folder. Nothing is executed, nothing is written.
 
-    Packages that a marker such as COLCON_IGNORE hides are left out, unless one of the folders `kept` is in them.
+    Packages hidden by a marker such as COLCON_IGNORE are skipped, unless they contain one of the folders `kept`.
     """
     found: dict[Path, _Found] = {}
     for folder, files in folders(root.resolve(), kept):
@@ -70,7 +70,7 @@ def _package(found: _Found) -> Package:
     problems: list[Problem] = []
     if found.declared:
         declared, problems = manifest(found.folder)
-    else:  # definitions without a package: the folder's name stands for it
+    else:  # definitions outside of packages: use the folder's name as package name
         declared = Manifest(found.folder.name, "unknown")
     executables, modules, more = installed(found.folder, declared, found.scripts)
     return Package(
@@ -89,7 +89,7 @@ def _package(found: _Found) -> Package:
 
 
 def _is_launch_file(path: Path) -> bool:
-    """Tell whether a file in a folder `launch` is a launch file without the usual ending."""
+    """Return whether a file in a folder `launch` is a launch file despite an unusual ending."""
     if path.suffix == ".xml":
         return _mentions(path, b"<launch")
     return path.name.endswith("_launch.py")

@@ -21,7 +21,7 @@ _SCANNED: Final = frozenset({"setuptools.find_packages", "setuptools.find_namesp
 
 @dataclass(frozen=True)
 class Setup:
-    """What a package installs. `packages` is None where all packages below `folders[""]` are installed."""
+    """The contents of a package's setup files. `packages` is None if all packages below `folders[""]` are installed."""
 
     packages: tuple[str, ...] | None = ()
     modules: tuple[str, ...] = ()
@@ -72,7 +72,7 @@ def _from_py(path: Path, problems: list[Problem]) -> dict[str, Any]:
 
 
 def _from_cfg(path: Path, problems: list[Problem]) -> dict[str, Any]:
-    """Return what `setup.cfg` says, in the form of the arguments of `setup`."""
+    """Return the contents of `setup.cfg` as arguments of `setup`."""
     parser = configparser.ConfigParser(interpolation=None, strict=False)
     try:
         parser.read_string(read_text(path, LARGEST))
@@ -144,7 +144,7 @@ def _texts(path: Path, what: str, values: Any, problems: list[Problem]) -> tuple
 def _console(path: Path, entries: Any, problems: list[Problem]) -> list[tuple[str, str, str]]:
     if isinstance(entries, dict):
         lines = entries.get("console_scripts", ())
-    else:  # the text of an INI section
+    else:  # text of an INI section
         lines = str(entries).partition("[console_scripts]")[2].partition("[")[0]
     found = []
     for line in (

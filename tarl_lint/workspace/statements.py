@@ -1,6 +1,6 @@
-"""Interpret the statements of a file whose values are constant: assignments, loops, functions, `if` with known tests.
+"""Interpret a file's constant statements: assignments, loops, functions, `if` with known tests.
 
-Neither the file nor any module that it imports is executed; functions of libraries are models that the caller gives.
+Neither the file nor its imports are executed; the caller supplies models of library functions.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from tarl_lint.workspace.bounded_files import UnreadableError, read_bytes
 from tarl_lint.workspace.expressions import Evaluator, Library, Unknown, unknown
 from tarl_lint.workspace.model import Problem
 
-BUDGET: Final = 50_000  # statements of one file
-DEEPEST: Final = 30  # calls of the file's own functions within each other
-LARGEST: Final = 1_000_000  # bytes of a file
+BUDGET: Final = 50_000  # limit on interpreted statements per file
+DEEPEST: Final = 30  # limit on nested calls of the file's own functions
+LARGEST: Final = 1_000_000  # bytes, limit on a file
 
 
 class _Returned(Exception):  # noqa: N818 - control flow, never an error
@@ -39,14 +39,14 @@ class Function:
 
 
 class Interpreter(Evaluator):
-    """Runs one file. `models` are functions and values of libraries, by full name; `problems` is filled on the way."""
+    """Interprets one file. `models` holds functions and values of libraries by full name; collects `problems`."""
 
     def __init__(self, file: Path, models: Mapping[str, Any]) -> None:
         super().__init__(models)
         self.file = file
         self.names: dict[str, Any] = {"__file__": str(file), "__name__": "__main__"}
         self.problems: list[Problem] = []
-        self.line = 0  # of the call that is being made
+        self.line = 0  # line of the current call
         self._budget = BUDGET
         self._depth = 0
 
@@ -60,14 +60,14 @@ class Interpreter(Evaluator):
         return self.names
 
     def called(self, name: str, *args: Any) -> Any:
-        """Return what a function of the file returns for some arguments, `Unknown` without such a function."""
+        """Call a function of the file and return its value; `Unknown` if there is no such function."""
         function = self.names.get(name)
         if not isinstance(function, Function):
             return Unknown(0, name)
         return self._enter(function, list(args), {})
 
     def call(self, function: Any, args: list[Any], keywords: dict[str, Any], node: ast.Call) -> Any:
-        """Return what a call returns: of the file's own function, or of a model."""
+        """Return the value of a call of one of the file's functions or of a model."""
         if isinstance(function, Function):
             return self._enter(function, args, keywords) if self._depth < DEEPEST else unknown(node)
         before, self.line = self.line, node.lineno
@@ -84,7 +84,7 @@ class Interpreter(Evaluator):
             return Unknown(function.node.lineno, function.node.name)
 
     def problem(self, line: int, reason: str) -> None:
-        """Take note of something that cannot be read."""
+        """Record a problem."""
         self.problems.append(Problem(self.file, line, reason))
 
     def _lambda(self, node: ast.Lambda, names: Mapping[str, Any]) -> Any:
@@ -157,7 +157,7 @@ class Interpreter(Evaluator):
             self.problem(
                 statement.lineno, f"the condition `{ast.unparse(statement.test)[:60]}` is not constant"
             )
-            self._body(statement.body, names)  # what may be there is shown rather than lost
+            self._body(statement.body, names)  # rather show too much than lose a node
         else:
             self._body(statement.body if test else statement.orelse, names)
 
@@ -219,7 +219,7 @@ class Interpreter(Evaluator):
 
 
 def parsed(file: Path, problems: list[Problem]) -> ast.Module | None:
-    """Return the syntax tree of a file, None with a problem where it cannot be read or parsed."""
+    """Return the syntax tree of a file; None, with a problem recorded, if it cannot be read or parsed."""
     try:
         return ast.parse(read_bytes(file, LARGEST))
     except UnreadableError as reason:

@@ -20,19 +20,19 @@ _TRUTH: Final = {"true": True, "false": False}
 
 
 class SymbolicError(Exception):
-    """A text depends on what only the robot knows; the message is the reason."""
+    """A text depends on values known only on the robot; the message is the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scope:
-    """What a text may name: the arguments of its file (None for one without a value), its folder, the packages."""
+    """Names for substitutions: the file's arguments (None: no value), its folder, and the packages."""
 
     workspace: Workspace
     file: Path
     arguments: Mapping[str, str | None]
 
     def text(self, text: str) -> str:
-        """Return a text with its arguments replaced. Raises SymbolicError where one has no value."""
+        """Return a text with its substitutions replaced. Raises SymbolicError if one has no value."""
         if text.startswith("$(eval ") and text.endswith(")"):
             return str(self._evaluated(text[len("$(eval ") : -1]))
         return _ARGUMENT.sub(lambda found: self._replaced(found[1].split()), text)
@@ -80,7 +80,7 @@ class Scope:
         try:
             tree = ast.parse(expression.strip(), mode="eval")
         except (SyntaxError, ValueError, RecursionError, MemoryError):
-            raise SymbolicError(f"$(eval {expression}) is no expression of Python") from None
+            raise SymbolicError(f"$(eval {expression}) is not a Python expression") from None
         names: dict[str, Any] = {key: scalar(one) for key, one in self.arguments.items() if one is not None}
         names |= {"true": True, "false": False, "pi": math.pi, "e": math.e, "find": self._found}
         names |= {"arg": lambda name: scalar(self._argument(name)), "optenv": _otherwise}
@@ -92,14 +92,14 @@ class Scope:
 
 
 def _otherwise(_: str, default: str = "") -> str:
-    """Return the default of an environment variable, which is known on the robot only."""
+    """Return the default of an environment variable, whose value is known only on the robot."""
     return default
 
 
 def scalar(text: str, kind: str = "auto") -> Scalar:
-    """Return a value in the type that `param` states: `int`, `double`, `bool`, `str`; by its look with `auto`.
+    """Convert a value to a `param` type: `int`, `double`, `bool`, `str`, or guessed for `auto`.
 
-    Raises SymbolicError for a text that is not of its type.
+    Raises SymbolicError if the text does not fit the type.
     """
     stripped = text.strip()
     try:
