@@ -7,21 +7,24 @@ import io
 import os
 import sys
 from argparse import Namespace
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Final
+from typing import Final, TextIO, TypeVar
 
 from tarl_lint import baseline, report
-from tarl_lint.errors import LintError, OutputError
+from tarl_lint.errors import LintError, OutputError, UsageError
 from tarl_lint.files import shown, write_whole
-from tarl_lint.options import options, parser
+from tarl_lint.options import DRAWN, options, parser
 from tarl_lint.report import paint, summary
 from tarl_lint.report.line import Line, View, plain
 from tarl_lint.run import runner
+from tarl_lint.run.progress import Tell, silent
 from tarl_lint.run.runner import Result
 from tarl_lint.settings.config import Config, Options, resolve
 from tarl_lint.settings.schema import BASELINE_NAME
+
+T = TypeVar("T")
 
 FOUND: Final = 1
 UNUSABLE: Final = 2
@@ -65,6 +68,10 @@ def _run(typed: Namespace) -> int:
     if typed.explain is not None:
         _print(_explanation(typed.explain))
         return 0
+    if typed.launch is not None or typed.origin or typed.target:
+        return _launched(typed)
+    if typed.format == DRAWN:
+        raise UsageError(f"--format {DRAWN} draws the nodes of launch files: add --launch.")
     chosen = options(typed)
     config = resolve(chosen)
     _check(config)
@@ -81,6 +88,26 @@ def _run(typed: Namespace) -> int:
     return FOUND if runner.exceeds(result, config) else 0
 
 
+def _launched(typed: Namespace) -> int:
+    """Report the systems of launch files."""
+    from tarl_lint.system import command
+
+    asked = command.request(typed.launch, typed.paths, typed.origin, typed.target)
+    if typed.format not in command.FORMATS:
+        raise UsageError(
+            f"--format {typed.format} cannot show launch files: use one of {', '.join(command.FORMATS)}."
+        )
+    typed.paths = [asked.root]
+    config = resolve(options(typed))
+    _check(config)
+    found = command.judged(_with_progress(lambda tell: command.systems(asked, config, tell)), config)
+    if typed.output_file:
+        _write_file(typed.output_file, command.rendered(typed.format, found, asked, _view(typed)))
+    else:
+        _print(command.rendered(typed.format, found, asked, _view(typed, sys.stdout)))
+    return FOUND if command.new_hazards(found) and config.fail_on != "never" else 0
+
+
 def _explanation(code: str) -> Iterator[Line]:
     from tarl_lint.explain import explanation  # imports the rules' texts, which most runs do not need
 
@@ -88,13 +115,18 @@ def _explanation(code: str) -> Iterator[Line]:
 
 
 def _lint(chosen: Options, config: Config) -> Result:
-    """Run the linter; show the progress of a long run on a terminal."""
+    """Run the linter."""
+    return _with_progress(lambda tell: runner.run(chosen, config, tell))
+
+
+def _with_progress(work: Callable[[Tell], T]) -> T:
+    """Do what may take long; show its progress on a terminal."""
     if not sys.stderr.isatty():
-        return runner.run(chosen, config)
+        return work(silent)
     from tarl_lint.run.progress import Progress
 
     with Progress(sys.stderr) as progress:
-        return runner.run(chosen, config, progress.tell)
+        return work(progress.tell)
 
 
 def _check(config: Config) -> None:
@@ -120,21 +152,28 @@ def _check(config: Config) -> None:
 
 def _show(typed: Namespace, result: Result) -> None:
     """Print the report, or write it to a file; information without a place in the format goes to standard error."""
-    wanted = View(
+    if typed.output_file:
+        view = _view(typed)
+        _write_file(typed.output_file, report.render(typed.format, result, view))
+    else:
+        view = _view(typed, sys.stdout)
+        _print(report.render(typed.format, result, view))
+    if typed.format not in report.FOR_PEOPLE:
+        for line in (*summary.vanished(result, view), *summary.unused(result), *summary.unmatched(result)):
+            print(plain(line), file=sys.stderr)
+
+
+def _view(typed: Namespace, stream: TextIO | None = None) -> View:
+    """Return the display settings, for a terminal if the report goes to one."""
+    view = View(
         show_paths=typed.show_paths or typed.all_steps,
         all_steps=typed.all_steps,
         most_flows=typed.max_paths,
         statistics=typed.statistics,
     )
-    if typed.output_file:
-        view = wanted
-        _write_file(typed.output_file, report.render(typed.format, result, view))
-    else:
-        view = replace(wanted, width=paint.width_of(sys.stdout), glyphs=paint.glyphs_for(sys.stdout))
-        _print(report.render(typed.format, result, view))
-    if typed.format not in report.FOR_PEOPLE:
-        for line in (*summary.vanished(result, view), *summary.unused(result), *summary.unmatched(result)):
-            print(plain(line), file=sys.stderr)
+    if stream is None:
+        return view
+    return replace(view, width=paint.width_of(stream), glyphs=paint.glyphs_for(stream))
 
 
 def _print(lines: Iterable[Line]) -> None:

@@ -27,6 +27,7 @@ _EPILOG: Final = (
     "or baseline, 130 interrupted. Settings are read from [tool.tarl-lint] in pyproject.toml."
 )
 _DASH: Final = Path("-")
+DRAWN: Final = "svg"  # a format of launch files only
 MOST_SHOWN: Final = 100  # flows shown individually in a text report, about ten screens
 
 
@@ -113,6 +114,7 @@ def parser() -> argparse.ArgumentParser:
         metavar="PATH",
         help="files and directories (default: .); - reads standard input",
     )
+    _add_system(made.add_argument_group("launch files"))
     made.add_argument("--version", action="version", version=f"tarl-lint {__version__}")
     made.add_argument("--explain", metavar="CODE", help="explain a rule, with examples, and exit")
     made.add_argument("--show-settings", action="store_true", help="show the settings in use and exit")
@@ -123,13 +125,25 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
+def _add_system(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--launch",
+        metavar="FILE",
+        help="analyse the nodes of a launch file as one system, its arguments as NAME:=VALUE; all: each launch file",
+    )
+    group.add_argument("--from", dest="origin", metavar="TOPIC", help="show what data of this topic reaches")
+    group.add_argument(
+        "--to", dest="target", metavar="TOPIC", help="show what reaches this topic, through what"
+    )
+
+
 def _add_output(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--format",
-        choices=tuple(FORMATS),
+        choices=(*FORMATS, DRAWN),
         default="text",
         metavar="FORMAT",
-        help=f"one of {', '.join(FORMATS)} (default: text)",
+        help=f"one of {', '.join(FORMATS)} (default: text); with --launch text, json, mermaid, {DRAWN}",
     )
     group.add_argument(
         "--show-paths", action="store_true", help="show the shortest chain of statements of every flow"

@@ -24,7 +24,7 @@ def report(result: Result, _view: View) -> Iterator[Line]:
     def written(step: Step) -> Written:
         text = known.get(step)
         if text is None:
-            text = known[step] = Written(dumped(_step(step), STEP_LEVEL))
+            text = known[step] = Written(dumped(statement(step), STEP_LEVEL))
         return text
 
     yield ((dumped(_document(result, written)), ""),)
@@ -32,7 +32,7 @@ def report(result: Result, _view: View) -> Iterator[Line]:
 
 def document(result: Result) -> dict[str, Any]:
     """Return all findings, including accepted flows, in the frozen order of keys."""
-    return _document(result, _step)
+    return _document(result, statement)
 
 
 def _document(result: Result, of_step: OfStep) -> dict[str, Any]:
@@ -57,7 +57,7 @@ def _diagnostic(finding: Finding, of_step: OfStep) -> dict[str, Any]:
     flow = {"flow": _flow(finding.flow, of_step)} if finding.flow else {}
     return {
         "code": finding.code,
-        **_extent(finding.span),
+        **extent(finding.span),
         "message": finding.message,
         "fingerprint": finding.fingerprint,
         "status": finding.status,
@@ -97,9 +97,10 @@ def _sink(sink: Sink) -> dict[str, Any]:
     }
 
 
-def _step(step: Step) -> dict[str, Any]:
+def statement(step: Step) -> dict[str, Any]:
+    """Return a step of a taint list."""
     return {
-        **_extent(step.span),
+        **extent(step.span),
         "qualname": step.site.qualname,
         "site": str(step.site),
         "code": step.code,
@@ -116,5 +117,6 @@ def _point(span: Span) -> dict[str, Any]:
     return {"path": span.path, "line": span.line, "column": span.column}
 
 
-def _extent(span: Span) -> dict[str, Any]:
+def extent(span: Span) -> dict[str, Any]:
+    """Return the file of a span, its start and its end."""
     return {**_point(span), "end_line": span.end_line, "end_column": span.end_column}

@@ -27,12 +27,12 @@ def _graph(drawn: Picture) -> Iterator[str]:
     yield "  %% solid: data is published; dotted: used only in conditions; each path through a box is a flow"
     numbers = drawn.numbers()
     for topic in drawn.topics:
-        yield f"  {numbers[topic.key]}([{_quoted(topic.label)}]):::topic"
+        yield f"  {numbers[topic.key]}([{quoted(topic.label)}]):::topic"
     edges: list[str] = []
     for index, (title, parts) in enumerate(drawn.boxes()):
-        yield f"  subgraph s{index} [{_quoted(title)}]"
+        yield f"  subgraph s{index} [{quoted(title)}]"
         for name, part in parts:
-            yield f"    {name}[{_quoted(part.label)}]:::{'new' if part.new else 'part'}"
+            yield f"    {name}[{quoted(part.label)}]:::{'new' if part.new else 'part'}"
             edges.extend(_edges(part, name, numbers))
         yield "  end"
     yield from edges
@@ -46,7 +46,7 @@ def _edges(part: Part, name: str, numbers: dict[str, str]) -> Iterator[str]:
         yield f"  {name} --> {numbers[topic.key]}"
 
 
-def _quoted(text: str) -> str:
+def quoted(text: str) -> str:
     """Return a text quoted, so that nothing in it is read as syntax or markup."""
     escaped = text.replace("#", "#35;").replace('"', "#quot;").replace("<", "#lt;").replace(">", "#gt;")
     return '"' + escaped.replace("`", "#96;").replace("\n", "<br/>") + '"'

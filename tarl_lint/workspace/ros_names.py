@@ -7,3 +7,20 @@ def joined(namespace: str, name: str) -> str:
     """Return an absolute name: `name` within `namespace`, or `name` itself where it is absolute."""
     whole = name if name.startswith("/") else f"{namespace}/{name}"
     return "/" + "/".join(part for part in whole.split("/") if part)
+
+
+def resolved(name: str, namespace: str, node: str) -> str:
+    """Return the absolute name of a topic, service or parameter that a node uses; `~name` is private to the node."""
+    if name.startswith("~"):
+        return joined(joined(namespace, node), name[1:].lstrip("/"))
+    return joined(namespace, name)
+
+
+def remapped(name: str, namespace: str, node: str, remaps: tuple[tuple[str, str], ...]) -> str:
+    """Return the absolute name under which a node's topic or service is known after remapping.
+
+    Both sides of a remapping are resolved as the node's own names; of several for one name, the last counts.
+    """
+    table = {resolved(old, namespace, node): resolved(new, namespace, node) for old, new in remaps}
+    whole = resolved(name, namespace, node)
+    return table.get(whole, whole)

@@ -162,7 +162,7 @@ def test_a_bug_of_ours_is_one_sentence(node, capsys, monkeypatch):
 
 
 def test_interruption_is_one_line(node, capsys, monkeypatch):
-    def interrupt(chosen, config):
+    def interrupt(chosen, config, tell):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(runner, "run", interrupt)

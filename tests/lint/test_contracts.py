@@ -57,4 +57,9 @@ def test_what_the_cache_looks_at_are_all_packages_that_decide_what_is_found():
 
     packages = {m.name for m in pkgutil.walk_packages(tarl_lint.__path__, "tarl_lint.") if m.ispkg}
     shown = {f"tarl_lint.{p.replace('/', '.')}" for p in PACKAGES}
-    assert packages - shown == {"tarl_lint.report", "tarl_lint.queries", "tarl_lint.workspace"}
+    assert packages - shown == {
+        "tarl_lint.report",
+        "tarl_lint.queries",
+        "tarl_lint.system",
+        "tarl_lint.workspace",
+    }

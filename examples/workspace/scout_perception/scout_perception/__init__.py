@@ -1,0 +1,1 @@
+"""An example of TARL: obstacles from a laser scan."""

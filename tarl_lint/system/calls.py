@@ -1,0 +1,36 @@
+"""Services that a program calls, by the literals in its code."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.evidence import Outline
+
+_PROXIES: Final = frozenset(["ServiceProxy"])
+_CLIENTS: Final = frozenset(["create_client"])
+
+
+def called_services(outline: Outline) -> Iterator[tuple[ast.Call, str, str]]:
+    """Yield the calls that make a client, with the literal name of the service and the last part of its type."""
+    for calls in outline.calls.values():
+        for call in calls:
+            made = _last(call.func)
+            places = (0, 1) if made in _PROXIES else (1, 0) if made in _CLIENTS else None
+            if places is None:
+                continue
+            name = _argument(call, places[0], ("name", "srv_name"))
+            kind = _argument(call, places[1], ("service_class", "srv_type"))
+            if isinstance(name, ast.Constant) and isinstance(name.value, str):
+                yield call, name.value, _last(kind) if kind is not None else ""
+
+
+def _argument(call: ast.Call, place: int, names: tuple[str, ...]) -> ast.expr | None:
+    named = next((one.value for one in call.keywords if one.arg in names), None)
+    return named if named is not None else call.args[place] if len(call.args) > place else None
+
+
+def _last(expr: ast.expr) -> str:
+    """Return the last part of a dotted name."""
+    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""

@@ -1,0 +1,109 @@
+"""Flows across nodes: chains of hops in which each begins at the topic where the one before ends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Final
+
+from tarl_lint.system.compose import UNKNOWN
+from tarl_lint.system.model import Chain, Hop
+
+MOST: Final = 200  # chains of one system
+STEPS: Final = 100_000  # of the search
+
+
+def chains(hops: Sequence[Hop], origin: str = "", target: str = "") -> tuple[tuple[Chain, ...], bool]:
+    """Return the chains between two topics, and whether there are more than `MOST`.
+
+    Without `origin`, chains begin where data enters the nodes that were read; without `target`, they end where it
+    leaves them. A chain passes each topic once.
+    """
+    from_topic: dict[str, list[Hop]] = {}
+    for hop in hops:
+        if hop.source != hop.sink:
+            from_topic.setdefault(hop.source, []).append(hop)
+    starts = [slashed(origin)] if origin else _first(hops)
+    wanted = {slashed(target)} if target else _last(hops)
+    leading = _leading(hops, wanted)
+    found: list[Chain] = []
+    for chain in _walk(from_topic, starts, wanted, leading):
+        if len(found) >= MOST:
+            return tuple(found), True
+        found.append(chain)
+    return tuple(sorted(found, key=lambda c: [(h.source, h.node, h.sink) for h in c.hops])), False
+
+
+def _first(hops: Sequence[Hop]) -> list[str]:
+    """Return the topics at which flows begin; all if there are only cycles."""
+    sources = {hop.source for hop in hops}
+    return sorted(_ends(sources, [(hop.sink, hop.source, hop.kind != "not read") for hop in hops]) or sources)
+
+
+def _last(hops: Sequence[Hop]) -> set[str]:
+    """Return the topics at which flows end; all if there are only cycles."""
+    sinks = {hop.sink for hop in hops}
+    return (_ends(sinks, [(hop.source, hop.sink, hop.kind != "not read") for hop in hops]) or sinks) | {
+        UNKNOWN
+    }
+
+
+def _ends(topics: set[str], edges: Sequence[tuple[str, str, bool]]) -> set[str]:
+    """Return the topics from which no edge leads on, or none of a node that was read and only in a circle."""
+    after: dict[str, set[str]] = {}
+    for one, other, _ in edges:
+        after.setdefault(one, set()).add(other)
+    read = {one for one, _, certain in edges if certain}
+    return {one for one in topics if one not in after or (one not in read and _returns(one, after))} | (
+        topics & {UNKNOWN}
+    )
+
+
+def _returns(topic: str, after: Mapping[str, set[str]]) -> bool:
+    found: set[str] = set()
+    pending = list(after.get(topic, ()))
+    while pending:
+        one = pending.pop()
+        if one not in found:
+            found.add(one)
+            pending += after.get(one, ())
+    return topic in found
+
+
+def slashed(topic: str) -> str:
+    """Return a topic as the user wrote it, as an absolute name."""
+    return topic if topic.startswith("/") else f"/{topic}"
+
+
+def _leading(hops: Iterable[Hop], wanted: set[str]) -> set[str]:
+    """Return the topics from which hops lead to a wanted one."""
+    before: dict[str, set[str]] = {}
+    for hop in hops:
+        before.setdefault(hop.sink, set()).add(hop.source)
+    found, pending = set(wanted), list(wanted)
+    while pending:
+        for topic in before.get(pending.pop(), set()) - found:
+            if topic != UNKNOWN:
+                pending.append(topic)
+            found.add(topic)
+    return found
+
+
+def _walk(
+    from_topic: dict[str, list[Hop]], starts: Sequence[str], wanted: set[str], leading: set[str]
+) -> Iterator[Chain]:
+    steps = 0
+    for start in starts:
+        pending: list[tuple[Hop, ...]] = [(hop,) for hop in reversed(from_topic.get(start, ()))]
+        while pending and steps < STEPS:
+            steps += 1
+            path = pending.pop()
+            last = path[-1].sink
+            if last in wanted:
+                yield Chain(path)
+                if last == UNKNOWN or last not in from_topic:
+                    continue
+            if last == UNKNOWN or last not in leading:
+                continue
+            passed = {start, *(hop.sink for hop in path)}
+            pending += [(*path, hop) for hop in reversed(from_topic.get(last, ())) if hop.sink not in passed
+                        or hop.sink == UNKNOWN]  # fmt: skip

@@ -1,0 +1,175 @@
+"""`tarl-lint --launch`: read launch files, analyse the programs that they start, and report the systems."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Final
+
+from tarl_lint import baseline
+from tarl_lint.errors import UsageError
+from tarl_lint.files import shown
+from tarl_lint.model import Finding
+from tarl_lint.read import discover
+from tarl_lint.read.discover import SourceFile
+from tarl_lint.read.source import Script
+from tarl_lint.report.line import Line, View, unbroken
+from tarl_lint.run import runner
+from tarl_lint.run.progress import Tell, silent
+from tarl_lint.settings.config import Config
+from tarl_lint.system import compose
+from tarl_lint.system.interfaces import interface
+from tarl_lint.system.model import Interface, System
+from tarl_lint.workspace.folders import workspace_root
+from tarl_lint.workspace.launch_model import Launch, LaunchedNode
+from tarl_lint.workspace.launch_read import read_launch
+from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.programs import Program
+from tarl_lint.workspace.read import read
+
+ALL: Final = "all"
+FORMATS: Final = ("text", "json", "mermaid", "svg")
+
+
+@dataclass(frozen=True)
+class Request:
+    """What the user asked for: a launch file, `all`, or "" for all nodes without launch files; its arguments."""
+
+    launch: str = ""
+    arguments: tuple[tuple[str, str], ...] = ()
+    paths: tuple[Path, ...] = ()
+    origin: str = ""
+    target: str = ""
+
+    @cached_property
+    def root(self) -> Path:
+        """Return the folder of the workspace. Raises UsageError for a launch file that does not exist."""
+        if self.paths:
+            return self.paths[0]
+        if self.launch in ("", ALL):
+            return Path()
+        path = Path(self.launch)
+        if not path.is_file():
+            raise UsageError(f"{self.launch}: no such launch file. Name a file, or write --launch all.")
+        return workspace_root(path.resolve()) or path.resolve().parent
+
+
+def request(launch: str | None, paths: Sequence[Path], origin: str | None, target: str | None) -> Request:
+    """Return the request of a command line; a path with `:=` is an argument of the launch file."""
+    pairs = [str(path).partition(":=") for path in paths if ":=" in str(path)]
+    plain = tuple(path for path in paths if ":=" not in str(path))
+    if pairs and (launch is None or launch == ALL):
+        raise UsageError(f"{''.join(pairs[0])} is an argument of a launch file: name the file with --launch.")
+    if len(plain) > 1:
+        raise UsageError(f"--launch takes one folder of a workspace, not {len(plain)} paths.")
+    given = tuple((name, value) for name, _, value in pairs)
+    return Request(launch or "", given, plain, origin or "", target or "")
+
+
+class _Workbench:
+    """Reads the files of a workspace once, and each program at most once."""
+
+    def __init__(self, root: Path, config: Config, tell: Tell) -> None:
+        self.config, self.tell = config, tell
+        tell("Looking for packages")
+        self.workspace = read(root)
+        found = discover.find((root,), config)
+        self.files: dict[Path, SourceFile] = {one.path.resolve(): one for one in found.files}
+        self._known: dict[Program, Interface | str] = {}
+
+    @cached_property
+    def scripts(self) -> Mapping[str, Script]:
+        """Return the files by displayed path."""
+        found, _ = runner.read(tuple(self.files.values()), tell=self.tell)
+        return {one.path: one for one in found}
+
+    def interface(self, program: Program) -> Interface | str:
+        """Return the interface of a program, or the reason why it cannot be analysed."""
+        if program not in self._known:
+            self._known[program] = self._analysed(program)
+        return self._known[program]
+
+    def _analysed(self, program: Program) -> Interface | str:
+        file = self.files.get(program.path.resolve())
+        if file is None:
+            return f"{shown(program.path)} is excluded, or not Python"
+        script = self.scripts.get(file.shown)
+        if script is None:
+            return f"{file.shown} is not Python 3"
+        self.tell(f"Analysing {file.shown}")
+        owner = self.workspace.package_of(program.path)
+        package = owner.name if owner is not None else ""
+        others = [one for one in self.scripts.values() if one.path != script.path]
+        return interface(script, program.entry, package, others, self.config)
+
+
+def systems(asked: Request, config: Config, tell: Tell = silent) -> tuple[System, ...]:
+    """Return the systems that are asked for. Raises UsageError without a workspace or launch file."""
+    if not asked.root.is_dir():
+        raise UsageError(f"{asked.root}: no such folder. Name the folder of a workspace.")
+    bench = _Workbench(asked.root.resolve(), config, tell)
+    made = [
+        compose.composed(launch, bench.workspace, tuple(bench.files), bench.interface)
+        for launch in _launches(asked, bench.workspace)
+    ]
+    return tuple(replace(one, arguments=asked.arguments) for one in made)
+
+
+def _launches(asked: Request, workspace: Workspace) -> Iterator[Launch]:
+    if asked.launch not in ("", ALL):
+        yield read_launch(Path(asked.launch).resolve(), workspace, dict(asked.arguments))
+        return
+    files = [file for package in workspace.packages for file in package.launch_files]
+    if asked.launch == ALL and not files:
+        raise UsageError(f"{shown(workspace.root)}: there is no launch file in a package at or below it.")
+    if asked.launch == ALL:
+        for file in files:
+            launch = read_launch(file, workspace)
+            if launch.nodes or launch.problems:
+                yield launch
+        return
+    nodes = [
+        LaunchedNode(package.name, one.name, "", "/", one.path, 1)
+        for package in workspace.packages
+        for one in package.executables
+        if one.path is not None
+    ]
+    if not nodes:
+        raise UsageError(f"{shown(workspace.root)}: no package at or below it has a Python node.")
+    yield Launch(workspace.root, tuple(nodes))
+
+
+def rendered(form: str, found: Sequence[System], asked: Request, view: View) -> Iterator[Line]:
+    """Yield the lines of a report in one of the `FORMATS`."""
+    if form == "text":
+        from tarl_lint.system import text
+
+        yield from map(unbroken, text.report(found, view, asked.origin, asked.target))
+    elif form == "json":
+        from tarl_lint.report.indented import dumped
+        from tarl_lint.system.json import document
+
+        yield ((dumped(document(found, asked.origin, asked.target)), ""),)
+    elif form == "mermaid":
+        from tarl_lint.system import mermaid
+
+        yield from (((line, ""),) for line in mermaid.report(found))
+    elif form == "svg":
+        from tarl_lint.system import svg
+
+        yield from (((line, ""),) for line in svg.report(found))
+    else:
+        raise UsageError(f"--format {form} cannot show launch files: use one of {', '.join(FORMATS)}.")
+
+
+def judged(found: Sequence[System], config: Config) -> tuple[System, ...]:
+    """Return the systems with their hazards of the enabled rules; those of the baseline are marked as accepted."""
+    accepted = baseline.load(config.baseline).counts() if config.baseline else {}
+    return tuple(replace(one, findings=baseline.subtract(one.findings, accepted)) for one in found)
+
+
+def new_hazards(found: Sequence[System]) -> tuple[Finding, ...]:
+    """Return the hazards that are not in the baseline."""
+    return tuple(one for system in found for one in system.findings if one.status == "new")

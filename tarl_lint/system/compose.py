@@ -1,0 +1,79 @@
+"""Compose a system: which nodes a launch file starts, with the interfaces of their programs, and the flows of each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Final
+
+from tarl_lint.model import Finding, Kind
+from tarl_lint.system.model import Hop, Instance, Interface, Role, System, full_name
+from tarl_lint.workspace.launch_model import Launch, LaunchedNode
+from tarl_lint.workspace.model import Workspace
+from tarl_lint.workspace.programs import Program, program
+
+UNKNOWN: Final = "?"
+# programs of ROS whose topics are those of transforms, robot models and displays
+_SILENT: Final = frozenset(
+    ["static_transform_publisher", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui",
+     "state_publisher", "rviz", "rviz2", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_console", "rqt_image_view", "xacro"]
+)  # fmt: skip
+
+Reader = Callable[[Program], Interface | str]  # of a program, or the reason why it cannot be analysed
+
+
+def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: Reader) -> System:
+    """Return the system that a launch file starts. `files` are the Python files of the workspace."""
+    instances = [_instance(node, workspace, files, read) for node in launch.nodes]
+    return System(launch.file, tuple(instances), launch.settings, tuple(hops(instances)), launch.problems)
+
+
+def _instance(node: LaunchedNode, workspace: Workspace, files: Sequence[Path], read: Reader) -> Instance:
+    found = program(node, workspace, files)
+    interface = read(found) if isinstance(found, Program) else found
+    own = interface.name if isinstance(interface, Interface) else ""
+    name = full_name(node, own)
+    if isinstance(interface, Interface):
+        return Instance(node, name, interface)
+    return Instance(node, name, None, interface, node.executable in _SILENT)
+
+
+def hops(instances: Sequence[Instance]) -> list[Hop]:
+    """Return the flows of each node by topics as launched, and those that nodes that were not read may have."""
+    found: dict[tuple[str, str, str], list[Finding]] = {}
+    for instance in instances:
+        for finding, source, sink in _flows(instance):
+            found.setdefault((instance.name, source, sink), []).append(finding)
+    made = [Hop(node, source, sink, *_ranked(findings)) for (node, source, sink), findings in found.items()]
+    published = _names(instances, "publishes")
+    subscribed = _names(instances, "subscribes")
+    for instance in instances:
+        inputs = [one for one in instance.touched if one in published]
+        outputs = [one for one in instance.touched if one in subscribed and one not in published]
+        made += [Hop(instance.name, one, other, "not read") for one in inputs for other in outputs]
+    return sorted(made, key=lambda hop: (hop.node, hop.source, hop.sink, hop.kind))
+
+
+def _flows(instance: Instance) -> Iterator[tuple[Finding, str, str]]:
+    for finding in instance.interface.flows if instance.interface is not None else ():
+        flow = finding.flow
+        if flow is None:
+            continue
+        for source in flow.source.topics or (UNKNOWN,):
+            for sink in flow.sink.topics or (UNKNOWN,):
+                yield (
+                    finding,
+                    UNKNOWN if source == UNKNOWN else instance.resolve(source),
+                    UNKNOWN if sink == UNKNOWN else instance.resolve(sink),
+                )
+
+
+def _ranked(findings: Iterable[Finding]) -> tuple[Kind, tuple[Finding, ...]]:
+    """Return the kind of the strongest flow, and the flows, explicit ones first."""
+    ordered = sorted(findings, key=lambda one: (one.flow is None or one.flow.kind != "explicit", one.span))
+    first = ordered[0].flow
+    return ("explicit" if first is not None and first.kind == "explicit" else "implicit"), tuple(ordered)
+
+
+def _names(instances: Iterable[Instance], role: Role) -> frozenset[str]:
+    return frozenset(name for one in instances for name, _ in one.ends(role))

@@ -1,0 +1,121 @@
+"""The picture of a system: nodes, the topics between them, and who publishes and subscribes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from tarl_lint.system.compose import UNKNOWN
+from tarl_lint.system.model import System
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Names of nodes and topics, and edges between their numbers. Nodes in `unread` are drawn dashed.
+
+    An edge from a topic to a node is `(topic, node, kind)`: how data of the topic leaves the node again, "" if it does
+    not. `touching` are pairs of a node that was not read and a topic that its remappings name.
+    """
+
+    nodes: tuple[str, ...]
+    topics: tuple[str, ...]
+    unread: frozenset[str]
+    inputs: tuple[tuple[str, str, str], ...]
+    outputs: tuple[tuple[str, str], ...]
+    touching: tuple[tuple[str, str], ...]
+
+
+def drawing(system: System) -> Drawing:
+    """Return the picture of a system, the same for the same system."""
+    kinds: dict[tuple[str, str], str] = {}
+    outputs: set[tuple[str, str]] = set()
+    for hop in system.hops:
+        key = (hop.source, hop.node)
+        kinds[key] = "explicit" if "explicit" in (hop.kind, kinds.get(key)) else hop.kind
+        outputs.add((hop.node, hop.sink))
+    for name, instance, _ in system.ends("subscribes"):
+        kinds.setdefault((name, instance.name), "")
+    outputs |= {(instance.name, name) for name, instance, _ in system.ends("publishes")}
+    inputs = tuple(sorted((topic, node, kind) for (topic, node), kind in kinds.items()))
+    drawn = {(node, topic) for topic, node, _ in inputs} | outputs
+    touching = {(one.name, name) for one in system.instances for name in one.touched} - drawn
+    topics = {topic for _, topic in drawn | touching} - {UNKNOWN}
+    return Drawing(
+        tuple(dict.fromkeys(one.name for one in system.instances)),
+        tuple(sorted(topics)),
+        frozenset(one.name for one in system.instances if one.interface is None),
+        tuple(one for one in inputs if one[0] in topics),
+        tuple(sorted(one for one in outputs if one[1] in topics)),
+        tuple(sorted(touching)),
+    )
+
+
+def layers(drawn: Drawing) -> list[list[str]]:
+    """Return nodes and topics in columns from left to right: each after what leads to it, as far as cycles allow.
+
+    Names of nodes begin with `n `, those of topics with `t `.
+    """
+    edges = [(f"t {topic}", f"n {node}") for topic, node, _ in drawn.inputs]
+    edges += [(f"n {node}", f"t {topic}") for node, topic in (*drawn.outputs, *drawn.touching)]
+    every = [*(f"n {one}" for one in drawn.nodes), *(f"t {one}" for one in drawn.topics)]
+    forward = _without_cycles(every, edges)
+    depth = dict.fromkeys(every, 0)
+    for _ in every:
+        moved = False
+        for one, other in forward:
+            if depth[other] <= depth[one]:
+                depth[other], moved = depth[one] + 1, True
+        if not moved:
+            break
+    entered = {other for _, other in forward}
+    for name in every:  # what nothing leads to stands just before what it leads to
+        after = [depth[other] for one, other in forward if one == name]
+        if name not in entered and after:
+            depth[name] = min(after) - 1
+    columns: list[list[str]] = [[] for _ in range(max(depth.values(), default=-1) + 1)]
+    for name in every:
+        columns[depth[name]].append(name)
+    return _untangled(columns, forward)
+
+
+def _without_cycles(every: Iterable[str], edges: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return the edges without those that lead back to where a search in depth came from."""
+    after: dict[str, list[str]] = {}
+    for one, other in edges:
+        after.setdefault(one, []).append(other)
+    entered = {other for _, other in edges}
+    kept: list[tuple[str, str]] = []
+    state: dict[str, int] = {}
+    for start in sorted(every, key=lambda name: (name in entered, name)):
+        pending = [(start, iter(after.get(start, ())))] if start not in state else []
+        state.setdefault(start, 1)
+        while pending:
+            name, left = pending[-1]
+            other = next(left, "")
+            if not other:
+                state[name] = 2
+                pending.pop()
+            elif state.get(other) != 1:
+                kept.append((name, other))
+                if other not in state:
+                    state[other] = 1
+                    pending.append((other, iter(after.get(other, ()))))
+    return kept
+
+
+def _untangled(columns: list[list[str]], edges: list[tuple[str, str]]) -> list[list[str]]:
+    """Return the columns sorted by the mean height of what leads to each name (Sugiyama et al. 1981)."""
+    before: dict[str, list[str]] = {}
+    for one, other in edges:
+        before.setdefault(other, []).append(one)
+    height: dict[str, float] = {}
+    ordered = []
+    for column in columns:
+        means = {
+            name: sum(found) / len(found)
+            for name in column
+            if (found := [height[one] for one in before.get(name, ()) if one in height])
+        }
+        ordered.append(sorted(column, key=lambda name: (means.get(name, float(len(column))), name)))
+        height.update({name: float(number) for number, name in enumerate(ordered[-1])})
+    return ordered

@@ -1,0 +1,140 @@
+"""The values of a system: programs with their interfaces, the nodes that run them, and what flows between."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Literal
+
+from tarl_lint.model import Finding, Kind, Span
+from tarl_lint.workspace.launch_model import LaunchedNode, Setting
+from tarl_lint.workspace.model import Problem
+from tarl_lint.workspace.ros_names import joined, remapped
+
+Role = Literal["publishes", "subscribes", "serves", "calls"]
+
+
+@dataclass(frozen=True, slots=True)
+class Qos:
+    """Quality of service as far as the code states it; None where it is not constant."""
+
+    reliable: bool | None = None
+    latched: bool | None = None  # durability: transient local
+
+
+@dataclass(frozen=True, slots=True)
+class Endpoint:
+    """A use of a topic or service in a program. `names` are those in the code, empty if unknown."""
+
+    role: Role
+    names: tuple[str, ...]
+    type: str
+    span: Span
+    qos: Qos | None = None
+    place: str = ""  # qualified name of the function
+
+
+@dataclass(frozen=True)
+class Interface:
+    """What a program does as a node, by the names in its code.
+
+    `flows` are the findings TARL101 to TARL103. `name` is the node's name in the code, "" if it is computed.
+    `parameters` are the names that it declares or reads, None if some of them are computed. `whole` says that all
+    topics have constant names and that the analysis was complete.
+    """
+
+    path: str
+    name: str = ""
+    package: str = ""
+    endpoints: tuple[Endpoint, ...] = ()
+    flows: tuple[Finding, ...] = ()
+    parameters: frozenset[str] | None = None
+    whole: bool = False
+    loops: tuple[Span, ...] = ()  # publish calls without a watchdog, for TARL306
+
+
+@dataclass(frozen=True)
+class Instance:
+    """A node as launched. Without an interface, `unread` is the reason why its program was not read."""
+
+    node: LaunchedNode
+    name: str
+    interface: Interface | None = None
+    unread: str = ""
+    silent: bool = False  # known to publish nothing that other nodes subscribe to
+
+    def resolve(self, name: str) -> str:
+        """Return the name of a topic or service of the code as launched."""
+        own = self.name.rpartition("/")[2]
+        return remapped(name, self.node.namespace, own, self.node.remaps)
+
+    def ends(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
+        """Yield the endpoints of a role, by their names as launched; those with unknown names are left out."""
+        for one in self.interface.endpoints if self.interface is not None else ():
+            if one.role == role:
+                for name in one.names:
+                    yield self.resolve(name), one
+
+    @cached_property
+    def touched(self) -> tuple[str, ...]:
+        """Return the topics that the remappings of a node that was not read name, as launched."""
+        own = self.name.rpartition("/")[2]
+        names = {remapped(old, self.node.namespace, own, self.node.remaps) for old, _ in self.node.remaps}
+        return () if self.interface is not None else tuple(sorted(names))
+
+
+@dataclass(frozen=True)
+class Hop:
+    """The flows of one node from a topic to a topic, explicit ones first; none if the node was not read."""
+
+    node: str
+    source: str
+    sink: str
+    kind: Kind | Literal["not read"]
+    findings: tuple[Finding, ...] = ()
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A flow across nodes: hops of which each begins where the one before ends."""
+
+    hops: tuple[Hop, ...]
+
+    @property
+    def kind(self) -> Kind | Literal["not read"]:
+        """Return `explicit` if all hops are, `not read` if any node on the way was not read."""
+        kinds = {hop.kind for hop in self.hops}
+        return "not read" if "not read" in kinds else "implicit" if "implicit" in kinds else "explicit"
+
+
+@dataclass(frozen=True)
+class System:
+    """What one launch file starts. Hops and chains are sorted."""
+
+    file: Path
+    instances: tuple[Instance, ...] = ()
+    settings: tuple[Setting, ...] = ()
+    hops: tuple[Hop, ...] = ()
+    problems: tuple[Problem, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    arguments: tuple[tuple[str, str], ...] = field(default=())
+
+    @property
+    def complete(self) -> bool:
+        """Return whether every node was read, so that topics without another end have none."""
+        return all(
+            one.silent or (one.interface is not None and one.interface.whole) for one in self.instances
+        )
+
+    def ends(self, role: Role) -> Iterator[tuple[str, Instance, Endpoint]]:
+        """Yield the endpoints of a role of all nodes, by their names as launched."""
+        for instance in self.instances:
+            for name, endpoint in instance.ends(role):
+                yield name, instance, endpoint
+
+
+def full_name(node: LaunchedNode, own: str) -> str:
+    """Return the name of a launched node; `own` is the one in its code."""
+    return joined(node.namespace, node.name or own or node.executable.rpartition("::")[2])

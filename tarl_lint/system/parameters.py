@@ -1,0 +1,44 @@
+"""Names of the parameters that a program declares or reads, by the literals in its code."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Sequence
+from typing import Final
+
+from tarl_lint.read.source import Module
+
+READERS: Final = frozenset(
+    ["get_param", "get_param_cached", "has_param", "search_param", "declare_parameter", "declare_parameters",
+     "get_parameter", "get_parameter_or", "get_parameters", "get_parameters_by_prefix", "has_parameter"]
+)  # fmt: skip
+OPEN: Final = re.compile(
+    r"automatically_declare_parameters_from_overrides|allow_undeclared_parameters|get_parameters_by_prefix|"
+    r"get_param_names|dynamic_reconfigure|rosparam|param_server|generate_parameter_library"
+)
+
+
+def parameter_names(modules: Sequence[Module]) -> frozenset[str] | None:
+    """Return every string of the program that may name a parameter; None if a name is computed, or all are read."""
+    if any(OPEN.search(module.text) for module in modules):
+        return None
+    strings: set[str] = set()
+    for module in modules:
+        for node in ast.walk(module.tree):
+            if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                strings.add(node.value.lstrip("~/"))
+            elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute | ast.Name):
+                name = node.func.attr if isinstance(node.func, ast.Attribute) else node.func.id
+                if name in READERS and node.args and _computed(node.args[0]):
+                    return None
+    return frozenset(strings)
+
+
+def _computed(argument: ast.expr) -> bool:
+    """Return whether an argument is no literal name, or reads a whole group (`~`, `/`)."""
+    if isinstance(argument, ast.List | ast.Tuple):
+        return any(map(_computed, argument.elts[:1]))
+    if isinstance(argument, ast.Constant):
+        return not isinstance(argument.value, str) or argument.value.rstrip("/") in ("", "~")
+    return True

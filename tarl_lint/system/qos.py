@@ -1,0 +1,83 @@
+"""Quality of service that a publisher or subscription of rclpy asks for, as far as its code is constant."""
+
+from __future__ import annotations
+
+import ast
+from typing import Final
+
+from tarl_lint.evidence import Outline
+from tarl_lint.ir.nodes import Pos
+from tarl_lint.system.model import Qos
+
+_NAMED: Final = {
+    "qos_profile_sensor_data": Qos(reliable=False, latched=False),
+    "qos_profile_system_default": Qos(),
+    "qos_profile_default": Qos(reliable=True, latched=False),
+}
+_PLACES: Final = {"create_publisher": 2, "create_subscription": 3}
+_RELIABILITY: Final = {"RELIABLE": True, "BEST_EFFORT": False}
+_DURABILITY: Final = {"TRANSIENT_LOCAL": True, "VOLATILE": False}
+_FIELDS: Final = frozenset(["reliability", "durability"])
+
+
+def of_call(outline: Outline, pos: Pos) -> Qos | None:
+    """Return the quality of service that a call at a position asks for, None if it is not constant."""
+    call = outline.call(pos)
+    if call is None:
+        return None
+    name = call.func.attr if isinstance(call.func, ast.Attribute) else ""
+    place = _PLACES.get(name)
+    if place is None:
+        return None
+    given = next((one.value for one in call.keywords if one.arg in ("qos_profile", "qos")), None)
+    given = given if given is not None else call.args[place] if len(call.args) > place else None
+    return None if given is None else _of(given, outline, 0)
+
+
+def _of(expr: ast.expr, outline: Outline, depth: int) -> Qos | None:
+    if isinstance(expr, ast.Constant) and isinstance(expr.value, int):
+        return Qos(reliable=True, latched=False)
+    last = _last(expr)
+    if last in _NAMED:
+        return _NAMED[last]
+    if isinstance(expr, ast.Call) and _last(expr.func) == "QoSProfile":
+        return _profile(expr)
+    if isinstance(expr, ast.Name | ast.Attribute) and depth < 3:
+        values = outline.assigned.get(last, [])
+        if len(values) == 1 and not _changed(outline, last):
+            return _of(values[0], outline, depth + 1)
+    return None
+
+
+def _profile(call: ast.Call) -> Qos | None:
+    stated = {one.arg: one.value for one in call.keywords}
+    if None in stated:
+        return None
+    reliable = _RELIABILITY.get(_policy(stated.get("reliability"), "RELIABLE"))
+    latched = _DURABILITY.get(_policy(stated.get("durability"), "VOLATILE"))
+    return Qos(reliable, latched)
+
+
+def _policy(expr: ast.expr | None, otherwise: str) -> str:
+    """Return the name of a policy: the last part of `ReliabilityPolicy.BEST_EFFORT`, without an old prefix."""
+    if expr is None:
+        return otherwise
+    name = _last(expr)
+    for prefix in ("RMW_QOS_POLICY_RELIABILITY_", "RMW_QOS_POLICY_DURABILITY_"):
+        name = name.removeprefix(prefix)
+    return name
+
+
+def _changed(outline: Outline, name: str) -> bool:
+    """Return whether a policy of a profile is set after it was made."""
+    return any(
+        isinstance(node, ast.Attribute)
+        and node.attr in _FIELDS
+        and isinstance(node.ctx, ast.Store)
+        and _last(node.value) == name
+        for node in ast.walk(outline.tree)
+    )
+
+
+def _last(expr: ast.expr) -> str:
+    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""

@@ -1,0 +1,34 @@
+"""Find the Python program that a node of a launch file runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from tarl_lint.workspace.launch_model import LaunchedNode
+from tarl_lint.workspace.model import Workspace
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """The file that a node runs, and the function that is its entry point, "" if the file itself is run."""
+
+    path: Path
+    entry: str = ""
+
+
+def program(node: LaunchedNode, workspace: Workspace, files: Iterable[Path]) -> Program | str:
+    """Return the program of a node, or the reason why there is none. `files` are the Python files of the workspace."""
+    if node.kind != "node":
+        return "a composable node" if node.kind == "component" else "a container of composable nodes"
+    package = workspace.package(node.package)
+    if package is None:
+        return f"the package {node.package} is not in the workspace"
+    declared = next((one for one in package.executables if one.name == node.executable), None)
+    if declared is not None and declared.path is not None:
+        return Program(declared.path, declared.entry or "")
+    named = [one for one in files if one.name == node.executable and one.is_relative_to(package.folder)]
+    if named:  # rosrun finds a file anywhere in the package
+        return Program(min(named, key=lambda one: (len(one.parts), one)))
+    return f"no Python program {node.executable} in {node.package}"

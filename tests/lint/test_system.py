@@ -1,0 +1,267 @@
+"""The nodes of launch files as systems: interfaces as launched, flows across nodes, pictures, and questions."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from textwrap import dedent
+from xml.etree import ElementTree
+
+import jsonschema
+import pytest
+
+from tarl_lint.cli import main
+from tarl_lint.system import command
+from tarl_lint.system import json as system_json
+from tarl_lint.system.chains import MOST, chains
+from tarl_lint.system.model import Hop
+
+EXAMPLE = Path(__file__).parents[2] / "examples/workspace"
+SCHEMA = json.loads((Path(system_json.__file__).parent / "system.schema.json").read_text("utf-8"))
+
+MANIFEST = "<package><name>{}</name><export><build_type>{}</build_type></export></package>"
+RELAY = """\
+#!/usr/bin/env python3
+import rospy
+from std_msgs.msg import Float64
+rospy.init_node("relay")
+out = rospy.Publisher("out", Float64, queue_size=1)
+rospy.Subscriber("in", Float64, lambda msg: out.publish(2.0 * msg.data))
+rospy.spin()
+"""
+
+
+def write(folder: Path, files: dict[str, str]) -> Path:
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(dedent(text))
+        if text.startswith("#!"):
+            path.chmod(0o755)
+    return folder
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return a workspace with one node `relay` from `in` to `out`."""
+    monkeypatch.chdir(tmp_path)
+    return write(
+        tmp_path, {"arm/package.xml": MANIFEST.format("arm", "catkin"), "arm/scripts/relay.py": RELAY}
+    )
+
+
+def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    code = main(arguments)
+    out, err = capsys.readouterr()
+    return code, out, err
+
+
+def launched(folder: Path, body: str, name: str = "a.launch") -> str:
+    write(folder, {f"arm/launch/{name}": f"<launch>{body}</launch>"})
+    return str(folder / "arm/launch" / name)
+
+
+def relay(name: str, source: str, sink: str) -> str:
+    return (f'<node pkg="arm" type="relay.py" name="{name}"><remap from="in" to="{source}"/>'
+            f'<remap from="out" to="{sink}"/></node>')  # fmt: skip
+
+
+def flows(out: str) -> list[str]:
+    text = out.partition("Flows across nodes:\n")[2].partition("\n\n")[0]
+    return [line.strip() for line in text.splitlines()]
+
+
+def test_flows_pass_through_one_program_that_is_launched_twice(workspace, capsys):
+    file = launched(workspace, relay("first", "scan", "middle") + relay("second", "middle", "/cmd_vel"))
+    code, out, _ = run(capsys, "--launch", file)
+    assert flows(out) == ["/scan → /first → /middle → /second → /cmd_vel  explicit"]
+    assert code == 0
+
+
+def test_names_are_resolved_within_namespaces_and_private_ones_within_the_node(workspace, capsys):
+    file = launched(
+        workspace, f'<group ns="left">{relay("one", "~raw", "/out")}{relay("two", "raw", "done")}</group>'
+    )
+    _, out, _ = run(capsys, "--launch", file)
+    assert flows(out) == [
+        "/left/one/raw → /left/one → /out  explicit",
+        "/left/raw → /left/two → /left/done  explicit",
+    ]
+
+
+def test_arguments_choose_what_is_launched(workspace, capsys):
+    body = f'<arg name="robot" default="husky"/><group ns="$(arg robot)">{relay("one", "a", "b")}</group>'
+    file = launched(workspace, body)
+    assert flows(run(capsys, "--launch", file)[1]) == ["/husky/a → /husky/one → /husky/b  explicit"]
+    assert flows(run(capsys, "--launch", file, "robot:=jackal")[1]) == [
+        "/jackal/a → /jackal/one → /jackal/b  explicit"
+    ]
+
+
+def test_a_node_that_was_not_read_stands_between_topics_that_others_use(workspace, capsys):
+    driver = '<node pkg="base" type="mux" name="mux"><remap from="i" to="/raw"/><remap from="o" to="/safe"/></node>'
+    file = launched(workspace, relay("one", "/scan", "/raw") + driver + relay("two", "/safe", "/cmd_vel"))
+    _, out, _ = run(capsys, "--launch", file)
+    assert flows(out) == ["/scan → /one → /raw → [/mux, not read] → /safe → /two → /cmd_vel  not read"]
+    assert "not read: the package base is not in the workspace; remaps /raw, /safe" in out
+
+
+def test_questions_from_a_sensor_to_an_actuator(workspace, capsys):
+    file = launched(
+        workspace,
+        relay("one", "/scan", "/mid") + relay("two", "/odom", "/mid") + relay("out", "/mid", "/cmd"),
+    )
+    assert flows(run(capsys, "--launch", file, "--from", "scan", "--to", "/cmd")[1]) == [
+        "/scan → /one → /mid → /out → /cmd  explicit"
+    ]
+    assert len(flows(run(capsys, "--launch", file, "--to", "cmd")[1])) == 2
+    assert flows(run(capsys, "--launch", file, "--from", "/odom", "--to", "/mid")[1]) == [
+        "/odom → /two → /mid  explicit"
+    ]
+    assert (
+        "Nothing flows from /cmd to /scan."
+        in run(capsys, "--launch", file, "--from", "/cmd", "--to", "/scan")[1]
+    )
+    assert "No node that was read uses /sacn." in run(capsys, "--launch", file, "--from", "/sacn")[1]
+
+
+def test_without_a_launch_file_nodes_have_the_names_of_their_code(workspace, capsys):
+    _, out, _ = run(capsys, "--to", "/out")
+    assert out.startswith(".: ") or ", names as in the code: 1 node" in out
+    assert flows(out) == ["/in → /relay → /out  explicit"]
+
+
+def test_circles_end(workspace, capsys):
+    file = launched(workspace, relay("one", "/a", "/b") + relay("two", "/b", "/a"))
+    _, out, _ = run(capsys, "--launch", file)
+    assert flows(out) == [
+        "/a → /one → /b  explicit",
+        "/b → /two → /a  explicit",
+    ]
+
+
+def test_many_ways_are_cut_short():
+    hops = [Hop(f"/n{i}{j}", f"/t{i}", f"/t{i + 1}", "explicit") for i in range(12) for j in range(3)]
+    found, more = chains(hops)
+    assert (len(found), more) == (MOST, True)
+
+
+def test_main_blocks_of_imported_modules_do_not_run(workspace, capsys):
+    node = """\
+        #!/usr/bin/env python3
+        import rospy
+        import helper
+        from std_msgs.msg import Float64
+        if __name__ == "__main__":
+            rospy.init_node("user")
+            out = rospy.Publisher("twice", Float64, queue_size=1)
+            rospy.Subscriber("once", Float64, lambda msg: out.publish(helper.double(msg.data)))
+        """
+    helper = """\
+        import rospy
+        from std_msgs.msg import Float64
+        def double(value):
+            return 2 * value
+        if __name__ == "__main__":
+            out = rospy.Publisher("never", Float64, queue_size=1)
+            rospy.Subscriber("heard", Float64, lambda msg: out.publish(double(msg.data)))
+        """
+    write(workspace, {"arm/scripts/user.py": dedent(node), "arm/scripts/helper.py": dedent(helper)})
+    file = launched(workspace, '<node pkg="arm" type="user.py" name="user"/>')
+    _, out, _ = run(capsys, "--launch", file)
+    assert flows(out) == ["/once → /user → /twice  explicit"]
+    assert "never" not in out
+
+
+def test_fingerprints_are_those_of_a_run_without_launch_files(workspace, capsys):
+    file = launched(workspace, relay("one", "/scan", "/cmd_vel"))
+    (system,) = json.loads(run(capsys, "--launch", file, "--format", "json")[1])["systems"]
+    plain = json.loads(run(capsys, ".", "--format", "json")[1])["diagnostics"]
+    (hop,) = system["hops"]
+    assert [one["fingerprint"] for one in hop["flows"]] == [
+        one["fingerprint"] for one in plain if one["code"] == "TARL101"
+    ]
+
+
+@pytest.mark.parametrize("arguments", [["--launch", "all"], ["--to", "/cmd_vel"]])
+def test_the_json_of_the_example_has_its_schema(arguments, capsys, monkeypatch):
+    monkeypatch.chdir(EXAMPLE)
+    document = json.loads(run(capsys, *arguments, "--format", "json")[1])
+    jsonschema.validate(document, SCHEMA)
+    assert document["systems"]
+    assert all(chain["hops"] for system in document["systems"] for chain in system["chains"])
+
+
+def test_the_example_is_read_through_all_kinds_of_launch_files(capsys, monkeypatch):
+    monkeypatch.chdir(EXAMPLE)
+    _, out, _ = run(
+        capsys, "--launch", "scout_navigation/launch/bringup.launch.py", "robot:=r1", "--to", "/r1/cmd_vel"
+    )
+    assert flows(out) == [
+        " → ".join(
+            ["/r1/rear/scan", "/r1/detector", "/r1/obstacles", "/r1/planner", "/r1/cmd_vel_raw", "/r1/gate"]
+        )
+        + " → /r1/cmd_vel  explicit",
+        "/r1/stop → /r1/gate → /r1/cmd_vel  implicit",
+    ]
+
+
+def test_pictures_show_every_node_and_topic(capsys, monkeypatch):
+    monkeypatch.chdir(EXAMPLE)
+    drawn = {form: run(capsys, "--launch", "all", "--format", form)[1] for form in ("mermaid", "svg")}
+    for name in ("/scout/planner", "/scout/cmd_vel_raw", "/cart_1/wheels", "cart_base/launch/cart.launch"):
+        assert all(name in text for text in drawn.values())
+    root = ElementTree.fromstring(drawn["svg"])
+    boxes = [one for one in root.iter() if one.tag.endswith("rect")]
+    places = [tuple(float(one.get(key, "0")) for key in ("x", "y", "width", "height")) for one in boxes]
+    assert len(boxes) == len(
+        [
+            line
+            for line in drawn["mermaid"].splitlines()
+            if line.endswith((":::topic", ":::node", ":::unread"))
+        ]
+    )
+    assert not any(_overlap(one, other) for i, one in enumerate(places) for other in places[:i])
+
+
+def _overlap(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    (x1, y1, w1, h1), (x2, y2, w2, h2) = one, other
+    return x1 < x2 + w2 and x2 < x1 + w1 and y1 < y2 + h2 and y2 < y1 + h1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ["--launch", "none.launch"],
+            "none.launch: no such launch file. Name a file, or write --launch all.",
+        ),
+        (
+            ["--launch", "all", "robot:=a"],
+            "robot:=a is an argument of a launch file: name the file with --launch.",
+        ),
+        (["--launch", "all"], "there is no launch file in a package at or below it."),
+        (["--format", "svg"], "--format svg draws the nodes of launch files: add --launch."),
+        (
+            ["--launch", "all", "--format", "sarif"],
+            "--format sarif cannot show launch files: use one of text, json,",
+        ),
+        (["--launch", "all", "missing"], "missing: no such folder."),
+    ],
+)
+def test_mistakes_are_told_in_sentences(workspace, capsys, arguments, message):
+    code, _, err = run(capsys, *arguments)
+    assert code == 2
+    assert message in err
+
+
+def test_every_format_is_offered():
+    assert set(command.FORMATS) == {"text", "json", "mermaid", "svg"}
+
+
+def test_the_guide_shows_what_is_printed(capsys, monkeypatch):
+    guide = (EXAMPLE.parents[1] / "docs/howto/launch.md").read_text("utf-8")
+    shown = guide.partition("```console\n$ tarl-lint ")[2].partition("\n```")[0]
+    command_line, _, expected = shown.partition("\n")
+    monkeypatch.chdir(EXAMPLE)
+    assert run(capsys, *command_line.split())[1] == expected + "\n"
