@@ -1,1 +1,1 @@
-"""Models of what is not read: containers, records, strings, futures, ROS."""
+"""Models of code that is not analysed: containers, records, strings, futures, ROS."""

@@ -1,4 +1,4 @@
-"""Callables handed to libraries: what they return may be in what the library gives back, now or later."""
+"""Callables passed to libraries: their results can be part of the library's results, now or later."""
 
 from __future__ import annotations
 
@@ -21,12 +21,14 @@ from tarl_lint.models import containers
 from tarl_lint.models.smach import LATER
 from tarl_lint.trees import walk
 
-MAX_INSIDE: Final = 3  # levels of tables and lists in which a callable is looked for (constraints of solvers)
-KEPT_APART: Final = 500  # callables of one call; slots of calls by libraries lie in a range of their own
+MAX_INSIDE: Final = (
+    3  # nesting of mappings and sequences searched for callables, such as constraints of solvers
+)
+KEPT_APART: Final = 500  # callables of one call; calls by libraries use a separate range of slots
 
 
 def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-    """Functions handed to a library may be called by it at any time, with the arguments that follow them."""
+    """Let a library call the functions among its arguments at any time, with the arguments after them."""
     plain, named = arguments
     for number, value in enumerate(plain):
         for target in in_order(value.pts):
@@ -43,7 +45,7 @@ def call_back(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Cal
 
 
 def answering(ctx: Interpreter, arguments: Arguments) -> list[Obj]:
-    """Return the callables among arguments, and in tables and lists there, that return anything."""
+    """Return the callables in arguments, also nested in containers, that return a value."""
     plain, named = arguments
     return [o for o in _callables(ctx, (*plain, *named.values()), MAX_INSIDE) if _answers(ctx, o)]
 
@@ -62,7 +64,7 @@ def _callables(ctx: Interpreter, values: Iterable[Value], depth: int) -> list[Ob
 
 
 def _functor(ctx: Interpreter, obj: Obj) -> bool:
-    """Tell whether instances of a class of ours can be called."""
+    """Return whether an instance of an analysed class is callable."""
     return any(o.kind in CALLABLE for o in heap.read_field(ctx, obj, "__call__").pts)
 
 
@@ -72,7 +74,7 @@ def _answers(ctx: Interpreter, obj: Obj) -> bool:
 
 
 def _behind_callable(ctx: Interpreter, obj: Obj) -> tuple[ir.Function | None, int]:
-    """Return the function that a callable runs, and how many of its parameters are given already."""
+    """Return the function of a callable, and the number of its parameters that are bound already."""
     given = 0
     while True:
         if obj.kind == "partial" and isinstance(obj.info, tuple):
@@ -96,9 +98,9 @@ def _behind_callable(ctx: Interpreter, obj: Obj) -> tuple[ir.Function | None, in
 def returned(
     ctx: Interpreter, targets: Sequence[Obj], arguments: Arguments, base: Value, frame: Frame, call: ir.Call
 ) -> Nodes:
-    """Return the data of what callables return when a library calls them, if it does.
+    """Return the data of the values that callables return if a library calls them.
 
-    What it passes is not known: parts of what it was given, made into anything.
+    The library's arguments are unknown: anything computed from its own arguments.
     """
     found = NONE
     opaque = _opaque(ctx, arguments, base) if targets else BOTTOM
@@ -113,7 +115,7 @@ def returned(
 
 
 def _opaque(ctx: Interpreter, arguments: Arguments, base: Value) -> Value:
-    """Return what a library may pass: data of all that it has, messages and objects among it as they are."""
+    """Return a value that a library may pass: data of all its arguments, and the messages and objects among them."""
     plain, named = arguments
     objects: set[Obj] = set()
     for value in (*plain, *named.values()):
@@ -127,7 +129,7 @@ def _opaque(ctx: Interpreter, arguments: Arguments, base: Value) -> Value:
 
 
 def _wanted(ctx: Interpreter, target: Obj, opaque: Value) -> Arguments:
-    """Return arguments for the parameters of a callable that have to be given."""
+    """Return arguments for the required parameters of a callable."""
     function, given = _behind_callable(ctx, target)
     fixed = target.info[2] if target.kind == "partial" and isinstance(target.info, tuple) else {}
     if function is None:
@@ -142,7 +144,7 @@ def _wanted(ctx: Interpreter, target: Obj, opaque: Value) -> Arguments:
 
 
 def hold(ctx: Interpreter, objects: Iterable[Obj], targets: Sequence[Obj]) -> None:
-    """Remember the callables that objects of a library were given: their methods may call them."""
+    """Record the callables passed to library objects, whose methods may call them."""
     for obj in objects:
         if obj.kind == "lib" and targets:
             before = ctx.store.get((obj, HELD)) or BOTTOM
@@ -150,13 +152,13 @@ def hold(ctx: Interpreter, objects: Iterable[Obj], targets: Sequence[Obj]) -> No
 
 
 def held_by(ctx: Interpreter, base: Value) -> list[Obj]:
-    """Return the callables that objects of a library were given before."""
+    """Return the callables passed to library objects before."""
     found = [v for o in base.pts if o.kind == "lib" and (v := ctx.store.get((o, HELD))) is not None]
     return in_order(frozenset(o for v in found for o in v.pts))
 
 
 def answers(function: ir.Function) -> bool:
-    """Tell whether a function returns or yields anything but None."""
+    """Return whether a function returns or yields anything but None."""
     if function.answers is None:
         node = function.node
         function.answers = isinstance(node, ast.Lambda) or any(

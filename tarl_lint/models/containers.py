@@ -1,4 +1,4 @@
-"""Containers of the standard library: what goes in comes out again."""
+"""Models of the standard library's containers."""
 
 from __future__ import annotations
 
@@ -33,14 +33,16 @@ QUEUES = frozenset(
     for module in ("queue", "Queue", "asyncio", "multiprocessing")
     for name in ("Queue", "LifoQueue", "PriorityQueue", "SimpleQueue", "JoinableQueue")
 )
-FLAG = "<flag>"  # the field of an event that says whether it is set
+FLAG = "<flag>"  # field of an event: whether it is set
 FLAGGING = frozenset(["set", "clear"])
-IN_ORDER = frozenset(["list", "tuple", "deque", "iter", "reversed"])  # keep their argument's elements apart
+IN_ORDER = frozenset(
+    ["list", "tuple", "deque", "iter", "reversed"]
+)  # these keep the separate elements of their argument
 CONTAINERS = frozenset(["list", "tuple", "set", "frozenset", "sorted", "reversed", "iter", "deque"])
 
 
 def change(ctx: Interpreter, value: Value, news: Value, exprs: Any, frame: Frame) -> None:
-    """Add data to an object, or to the variable that holds it when there is no object."""
+    """Add data to an object, or to the variable that holds it if the object is unknown."""
     if value.pts:
         updates.add_element(ctx, value, news)
     elif exprs:
@@ -82,20 +84,20 @@ def mutate(
 
 
 def _flag(ctx: Interpreter, base: Value, name: str, frame: Frame, call: ir.Call) -> None:
-    """Set or clear an event of a library: whoever asks it learns what decided that."""
+    """Set or clear an event; queries of it depend on the conditions of that."""
     events = Value(base.deps, frozenset(o for o in base.pts if o.kind == "lib"))
     updates.write_field(ctx, events, FLAG, through_statement(ctx, const(name == "set"), frame, call))
 
 
 def _transmit(ctx: Interpreter, base: Value, plain: list[Value], frame: Frame, call: ir.Call) -> None:
-    """Send something through a port, file or socket: it holds that, but does not give it back when read."""
+    """Write to a port, file or socket, which stores the data but does not return it when read."""
     news = through_statement(ctx, join_all(plain), frame, call) if plain else BOTTOM
     for obj in base.pts if news is not BOTTOM else ():
         updates.weaken(ctx, obj, SENT, news)
 
 
 def received(ctx: Interpreter, base: Value, arguments: Arguments) -> Nodes:
-    """Return what reading from a port, file or socket uses: not what was sent there."""
+    """Return the dependencies of a read from a port, file or socket, without the data written to it."""
     deps = base.deps | call_contexts.all_used(ctx, arguments)
     for obj in base.pts:
         deps |= heap.content(ctx, obj).deps
@@ -121,7 +123,7 @@ def _update(
 
 
 def insert_elements(ctx: Interpreter, base: Value, values: list[Value], frame: Frame, call: ir.Call) -> None:
-    """Store elements into a container, through the calling statement."""
+    """Store elements into a container, through a node of the calling statement."""
     news = join_all(values)
     if news is BOTTOM:
         return
@@ -131,9 +133,9 @@ def insert_elements(ctx: Interpreter, base: Value, values: list[Value], frame: F
 
 
 def fill_empty(ctx: Interpreter, arguments: Arguments, deps: Nodes, frame: Frame, call: ir.Call) -> None:
-    """Let a library put data into lists that are passed empty to a call whose result is not used.
+    """Let a library store data into empty lists passed to a call whose result is not used.
 
-    Such a list can only be there to be filled.
+    The only purpose of such a list is to be filled.
     """
     if not deps:
         return
@@ -145,7 +147,7 @@ def fill_empty(ctx: Interpreter, arguments: Arguments, deps: Nodes, frame: Frame
 def through_statement(
     ctx: Interpreter, value: Value, frame: Frame, call: ir.Call, number: Hashable = 0
 ) -> Value:
-    """Let a value that a call stores pass through the calling statement."""
+    """Pass a value that a call stores through a node of the calling statement."""
     if frame.statement is None:
         return value
     return ctx.carry(value, ctx.node(frame, ("stored", call.slot, number), "call"))
@@ -160,7 +162,7 @@ def _read_get(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _take_out(ctx: Interpreter, it: Invocation) -> Value:
-    """Return an element that is no longer there afterwards."""
+    """Remove an element and return it."""
     result = _read_get(ctx, it)
     shorten(ctx, it.base, it.frame, it.call)
     return result
@@ -172,7 +174,7 @@ def _removed(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def shorten(ctx: Interpreter, base: Value, frame: Frame, call: ir.Call) -> None:
-    """Let the length of containers depend on what decided to take something out."""
+    """Make the length of containers depend on the conditions of a removal."""
     ours = [o for o in base.pts if o.kind in ("sequence", "mapping")]
     kept = ctx.kept(ctx.node(frame, ("taken", call.slot), "call")) if ours else NONE
     for obj in ours if kept else ():
@@ -180,7 +182,7 @@ def shorten(ctx: Interpreter, base: Value, frame: Frame, call: ir.Call) -> None:
 
 
 def _write_entry(ctx: Interpreter, it: Invocation) -> Value:
-    """Store an element as `x[key] = value` does."""
+    """Store an element, like `x[key] = value`."""
     plain = it.arguments[0]
     if len(plain) == 2:
         updates.write_item(ctx, it.base, plain[0], through_statement(ctx, plain[1], it.frame, it.call))
@@ -225,7 +227,7 @@ def new_container(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def counted_elements(ctx: Interpreter, it: Invocation) -> Value:
-    """Return `len(x)`: data of what the length is made of, choice of what decided to add elements."""
+    """Return `len(x)`, which depends on the length's data and on the conditions of additions."""
     deps = iterators.lengths(ctx, it.arguments[0])
     ours = [o for value in it.arguments[0] for o in value.pts if sizes.sized(ctx, o)]
     node = ctx.node(it.frame, ("length", it.call.slot), "call")
@@ -236,13 +238,13 @@ def counted_elements(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def made_of(ctx: Interpreter, value: Value) -> Nodes:
-    """Return what elements are made from, of our own objects not what they hold."""
+    """Return the dependencies of elements, without the contents of analysed objects."""
     found = elements_of_any(ctx, value)
     return ctx.use(Value(found.deps, frozenset(o for o in found.pts if o.kind != "instance")))
 
 
 def _read_length(ctx: Interpreter, it: Invocation) -> Value:
-    """Return what a queue says about how much is in it."""
+    """Return the result of a queue's query for its size."""
     return counted_elements(ctx, replace(it, arguments=([it.base], {})))
 
 
@@ -252,7 +254,7 @@ def new_queue(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
-    """Return one of the elements of the arguments, which data may choose."""
+    """Return one of the arguments' elements, possibly chosen by data."""
     plain = it.arguments[0]
     values = [heap.elements(ctx, plain[0])] if len(plain) == 1 else plain
     result = iterators.ordered_by(ctx, join_all(values), it)
@@ -260,7 +262,7 @@ def chosen_element(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def is_device(obj: Obj) -> bool:
-    """Tell whether reading an object of a library gives other things than what was written to it."""
+    """Return whether reads of a library object return other data than was written to it."""
     return obj.kind == "lib" and not obj.name.startswith("io.")
 
 

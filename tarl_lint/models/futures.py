@@ -1,4 +1,4 @@
-"""Futures and executors: a result that somebody else sets or computes."""
+"""Models of futures and executors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tarl_lint.models import containers
 from tarl_lint.models.containers import READERS as CONTAINER_READERS
 from tarl_lint.models.records import RECORDS
 
-RESULT: Final = "<result>"  # the field of a future that holds its result
+RESULT: Final = "<result>"  # field of a future with its result
 
 
 def _set_result(ctx: Interpreter, it: Invocation) -> Value:
@@ -27,7 +27,7 @@ def _set_result(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _result(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a future's result; of one that comes from a library, whatever went into it."""
+    """Return a future's result; for a library's future, the data passed to it."""
     result = BOTTOM
     for obj in it.base.pts:
         stored = ctx.store.get((obj, RESULT))
@@ -39,7 +39,7 @@ def _result(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _is_done(ctx: Interpreter, it: Invocation) -> Value:
-    """Return whether a future has a result: what decided to set it, whatever it is."""
+    """Return the value of `done()`: it depends on the conditions of setting the result, not on the result."""
     node = ctx.node(it.frame, ("done", it.call.slot), "call")
     deps = it.base.deps
     for obj in it.base.pts:
@@ -63,13 +63,13 @@ def gathered_results(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def awaited_result(ctx: Interpreter, it: Invocation) -> Value:
-    """Return what a coroutine gives that is run, started or waited for."""
+    """Return the result of a coroutine that is run, started or awaited."""
     ctx.ops.wait(ctx, it.frame)
     return it.arguments[0][0] if it.arguments[0] else UNKNOWN
 
 
 def _submit(ctx: Interpreter, it: Invocation) -> Value:
-    """Call the function that an executor is given; its result is the future's."""
+    """Call a function submitted to an executor; its result is that of the future."""
     plain, named = it.arguments
     skipped = 1 if it.name == "run_in_executor" else 0
     given = plain[skipped:]

@@ -1,4 +1,4 @@
-"""What goes over elements: zip, enumerate, map and filter, and the sequences that they give."""
+"""Models of iterators: zip, enumerate, map, filter and others, and their sequences."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from tarl_lint.memory.heap import LENGTH, item_field
 from tarl_lint.memory.values import NONE, UNKNOWN, Nodes, Value, const, join_all, pointer
 from tarl_lint.models import sizes
 
-MAX_ROWS = 8  # elements of zip, enumerate and map that are told apart
+MAX_ROWS = 8  # separate elements of zip, enumerate and map
 
 
 def listed(ctx: Interpreter, element: Value, length: Nodes, it: Invocation) -> Value:
-    """Return a new sequence of elements that are not told apart."""
+    """Return a new sequence with one summary element."""
     obj = recency.allocate(ctx, "sequence", it.frame, ("values", it.call.slot))
     updates.add_element(ctx, pointer(obj), element)
     ctx.store.put((obj, LENGTH), Value(length))
@@ -39,7 +39,7 @@ def pairs(ctx: Interpreter, parts: list[Value], frame: Frame, call: ir.Call, len
 
 
 def zipped_elements(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a sequence of tuples of what several sequences give."""
+    """Return a sequence of tuples with elements of several sequences."""
     if it.name == "zip" and "*" in it.arguments[1] and not it.arguments[0]:
         return _transposed(ctx, it.arguments[1]["*"], it)
     known = [sizes.unpacked(ctx, v) for v in it.arguments[0]]
@@ -54,12 +54,12 @@ def zipped_elements(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def lengths(ctx: Interpreter, values: Sequence[Value]) -> Nodes:
-    """Return the nodes that the lengths of several values are data of."""
+    """Return the nodes on which the lengths of several values depend."""
     return NONE.union(*map(partial(sizes.length, ctx), values))
 
 
 def _transposed(ctx: Interpreter, row: Value, it: Invocation) -> Value:
-    """Return what `zip(*rows)` gives: a sequence for each place in a row."""
+    """Return the value of `zip(*rows)`: one sequence per column."""
     places = calls.one_by_one(ctx, row) or [heap.elements(ctx, row)]
     obj = recency.allocate(ctx, "sequence", it.frame, ("pairs", it.call.slot))
     for number, place in enumerate(places):
@@ -73,7 +73,7 @@ def _transposed(ctx: Interpreter, row: Value, it: Invocation) -> Value:
 
 
 def _rows(ctx: Interpreter, rows: Sequence[Sequence[Value]], it: Invocation) -> Value:
-    """Return a sequence of tuples whose elements are told apart."""
+    """Return a sequence of tuples with separate elements."""
     obj = recency.allocate(ctx, "sequence", it.frame, ("pairs", it.call.slot))
     for number, row in enumerate(rows):
         pair = recency.allocate(ctx, "sequence", it.frame, ("pair", it.call.slot, number))
@@ -84,7 +84,7 @@ def _rows(ctx: Interpreter, rows: Sequence[Sequence[Value]], it: Invocation) -> 
 
 
 def _each(ctx: Interpreter, function: Value, rows: Sequence[Sequence[Value]], it: Invocation) -> Value:
-    """Return what a function gives for known elements, one by one."""
+    """Return the results of a function for known elements, one by one."""
     obj = recency.allocate(ctx, "sequence", it.frame, ("values", it.call.slot))
     for number, row in enumerate(rows):
         call = replace(it.call, slot=-1000 * (abs(it.call.slot) + 1) - number)
@@ -94,7 +94,7 @@ def _each(ctx: Interpreter, function: Value, rows: Sequence[Sequence[Value]], it
 
 
 def mapped_elements(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a sequence of what a function gives for each element."""
+    """Return a sequence of the results of a function for each element."""
     function, *rest = it.arguments[0] or [UNKNOWN]
     known = [sizes.unpacked(ctx, v) for v in rest]
     rows = list(zip(*(k for k in known if k is not None), strict=False)) if None not in known else []
@@ -113,7 +113,7 @@ def mapped_elements(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def gate(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> Nodes:
-    """Return the node of a decision which elements a new container gets, none where no data decides."""
+    """Return the node that decides which elements a new container gets; none if no data decides."""
     if not decides:
         return NONE
     node = ctx.node(frame, ("filter", slot), "condition")
@@ -122,7 +122,7 @@ def gate(ctx: Interpreter, decides: Nodes, frame: Frame, slot: Hashable) -> Node
 
 
 def ordered_by(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
-    """Return elements as chosen or ordered by `key=`: what the function says of them decides which is where."""
+    """Return elements chosen or ordered by `key=`: the results of the key function decide their places."""
     key = it.arguments[1].get("key")
     if key is None or key.consts or not elements.deps | elements.pts | key.pts:
         return elements
@@ -131,7 +131,7 @@ def ordered_by(ctx: Interpreter, elements: Value, it: Invocation) -> Value:
 
 
 def asked(ctx: Interpreter, it: Invocation) -> Value:
-    """Return what `bool(x)`, `any(xs)` and `all(xs)` say: whether something is there is no data of it."""
+    """Return the value of `bool(x)`, `any(xs)` or `all(xs)`; the presence of an object is not its data."""
     if not it.arguments[0]:
         return UNKNOWN
     value = it.arguments[0][0]

@@ -1,4 +1,4 @@
-"""Calls into libraries: arguments pass to results unless something better is known."""
+"""Calls of libraries: arguments pass to results unless there is a better model."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def call_library(
 
 
 def _configured(ctx: Interpreter, qualified: str) -> Fact | None:
-    """Return what the settings say of a function: a source subscribes when it is given a callback."""
+    """Apply the settings to a call of a function: a source subscribes if it gets a callback."""
     if ctx.config.wrappers and (fact := facts(ctx.config.wrappers).get(qualified)):
         return fact
     if qualified not in ctx.config.sources:
@@ -89,7 +89,7 @@ def _configured(ctx: Interpreter, qualified: str) -> Fact | None:
 
 
 def named_by_settings(ctx: Interpreter, target: Obj) -> str:
-    """Return the qualified name of a function or method of ours that the settings speak of, else ""."""
+    """Return the qualified name of an analysed function or method if the settings mention it, else ""."""
     if not ctx.config.named:
         return ""
     closure = target.info[0] if target.kind == "bound" and isinstance(target.info, tuple) else target
@@ -101,7 +101,7 @@ def named_by_settings(ctx: Interpreter, target: Obj) -> str:
 
 
 def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call) -> Value:
-    """Pass the arguments on to the result; write the argument that the catalog says is written."""
+    """Pass all arguments to the result; store into the argument that the catalog lists as written."""
     name = qualified.rpartition(".")[2]
     if (raises := fails(name)) is not None:
         ctx.ops.may_fail(ctx, call_contexts.all_used(ctx, arguments), raises, frame)
@@ -131,14 +131,16 @@ def generic(ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame
         senders.note(ctx, qualified, made, arguments, frame, call)
     if qualified.startswith("io.") or (ctx.config.named and name[:1].isupper()):
         for obj in made.pts:
-            obj.name = qualified  # settings may speak of its methods; from io.* comes what was written
+            obj.name = (
+                qualified  # for settings on its methods, and because io.* objects return what was written
+            )
     return made
 
 
 def new_object(
     ctx: Interpreter, arguments: Arguments, deps: frozenset[int], frame: Frame, call: ir.Call, *, fields: bool
 ) -> Value:
-    """Return a new object of a library; keywords of a class are its fields."""
+    """Return a new library object; keyword arguments of a class become fields."""
     obj = recency.allocate(ctx, "lib", frame, ("made", call.slot))
     where = pointer(obj)
     plain, named = arguments
@@ -170,7 +172,7 @@ def call_method(
     frame: Frame,
     call: ir.Call,
 ) -> Value:
-    """Call a method of an object that is not a class of ours."""
+    """Call a method of an object whose class is not analysed."""
     kind = target.kind if target is not None else ""
     if target is not None and kind == "lib" and f"{target.name}.{name}" in ctx.config.named:
         return ctx.ops.call_library(ctx, f"{target.name}.{name}", arguments, frame, call)
@@ -243,7 +245,7 @@ def _unknown_method(
 def _given(
     ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Nodes:
-    """Return the data of what callables say that an object of a library has: it may call them when it is called."""
+    """Return the data of the results of callables that a library object holds, since its methods may call them."""
     new = callables.answering(ctx, arguments) if name not in SIGNALLING else []
     if keeps_callables(name):
         callables.hold(ctx, base.pts, new)
@@ -255,37 +257,37 @@ def _given(
 
 
 def _blank_object(ctx: Interpreter, it: Invocation) -> Value:
-    """Return what `object.__new__(cls)` gives."""
+    """Return the value of `object.__new__(cls)`."""
     classes = [o for v in it.arguments[0][:1] for o in v.pts if o.kind == "class"]
     return Value(pts=frozenset(call_contexts.blank_instance(ctx, c, it.frame, it.call) for c in classes))
 
 
 def _weak(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a weak reference: called, it gives what it refers to."""
+    """Return a weak reference, which returns its referent when called."""
     obj = recency.allocate(ctx, "weak", it.frame, ("made", it.call.slot))
     obj.describe(it.arguments[0][0] if it.arguments[0] else UNKNOWN)
     return pointer(obj)
 
 
 def _same(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
-    """Return the first argument itself."""
+    """Return the first argument unchanged."""
     return it.arguments[0][0] if it.arguments[0] else UNKNOWN
 
 
 def type_of(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
-    """Return the class of objects of ours; what a type is, is not data."""
+    """Return the class of analysed objects; a type is not data."""
     classes = [o.info for v in it.arguments[0][:1] for o in v.pts if o.kind == "instance"]
     found = frozenset(c for c in classes if isinstance(c, Obj))
     return Value(pts=found) if found else UNKNOWN
 
 
 def of_type(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
-    """Return what a question about a type gives, which is not data either."""
+    """Return the result of a query about a type, which is not data either."""
     return UNKNOWN
 
 
 def parent(ctx: Interpreter, it: Invocation) -> Value:
-    """Return what `super()` gives: the object, seen from its class on."""
+    """Return the value of `super()`: the object, with look-ups after its class."""
     receiver = it.frame
     while receiver.owner is None and receiver.outer is not None:
         receiver = receiver.outer
@@ -302,7 +304,7 @@ def parent(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return a field to which nothing was stored, also through `super()` and of parameters."""
+    """Return the value of an unset field, also through `super()`, and for parameters."""
     if obj.kind == "super" and isinstance(obj.info, tuple):
         owner, this = obj.info
         cls = this.info if this.kind == "instance" else this
@@ -321,18 +323,14 @@ def default(ctx: Interpreter, obj: Obj, name: str) -> Value:
 
 
 def changeable(obj: Obj) -> bool:
-    """Tell whether an object of a library may be changed by its methods: a node's own methods are ROS's."""
+    """Return whether an object's library methods may change it; those of a node are ROS's and do not."""
     return obj.kind == "lib" and not (isinstance(obj.key, tuple) and obj.key[:1] == ("inherited",))
 
 
 def dropped(frame: Frame, call: ir.Call) -> bool:
-    """Tell whether a call's result is not used: then it is there for what it does."""
+    """Return whether a call's result is unused, so that its purpose is a side effect."""
     return isinstance(frame.statement, ir.Evaluate) and frame.statement.value is call
 
-
-STANDING = frozenset(
-    ["server", "goal", "filter", "synchronizer"]
-)  # objects that stand for what they were given
 
 BUILTIN: Mapping[str, Callable[..., Value]] = {
     **dict.fromkeys(CONTAINERS, containers.new_container),

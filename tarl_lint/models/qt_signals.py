@@ -1,4 +1,4 @@
-"""Signals, as Qt has them: what is connected to one is called where it is emitted."""
+"""Models of Qt's signals: emitting a signal calls the connected functions."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from tarl_lint.ir import nodes as ir
 from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import BOTTOM, Value, join
 
-CONNECTED = "<connected>"  # the field of a signal that holds what is connected to it
+CONNECTED = "<connected>"  # field of a signal with the connected functions
 
 
 def signal(
     ctx: Interpreter, base: Value, name: str, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> None:
-    """Remember what is connected to an object of a library, call it where the object emits."""
+    """Connect functions to a signal of a library object, or call them when it emits."""
     signals = [o for o in base.pts if o.kind == "lib"]
     if name == "connect":
         slots = frozenset(o for v in arguments[0][:1] for o in v.pts if o.kind in CALLABLE)

@@ -1,4 +1,4 @@
-"""Objects with named fields, copies of objects, and mappings that make what they lack."""
+"""Models of dataclasses and named tuples, copies of objects, and mappings with defaults."""
 
 from __future__ import annotations
 
@@ -27,20 +27,22 @@ from tarl_lint.memory.values import (
 )
 from tarl_lint.models import sizes
 
-MAX_COPIED: Final = 3  # objects inside objects that a deep copy follows
+MAX_COPIED: Final = 3  # nesting that a deep copy follows
 INNER: Final = frozenset(["instance", "sequence", "mapping", "lib"])
 MADE_BY: Final = {
     **dict.fromkeys(("list", "set", "deque", "tuple", "frozenset"), "sequence"),
     **dict.fromkeys(("dict", "OrderedDict", "Counter"), "mapping"),
 }
-PLAIN: Final = frozenset(["abc.ABC", "typing.Generic", "typing.Protocol"])  # bases that make no constructor
+PLAIN: Final = frozenset(
+    ["abc.ABC", "typing.Generic", "typing.Protocol"]
+)  # bases without a constructor of their own
 
 
 # --- fields -------------------------------------------------------------------------------------------
 
 
 def fill(ctx: Interpreter, obj: Obj, cls: Obj, arguments: Arguments, frame: Frame, call: ir.Call) -> None:
-    """Store the arguments as a dataclass or named tuple does."""
+    """Store the arguments in fields, as a dataclass or named tuple does."""
     plain, named = call_contexts.pass_arguments(ctx, arguments, frame, call)
     given = dict(named)
     rest = given.pop("*", None)
@@ -80,7 +82,7 @@ def _after(ctx: Interpreter, obj: Obj, cls: Obj, frame: Frame, call: ir.Call) ->
 def _preset(
     ctx: Interpreter, owner: Obj, name: str, frame: Frame, call: ir.Call, number: int
 ) -> Value | None:
-    """Return a field's default: of `field(default_factory=f)` what f makes."""
+    """Return a field's default; for `field(default_factory=f)`, the result of f."""
     options = _options(ctx, owner, name)
     if options is None:
         return ctx.store.get((owner, name))
@@ -91,21 +93,21 @@ def _preset(
 
 
 def _options(ctx: Interpreter, owner: Obj, name: str) -> dict[str, Value] | None:
-    """Return what `field(...)` says of a field of a dataclass, None where that was not called."""
+    """Return the options of a dataclass field's `field(...)`; None if it was not called."""
     preset = ctx.store.get((owner, name))
     spec = next((o for o in preset.pts if o.kind == "field"), None) if preset is not None else None
     return spec.info if spec is not None and isinstance(spec.info, dict) else None
 
 
 def field_default(ctx: Interpreter, it: Invocation) -> Value:
-    """Return what `field(...)` says of a field."""
+    """Return an object that holds the options of `field(...)`."""
     obj = recency.intern(ctx, "field", (it.frame.id, it.statement, it.call.slot))
     obj.describe(it.arguments[1])
     return pointer(obj)
 
 
 def named_tuple_class(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the class that `namedtuple(name, fields)` makes."""
+    """Return the class made by `namedtuple(name, fields)`."""
     plain = it.arguments[0]
     if len(plain) < 2:
         return UNKNOWN
@@ -128,7 +130,7 @@ def named_tuple_class(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def replaced_record(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a copy with some fields other than before."""
+    """Return a copy with some fields replaced."""
     plain, named = it.arguments
     base = plain[0] if plain and it.base is BOTTOM else it.base
     made = copy_of(ctx, base, it.frame, it.call.slot)
@@ -143,12 +145,12 @@ def replaced_record(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def as_mapping(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the mapping of field names to fields that `asdict(x)` or a named tuple's `_asdict()` makes."""
+    """Return the mapping of field names to values made by `asdict(x)` or a named tuple's `_asdict()`."""
     return _listing(ctx, it, "mapping")
 
 
 def as_sequence(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the tuple of fields that `astuple(x)` makes."""
+    """Return the tuple of fields made by `astuple(x)`."""
     return _listing(ctx, it, "sequence")
 
 
@@ -184,7 +186,7 @@ def copy_of(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Val
 
 
 def _blank(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Obj:
-    """Return a new object of the kind that all the copied ones are of."""
+    """Return a new object of the common kind of all copied ones."""
     classes = {o.info for o in value.pts if o.kind == "instance"}
     if len(classes) == 1 and all(o.kind == "instance" for o in value.pts):
         obj = recency.allocate(ctx, "instance", frame, slot)
@@ -202,7 +204,7 @@ def _blank(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable) -> Obj:
 
 
 def deep_copy(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable, depth: int = 0) -> Value:
-    """Return a copy whose inner objects are copies too."""
+    """Return a copy with copies of nested objects."""
     made = copy_of(ctx, value, frame, slot)
     for obj in made.pts - value.pts if depth < MAX_COPIED else ():
         ctx.store.reads.look(obj)
@@ -217,7 +219,7 @@ def deep_copy(ctx: Interpreter, value: Value, frame: Frame, slot: Hashable, dept
 
 
 def new_mapping(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a new mapping with what its arguments hold."""
+    """Return a new mapping with the entries of its arguments."""
     plain, named = it.arguments
     factory = plain[0] if it.name == "defaultdict" and plain else None
     given = plain[1:] if it.name == "defaultdict" else plain
@@ -236,7 +238,7 @@ def new_mapping(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def entries(ctx: Interpreter, obj: Obj, value: Value) -> None:
-    """Take over the entries of a mapping, or of a sequence of pairs."""
+    """Copy the entries of a mapping or a sequence of pairs."""
     for source in value.pts:
         if source.kind != "sequence":
             sizes.absorb(ctx, obj, Value(value.deps, frozenset([source])))
@@ -257,7 +259,7 @@ def entries(ctx: Interpreter, obj: Obj, value: Value) -> None:
 
 
 def from_keys(ctx: Interpreter, it: Invocation) -> Value:
-    """Return what `dict.fromkeys(keys, value)` makes."""
+    """Return the mapping made by `dict.fromkeys(keys, value)`."""
     plain = it.arguments[0]
     obj = recency.allocate(ctx, "mapping", it.frame, ("display", it.call.slot))
     known = sizes.unpacked(ctx, plain[0]) if plain else None
@@ -272,7 +274,7 @@ def from_keys(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def missing(ctx: Interpreter, mapping: Obj, name: str) -> Value:
-    """Return what a mapping with a default makes for a key that it does not have."""
+    """Return the value that a mapping with a default creates for a missing key."""
     ctx.store.reads.look(mapping)
     factory = mapping.info
     if not isinstance(factory, Value):
@@ -305,17 +307,17 @@ def _fields(cls: Obj) -> Iterator[tuple[Obj, str]]:
 
 
 def _decorated(info: ClassInfo) -> bool:
-    """Tell whether a class has a decorator, as dataclasses do: what others annotate is no field."""
+    """Return whether a class has a decorator, as dataclasses do; annotations of other classes are not fields."""
     return info.statement is None or bool(info.statement.decorators)
 
 
 def _says(options: dict[str, Value] | None, name: str, answer: bool) -> bool:
-    """Tell whether `field(...)` is given an option, for certain."""
+    """Return whether `field(...)` certainly has an option."""
     return options is not None and name in options and options[name].constant() == (True, answer)
 
 
 def _named_tuple(cls: object) -> bool:
-    """Tell whether a class is a named tuple, whose fields are elements too."""
+    """Return whether a class is a named tuple, whose fields are also elements."""
     infos = [o.info for o in lineage(cls)] if isinstance(cls, Obj) else []
     return any(isinstance(i, ClassInfo) and (i.named or "typing.NamedTuple" in i.external) for i in infos)
 

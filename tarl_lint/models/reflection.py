@@ -1,4 +1,4 @@
-"""Attributes by names that are values: `getattr` and `setattr`."""
+"""Models of reflection: `getattr`, `setattr`, `attrgetter`, `eval`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ OURS = frozenset(["instance", "class", "closure", "module"])
 
 
 def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
-    """Return an attribute, by a name that is known or begins with something known."""
+    """Return an attribute by a name that is known, or whose beginning is known."""
     plain = it.arguments[0]
     names = plain[1].texts() if len(plain) > 1 else ()
     if not names and len(it.call.arguments) > 1:
@@ -27,7 +27,7 @@ def get_attribute(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _method_by_beginning(ctx: Interpreter, it: Invocation) -> Value | None:
-    """Return the methods that `getattr(self, "do_" + verb)` may mean, None where nothing tells."""
+    """Return the methods that `getattr(self, "do_" + verb)` may mean; None if unknown."""
     start, (holder, name, *rest) = _beginning(it.call.arguments[1]), it.arguments[0]
     found = BOTTOM
     for obj in holder.pts if len(start) > 1 else ():
@@ -42,14 +42,14 @@ def _method_by_beginning(ctx: Interpreter, it: Invocation) -> Value | None:
 
 
 def getter(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the function that `attrgetter(...)` or `itemgetter(...)` makes."""
+    """Return the function made by `attrgetter(...)` or `itemgetter(...)`."""
     obj = recency.intern(ctx, "partial", (it.frame.id, it.statement, it.call.slot, *it.frame.turn), it.name)
     obj.describe((expressions.external(ctx, f"{it.name}.<made>"), it.arguments[0], {}))
     return pointer(obj)
 
 
 def get_named(ctx: Interpreter, it: Invocation) -> Value:
-    """Return what a function made by `attrgetter` or `itemgetter` gives: several things as a tuple."""
+    """Return the result of a function made by `attrgetter` or `itemgetter`; a tuple for several names."""
     *keys, given = it.arguments[0] or [UNKNOWN]
     found = [
         _by_path(ctx, given, k) if "attr" in it.name else expressions.read_item(ctx, given, k) for k in keys
@@ -69,7 +69,7 @@ def _by_path(ctx: Interpreter, value: Value, name: Value) -> Value:
 
 
 def set_attribute(ctx: Interpreter, it: Invocation) -> Value:
-    """Store into the attribute that is named, into any where no name is known."""
+    """Store into the named attribute; into any attribute if the name is unknown."""
     plain = it.arguments[0]
     if len(plain) == 3:
         value = containers.through_statement(ctx, plain[2], it.frame, it.call)
@@ -83,7 +83,7 @@ def set_attribute(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def evaluated(ctx: Interpreter, it: Invocation) -> Value:
-    """Return what `eval` may give: data of the local variables that it may name."""
+    """Return the value of `eval`: data of the local variables that the expression may name."""
     deps = call_contexts.all_used(ctx, it.arguments)
     if len(it.arguments[0]) == 1:
         named = _names(it.arguments[0][0].texts())
@@ -95,7 +95,7 @@ def evaluated(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _names(texts: Sequence[str]) -> set[str] | None:
-    """Return the names in expressions, None where they are not known."""
+    """Return the names in expressions; None if the expressions are unknown."""
     try:
         trees = [ast.parse(text.strip(), mode="eval") for text in texts]
     except SyntaxError:
@@ -104,7 +104,7 @@ def _names(texts: Sequence[str]) -> set[str] | None:
 
 
 def _beginning(expr: ir.Expr) -> str:
-    """Return the text that a text made at run time begins with."""
+    """Return the constant beginning of a string computed at run time."""
     while isinstance(expr, ir.Operation) and expr.parts and expr.operator in ("+", "text", "%"):
         expr = expr.parts[0]
     if (

@@ -1,6 +1,6 @@
-"""Numbers that are fixed when a node starts: read from a file or the environment, or computed from constants.
+"""Numbers that are fixed at the start of a node: from a file or the environment, or computed from constants.
 
-Flows need none of them. A thorough run notes them, so that a repair may change them as it changes any constant.
+Flows do not need them. A thorough run records them, so that a repair can change them like any constant.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ LOADERS: Final = frozenset(
         "rosparam.load_file", "os.getenv", "os.environ.get",
     ]
 )  # fmt: skip
-PARSING: Final = frozenset(["parse_args", "parse_known_args"])  # methods that read the command line
+PARSING: Final = frozenset(["parse_args", "parse_known_args"])  # methods that parse the command line
 COMPUTING: Final = frozenset(
     [
         "float", "int", "abs", "round", "pow", "min", "max", "sum", "numpy.deg2rad", "numpy.radians", "numpy.rad2deg",
@@ -35,7 +35,7 @@ ARRAYS: Final = frozenset(["numpy.array", "numpy.asarray"])
 def noted(
     ctx: Interpreter, qualified: str, found: Value, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Value:
-    """Return the result of a library's function as made by a node that stands for a fixed number, if it is one."""
+    """Return a library function's result; if it is a fixed number, with a node for it."""
     if not ctx.thorough:
         return found
     name = qualified.removeprefix("builtins.")
@@ -52,7 +52,7 @@ def noted(
 
 
 def loaded(ctx: Interpreter, found: Value, frame: Frame, call: ir.Call) -> Value:
-    """Return what was loaded: an object whose parts are unknown constants, or such a constant itself."""
+    """Return a loaded value: an unknown constant, or an object of unknown constants."""
     ctx.unchanged.add(call)
     for obj in found.pts:
         ctx.settings[obj] = (frame.program.path, call.pos)

@@ -1,4 +1,4 @@
-"""Containers made of containers: concatenation, repetition, union, slices; and what decides how long they are."""
+"""Concatenation, repetition, union and slices of containers; dependencies of their lengths."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from tarl_lint.memory.heap import ANY, KEYS, LENGTH, SENT, item_field
 from tarl_lint.memory.reachable_data import in_order
 from tarl_lint.memory.values import ABSENT, BOTTOM, NONE, UNKNOWN, Nodes, Obj, Value, join_all, pointer
 
-MAX_KNOWN = 16  # elements of a made sequence that are told apart
+MAX_KNOWN = 16  # separate elements of a computed sequence
 COMBINING = frozenset(["+", "*", "|", "-", "&"])
 
 
 def combined(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value | None:
-    """Return the new container that an operator makes of containers, None where there are none."""
+    """Return the new container that an operator makes of containers; None if no operand is one."""
     kinds = [{o.kind for o in v.pts} for v in values]
     if expr.operator == "*" and {"sequence"} in kinds:
         return repeated(ctx, expr, values, frame)
@@ -41,7 +41,7 @@ def repeated(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: F
 
 
 def concatenated(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:
-    """Return `a + b`; elements are told apart where both are known one by one."""
+    """Return `a + b`, with separate elements if those of both are known."""
     known = [unpacked(ctx, v) for v in values]
     element = join_all(heap.elements(ctx, v) for v in values)
     longer = length(ctx, values[0]) | length(ctx, values[1])
@@ -57,9 +57,9 @@ def concatenated(ctx: Interpreter, expr: ir.Operation, values: list[Value], fram
 
 
 def grown(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Frame) -> Value:
-    """Return what `a += b` or `a |= b` leaves in a container.
+    """Return the container after `a += b` or `a |= b`.
 
-    The elements and their number pass through the statement: one node each, into however many containers they go.
+    Elements and length each pass through one node of the statement, shared by all containers.
     """
     first, second = values
     tables = frozenset(o for o in first.pts if o.kind == "mapping" and expr.operator == "|=")
@@ -75,7 +75,7 @@ def grown(ctx: Interpreter, expr: ir.Operation, values: list[Value], frame: Fram
 
 
 def sliced(ctx: Interpreter, base: Value, index: ir.Slice, pos: ir.Pos, frame: Frame) -> Value:
-    """Return `base[a:b]`: of sequences a new one, of others what their elements are."""
+    """Return `base[a:b]`: a new sequence for sequences, the elements' value for other objects."""
     bounds = [ctx.ops.evaluate(ctx, part, frame) for part in index.parts]
     extra = NONE
     for bound in bounds:
@@ -92,7 +92,7 @@ def sliced(ctx: Interpreter, base: Value, index: ir.Slice, pos: ir.Pos, frame: F
 
 
 def unpacked(ctx: Interpreter, value: Value) -> list[Value] | None:
-    """Return the elements of a sequence whose elements are known one by one."""
+    """Return the elements of a sequence with known elements."""
     if len(value.pts) != 1:
         return None
     obj = next(iter(value.pts))
@@ -105,7 +105,7 @@ def unpacked(ctx: Interpreter, value: Value) -> list[Value] | None:
 
 
 def absorb(ctx: Interpreter, obj: Obj, value: Value) -> None:
-    """Copy the elements of what a value may be into an object."""
+    """Copy the elements of all objects of a value into an object."""
     for source in value.pts:
         ctx.store.look(source)
         for name in list(source.fields):
@@ -121,7 +121,7 @@ def absorb(ctx: Interpreter, obj: Obj, value: Value) -> None:
 
 
 def empty(ctx: Interpreter, obj: Obj) -> None:
-    """Take everything out of a container."""
+    """Remove all elements of a container."""
     ctx.store.reads.look(obj)
     for name in list(obj.fields):
         if name.startswith("[") or name in (ANY, KEYS, LENGTH):
@@ -132,7 +132,7 @@ def empty(ctx: Interpreter, obj: Obj) -> None:
 
 
 def length(ctx: Interpreter, value: Value) -> Nodes:
-    """Return the nodes that a value's length is data of: of our containers not their elements."""
+    """Return the nodes on which a value's length depends; for analysed containers, without their elements."""
     deps = value.deps
     for obj in value.pts:
         if sized(ctx, obj):
@@ -149,7 +149,7 @@ def length(ctx: Interpreter, value: Value) -> Nodes:
 
 
 def sized(ctx: Interpreter, obj: Obj) -> bool:
-    """Tell whether an object has elements that say nothing of how many there are: ours, and arrays of messages."""
+    """Return whether an object's length is independent of its elements' data: containers, and arrays in messages."""
     if obj.kind in ("sequence", "mapping"):
         return True
     ctx.store.reads.look(obj)
@@ -157,7 +157,7 @@ def sized(ctx: Interpreter, obj: Obj) -> bool:
 
 
 def placed(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
-    """Return the nodes that put elements into containers, whatever was stored inside the elements later."""
+    """Return the nodes that added elements to containers, without later stores into the elements."""
     found: set[int] = set()
     for obj in objects:
         ctx.store.look(obj)
@@ -170,13 +170,13 @@ def placed(ctx: Interpreter, objects: frozenset[Obj]) -> Nodes:
 
 
 def lengthen(ctx: Interpreter, obj: Obj, value: Value) -> None:
-    """Let an object's length depend on that of a value whose elements it takes over."""
+    """Make an object's length depend on that of a value whose elements it gets."""
     longer = length(ctx, value)
     if longer:
         decide_length(ctx, obj, longer)
 
 
 def decide_length(ctx: Interpreter, obj: Obj, deps: Nodes) -> None:
-    """Let an object's length depend on more than before."""
+    """Add dependencies to an object's length."""
     before = ctx.store.get((obj, LENGTH))
     ctx.store.put((obj, LENGTH), Value(deps | (before.deps if before is not None else NONE)))

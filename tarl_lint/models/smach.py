@@ -1,4 +1,4 @@
-"""The states of smach's machines, added by calls and made of functions."""
+"""Models of smach's state machines: states added by calls, and states made of functions."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from tarl_lint.memory import recency, userdata
 from tarl_lint.memory.reachable_data import in_order
 from tarl_lint.memory.values import UNKNOWN, Value, pointer
 
-LATER = frozenset(["closure", "bound", "partial"])  # what a library can call of what it is given
+LATER = frozenset(["closure", "bound", "partial"])  # kinds of arguments that a library can call
 
 
 def add_state(ctx: Interpreter, it: Invocation) -> Value:
-    """Add a state to a machine: `remapping` says what its names for shared fields stand for."""
+    """Add a state to a machine; `remapping` maps its names to shared fields."""
     plain, named = it.arguments
     states = plain[1] if len(plain) > 1 else named.get("state", UNKNOWN)
     remapping = plain[3] if len(plain) > 3 else named.get("remapping", UNKNOWN)
@@ -26,7 +26,7 @@ def add_state(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def state_by_callbacks(ctx: Interpreter, it: Invocation) -> Value:
-    """Make a state of functions, which are handed what the states share."""
+    """Create a state from functions, which get the shared userdata."""
     state = recency.allocate(ctx, "lib", it.frame, ("made", it.call.slot))
     for value in (*it.arguments[0], *it.arguments[1].values()):
         for target in in_order(value.pts):

@@ -1,4 +1,4 @@
-"""Texts made of known texts: names of topics, parameters, keys."""
+"""Constant folding of string methods, for names of topics, parameters and keys."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ MAX_TEXT: Final = 300
 
 
 def text_of(ctx: Interpreter, base: Value, name: str, arguments: Arguments) -> Consts:
-    """Return the texts that a method of known texts gives, None when something of it is not known."""
+    """Return the results of a string method on constants; None if an argument is unknown."""
     plain, named = arguments
     return _made(
         ctx,
@@ -46,7 +46,7 @@ def text_of(ctx: Interpreter, base: Value, name: str, arguments: Arguments) -> C
 
 
 def keys_joined(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.Call) -> Arguments:
-    """Return what `text.join(mapping)` joins: its keys, whatever they stand for."""
+    """Return the value of `text.join(mapping)`, which joins keys only."""
     given = [
         Value(operators.membership(ctx, v, frame, ("joined", call.slot)))
         if any(o.kind == "mapping" for o in v.pts)
@@ -57,19 +57,19 @@ def keys_joined(ctx: Interpreter, arguments: Arguments, frame: Frame, call: ir.C
 
 
 def _made(ctx: Interpreter, function: Callable[..., object], values: Sequence[Value]) -> Consts:
-    """Return the texts that a function makes of all that the values may be, the first being a text."""
+    """Return the results of a function for all combinations of constants, the first of which are strings."""
     ways = [_known(ctx, v) for v in values]
     if not all(ways) or math.prod(len(w) for w in ways) > MAX_TEXTS:
         return None
     try:
         made = [function(*given) for given in itertools.product(*ways) if isinstance(given[0], str)]
-    except Exception:  # whatever the program itself would fail with
+    except Exception:  # any error that the program itself would raise
         return None
     return frozenset(made) if made and all(isinstance(m, str) and len(m) <= MAX_TEXT for m in made) else None
 
 
 def _known(ctx: Interpreter, value: Value) -> list[Any]:
-    """Return the constants that a value may be, or lists of such; nothing when not all is known."""
+    """Return the possible constants of a value, or lists of them; empty if not all are known."""
     if value.consts and not value.pts:
         return sorted(value.consts, key=str)
     parts = [_known(ctx, e) for e in sizes.unpacked(ctx, value) or ()]
@@ -79,7 +79,7 @@ def _known(ctx: Interpreter, value: Value) -> list[Any]:
 
 
 def remainder(ctx: Interpreter, values: list[Value]) -> Consts:
-    """Return `text % values` where all is known."""
+    """Return the constants of `text % values` if all parts are known."""
     return _made(ctx, lambda text, given: text % (tuple(given) if isinstance(given, list) else given), values)
 
 
@@ -91,7 +91,7 @@ def as_text(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def same_text(ctx: Interpreter, it: Invocation) -> Value:  # noqa: ARG001 - one signature for all
-    """Return a name that a function resolves, as it is written."""
+    """Return a name passed to a resolving function unchanged."""
     return it.arguments[0][0] if it.arguments[0] else UNKNOWN
 
 

@@ -1,4 +1,4 @@
-"""Taking values apart: unpacking with a star, iterating over objects of ours."""
+"""Unpacking with a star, and iteration over analysed objects."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tarl_lint.memory.heap import item_field
 from tarl_lint.memory.values import BOTTOM, Obj, Value, const, join, pointer
 from tarl_lint.models import library, sizes
 
-ITERATED = -2  # slots of the calls that a loop makes
+ITERATED = -2  # slot of the calls of `__iter__` and `__next__` that a loop makes
 NEXT = -3
 
 
@@ -29,7 +29,7 @@ ITERATING = frozenset(
 def call_library(
     ctx: Interpreter, qualified: str, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> Value:
-    """Call a function or class of a library; those that go over objects of ours ask these for iterators."""
+    """Call a library function or class; those that iterate over analysed objects call their iterators."""
     if qualified in ITERATING:
         arguments = [_gone_over(ctx, v, frame, call) for v in arguments[0]], arguments[1]
     return library.call_library(ctx, qualified, arguments, frame, call)
@@ -45,7 +45,7 @@ def _gone_over(ctx: Interpreter, value: Value, frame: Frame, call: ir.Call) -> V
 def parts(
     ctx: Interpreter, value: Value, count: int, starred: int | None, frame: Frame, slot: str
 ) -> list[Value]:
-    """Return what each of several targets gets; the starred one gets a sequence."""
+    """Return the values of several targets; the starred one gets a sequence."""
     if any(o.kind == "instance" and _iterator(ctx, o) is not BOTTOM for o in value.pts):
         given = iterated(ctx, value, ir.Const(None, frame.function.pos), frame)
         value = listed_parts(ctx, given, frame, slot)
@@ -66,14 +66,14 @@ def parts(
 
 
 def listed_parts(ctx: Interpreter, element: Value, frame: Frame, slot: str) -> Value:
-    """Return a sequence of what an object of ours gives when it is taken apart."""
+    """Return a sequence of the values that an analysed object yields."""
     obj = recency.allocate(ctx, "sequence", frame, ("parts", slot))
     updates.add_element(ctx, pointer(obj), element)
     return pointer(obj, element.deps)
 
 
 def iterated(ctx: Interpreter, source: Value, expr: ir.Expr, frame: Frame) -> Value:
-    """Return what a loop over a value gives; objects of ours are asked for it."""
+    """Return the value of a loop's target; calls the iterators of analysed objects."""
     ours = {o: m for o in source.pts if o.kind == "instance" and (m := _iterator(ctx, o)) is not BOTTOM}
     if not ours:
         return heap.elements(ctx, source)
@@ -98,7 +98,7 @@ def _iterator(ctx: Interpreter, obj: Obj) -> Value:
 
 
 def _method(ctx: Interpreter, obj: Obj, name: str) -> Value:
-    """Return a method of ours, BOTTOM where there is none."""
+    """Return an analysed method; BOTTOM if there is none."""
     member = heap.read_field(ctx, obj, name)
     callables = frozenset(o for o in member.pts if o.kind in CALLABLE)
     return Value(member.deps, callables) if callables else BOTTOM

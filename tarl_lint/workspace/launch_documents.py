@@ -13,14 +13,18 @@ from tarl_lint.workspace.model import Problem
 
 LARGEST: Final = 1_000_000  # bytes
 MOST: Final = 5_000  # elements
-LINE: Final = "\0line"  # no attribute of XML has this name
-_LISTS: Final = ("launch", "group", "timer")  # of YAML: their elements are named by the key of a mapping
+LINE: Final = "\0line"  # not a valid XML attribute name, so it cannot clash
+_LISTS: Final = (
+    "launch",
+    "group",
+    "timer",
+)  # keys of YAML with a list of elements, each a mapping with its tag as key
 
 
 def xml_tree(text: str) -> Element:
-    """Return the root element; the line of each element is its attribute `LINE`.
+    """Parse XML and return the root element; attribute `LINE` of each element is its line.
 
-    Raises UnreadableError for entities, ExpatError for what is not XML.
+    Raises UnreadableError for entities, ExpatError for invalid XML.
     """
     builder, parser = TreeBuilder(), expat.ParserCreate()
 
@@ -37,7 +41,7 @@ def xml_tree(text: str) -> Element:
 
 
 def xml_root(path: Path, problems: list[Problem]) -> Element | None:
-    """Return the root element of a file, None with a problem where it cannot be read."""
+    """Return the root element of a file; None, with a problem recorded, if it cannot be read."""
     try:
         return xml_tree(read_text(path, LARGEST))
     except UnreadableError as reason:
@@ -116,7 +120,7 @@ def _entity(tag: str, node: Any, line: int, left: list[int]) -> Entity:
 
 
 def _flow(node: Any, left: list[int]) -> str:
-    """Return a list of a parameter value as text of YAML."""
+    """Return a list in a parameter value as YAML text."""
     left[0] -= 1
     if left[0] < 0:
         return ""

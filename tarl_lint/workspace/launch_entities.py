@@ -1,4 +1,4 @@
-"""Read ROS 2 launch files in XML and YAML: their elements become the same actions that Python files make."""
+"""Read ROS 2 launch files in XML and YAML into the same actions as Python files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _IGNORED: Final = frozenset(["executable", "set_env", "unset_env", "append_env",
 
 @dataclass
 class Entity:
-    """An element of XML, or a mapping of YAML with its name. Names have `_` where files may also have `-`."""
+    """An XML element, or a YAML mapping with its name. `-` in names is replaced by `_`."""
 
     tag: str
     line: int
@@ -32,7 +32,7 @@ class Entity:
     children: list[Entity] = field(default_factory=list)
 
     def get(self, name: str) -> Any:
-        """Return an attribute with its substitutions, None if it is absent."""
+        """Return an attribute with its substitutions; None if it is absent."""
         text = self.attributes.get(name)
         return None if text is None else substitutions(text)
 
@@ -127,7 +127,7 @@ def _condition(entity: Entity) -> dict[str, Condition]:
 
 
 def substitutions(text: str) -> Any:
-    """Return a text of XML or YAML with its `$(…)` as substitutions; a text without any as it is."""
+    """Parse the substitutions `$(…)` in a text; return a text without any unchanged."""
     parts: list[Any] = []
     place = 0
     while (start := text.find("$(", place)) >= 0:
@@ -142,7 +142,7 @@ def substitutions(text: str) -> Any:
 
 
 def _end(text: str, start: int) -> int:
-    """Return the index of the parenthesis that closes the one after `start`, -1 without one."""
+    """Return the index of the parenthesis that closes the one after `start`; -1 if there is none."""
     depth = 0
     for index in range(start + 1, len(text)):
         depth += {"(": 1, ")": -1}.get(text[index], 0)

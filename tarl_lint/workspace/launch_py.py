@@ -46,7 +46,7 @@ _HOMES: Final = (
     "description",
     "substitution",
     "action",
-)  # modules below launch that repeat what is above them
+)  # submodules of launch that re-export its names
 _EVENTS: Final = ("on_exit", "on_start", "on_stdout", "on_stderr", "on_completion", "entities")
 
 
@@ -58,7 +58,7 @@ class _File:
         self.file = Interpreter(path, self._models())
 
     def actions(self, problems: list[Problem]) -> Any:
-        """Return the launch description; what cannot be read goes to `problems`, now and when functions are called."""
+        """Return the launch description. Problems go to `problems`, now and when functions are called later."""
         self.file.problems = problems
         self.file.run()
         description = self.file.called("generate_launch_description")
@@ -118,7 +118,7 @@ class _File:
                              ("composable_node_descriptions", "components")):  # fmt: skip
                 if old in given and (kind != "node" or old != "launch_arguments"):
                     given.setdefault(new, given.pop(old))
-            if kind == "group":  # a list that is added to later belongs to this action alone
+            if kind == "group":  # copied, since a later addition to the list belongs to this action alone
                 given["actions"] = list(given.get("actions") or given.get("initial_entities") or [])
             return Action(kind, self.file.line, given)
 
@@ -128,7 +128,7 @@ class _File:
         return self._action("group", "actions")(actions, **{"scoped": True, **keywords})
 
     def _handler(self, handler: Any = None, **keywords: Any) -> Action:
-        """Return the actions of an event handler: they are started when the event comes."""
+        """Return the actions of an event handler, which start when the event occurs."""
         handler = keywords.pop("event_handler", handler)
         values = handler.values if isinstance(handler, Action) else {}
         return self._action("group", "actions")([values[key] for key in _EVENTS if key in values], **keywords)
@@ -203,7 +203,7 @@ def _parts(value: Any) -> tuple[Any, ...]:
 
 
 def _hashed(value: Any) -> Any:
-    """Return a value of which dict keys can be made."""
+    """Return a hashable form of a value."""
     return tuple(map(_hashed, value)) if isinstance(value, list | tuple) else value
 
 

@@ -29,7 +29,7 @@ _OF_ROS1: Final = re.compile(
 
 
 def read_launch(path: Path, workspace: Workspace, arguments: Mapping[str, str] | None = None) -> Launch:
-    """Return what a launch file starts, with the defaults of the arguments that are not given. Nothing is executed."""
+    """Read a launch file, with defaults for missing arguments. Nothing is executed."""
     if path.suffix not in (".py", *_YAML) and not is_ros2_xml(path, workspace):
         return read_xml(path, workspace, arguments)
     context = Context(workspace, path, dict(arguments or {}))
@@ -39,7 +39,7 @@ def read_launch(path: Path, workspace: Workspace, arguments: Mapping[str, str] |
 
 
 def is_ros2_xml(path: Path, workspace: Workspace) -> bool:
-    """Return whether a launch file in XML is one of ROS 2: by its elements, else by how its package is built."""
+    """Return whether an XML launch file is for ROS 2, by its elements or else by its package's build type."""
     try:
         text = read_text(path, LARGEST)
     except UnreadableError:

@@ -1,4 +1,4 @@
-"""Go through the actions of a ROS 2 launch file: what they start, with names, remappings and parameters.
+"""Interpret the actions of a ROS 2 launch file: nodes with names, remappings and parameters.
 
 The actions come from Python, XML or YAML. None of them is executed.
 """
@@ -17,14 +17,14 @@ from tarl_lint.workspace.launch_values import Context, Substitution, performed, 
 from tarl_lint.workspace.model import Problem
 from tarl_lint.workspace.ros_names import joined
 
-LARGEST: Final = 1_000_000  # bytes of a YAML file
-DEEPEST: Final = 20  # files that include each other
-MOST: Final = 5_000  # actions of a launch file with all that it includes
+LARGEST: Final = 1_000_000  # bytes, limit on a YAML file
+DEEPEST: Final = 20  # limit on nested includes
+MOST: Final = 5_000  # limit on the actions of a launch file and its includes
 
 
 @dataclass(frozen=True)
 class Action:
-    """A node, group, declaration or include; `line` is that of its call or element."""
+    """A node, group, declaration or include; `line` is the line of its call or element."""
 
     kind: str
     line: int
@@ -47,7 +47,7 @@ class Condition:
 
 @dataclass(frozen=True)
 class Quoted:
-    """A parameter value with its type: `str` keeps a text as it is, else it is read as YAML."""
+    """A parameter value with its type: `str` keeps a text unchanged, other types parse it as YAML."""
 
     value: Any
     kind: str = ""
@@ -58,7 +58,7 @@ Opener = Callable[[Path, Context, list[Problem]], Any]  # actions of a launch fi
 
 @dataclass
 class Runner:
-    """Goes through actions and collects what is started. `opened` reads an included launch file."""
+    """Interprets actions and collects nodes. `opened` reads an included launch file."""
 
     opened: Opener
     nodes: list[LaunchedNode] = field(default_factory=list)
@@ -67,7 +67,7 @@ class Runner:
     seen: int = 0
 
     def run(self, actions: Any, context: Context, condition: str = "") -> None:
-        """Go through actions in order; `condition` is one around them that only the robot knows."""
+        """Interpret actions in order; `condition` is an enclosing condition known only on the robot."""
         for action in actions if isinstance(actions, list | tuple) else (actions,):
             self.seen += 1
             if self.seen > MOST:
@@ -82,7 +82,7 @@ class Runner:
                 self._problem(context, action.line, f"`{action.text}` is not followed")
 
     def _holds(self, action: Action, context: Context) -> tuple[bool, str]:
-        """Return whether an action counts, and its condition if only the robot knows whether it holds."""
+        """Return whether an action is kept, and its condition if it is known only on the robot."""
         condition = action.values.get("condition")
         if condition is None:
             return True, ""
@@ -125,7 +125,7 @@ class Runner:
             self._set(action, context)
 
     def _set(self, action: Action, context: Context) -> None:
-        """Do what changes the context of the actions that follow."""
+        """Apply an action that changes the context of later actions."""
         values, kind = action.values, action.kind
         name = performed(values.get("name"), context)
         if kind == "argument":
@@ -250,7 +250,7 @@ class Runner:
 
 
 def _setting(name: str, value: Any, context: Context) -> Setting | None:
-    """Return a parameter with a constant value, None where it is none."""
+    """Return a parameter with a constant value; None if it is not constant."""
     if isinstance(value, Quoted):
         inner, kind = value.value, value.kind
         if kind not in ("", "str") or not isinstance(inner, Substitution | list | tuple | str):
@@ -269,7 +269,7 @@ def _setting(name: str, value: Any, context: Context) -> Setting | None:
             return Setting(name, context.file, yaml=repr(list(value)))
     if isinstance(value, Unknown | Library):
         return None
-    text = performed(value, context)  # ROS 2 reads what substitutions give as YAML
+    text = performed(value, context)  # ROS 2 parses the text of substitutions as YAML
     return None if symbolic(text) else Setting(name, context.file, yaml=text)
 
 

@@ -1,6 +1,6 @@
-"""Substitutions of ROS 2 launch files as values, and the text that they stand for.
+"""Substitutions of ROS 2 launch files, and their texts.
 
-A text that only the robot knows stays symbolic: it contains `$(…)` with what it depends on, as in `/$(var robot)/odom`.
+A text known only on the robot stays symbolic: it contains its dependency as `$(…)`, as in `/$(var robot)/odom`.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from tarl_lint.workspace.model import Workspace
 
 TRUE: Final = frozenset({"true", "1"})
 FALSE: Final = frozenset({"false", "0"})
-DEEPEST: Final = 50  # values within each other
-LONGEST: Final = 100_000  # characters of a text
+DEEPEST: Final = 50  # limit on nested values
+LONGEST: Final = 100_000  # limit on a text, characters
 
 
 @dataclass
 class Context:
-    """Where an action stands: its file, and what the actions before it set. Groups get copies."""
+    """The context of an action: its file, and the settings of earlier actions. Groups get copies."""
 
     workspace: Workspace
     file: Path
     configurations: dict[str, str] = field(default_factory=dict)
     namespace: str = "/"
     remaps: tuple[tuple[str, str], ...] = ()
-    settings: tuple[Setting, ...] = ()  # of all nodes that follow
+    settings: tuple[Setting, ...] = ()  # parameters of all following nodes
     readable: frozenset[str] = frozenset({"launch_configurations", "perform_substitution"})
 
     @property
@@ -39,11 +39,11 @@ class Context:
         return {name: known(text) for name, text in self.configurations.items()}
 
     def perform_substitution(self, value: Any) -> Any:
-        """Return the text of a substitution for the function of an OpaqueFunction, Unknown where it is symbolic."""
+        """Return the text of a substitution for the function of an OpaqueFunction; Unknown if it is symbolic."""
         return known(performed(value, self))
 
     def inside(self) -> Context:
-        """Return the context of a group: what is set there does not leave it."""
+        """Return the context of a group, whose settings do not leave it."""
         return Context(
             self.workspace,
             self.file,
@@ -55,7 +55,7 @@ class Context:
 
 
 class Substitution:
-    """A text that is known when its context is. `perform` is what launch files call on it in an OpaqueFunction."""
+    """A text that depends on the context. Launch files call `perform` in an OpaqueFunction."""
 
     readable: frozenset[str] = frozenset({"perform"})
 
@@ -64,7 +64,7 @@ class Substitution:
         raise NotImplementedError
 
     def perform(self, context: Any) -> Any:
-        """Return the text, or Unknown where it is symbolic."""
+        """Return the text; Unknown if it is symbolic."""
         return known(performed(self, context)) if isinstance(context, Context) else Unknown(0, "perform")
 
 
@@ -91,14 +91,14 @@ class Joined(Substitution):
     between: str = ""
 
     def text(self, context: Context, depth: int) -> str:
-        """Return the texts of the parts, one after the other."""
+        """Return the joined texts of the parts."""
         texts = [performed(part, context, depth) for part in self.parts]
         return posixpath.join(*texts) if self.between and texts else "".join(texts)
 
 
 @dataclass(frozen=True)
 class Expression(Substitution):
-    """`PythonExpression([…])`, `$(eval …)`: evaluated where its value is constant."""
+    """`PythonExpression([…])`, `$(eval …)`: evaluated if it is constant."""
 
     parts: tuple[Any, ...]
 
@@ -157,7 +157,7 @@ class Choice(Substitution):
     otherwise: Any = ""
 
     def text(self, context: Context, depth: int) -> str:
-        """Return the text of the branch that holds."""
+        """Return the text of the selected branch."""
         holds = truth(performed(self.condition, context, depth))
         if holds is None:
             return f"$(if {performed(self.condition, context, depth)})"
@@ -166,7 +166,7 @@ class Choice(Substitution):
 
 @dataclass(frozen=True)
 class Package(Substitution):
-    """`FindPackageShare`: the source folder of a package of the workspace stands for its installed one."""
+    """`FindPackageShare`: the source folder of a workspace package stands for its share directory."""
 
     name: Any
 
@@ -190,18 +190,18 @@ class Here(Substitution):
 
 @dataclass(frozen=True)
 class OnRobot(Substitution):
-    """What only the robot knows: the output of a command, an environment variable without a default."""
+    """A text known only on the robot: a command's output, an environment variable without a default."""
 
     what: str
     default: Any = None
 
     def text(self, context: Context, depth: int) -> str:
-        """Return the default, or what it depends on."""
+        """Return the default, or the dependency as `$(…)`."""
         return f"$({self.what})" if self.default is None else performed(self.default, context, depth)
 
 
 def performed(value: Any, context: Context, depth: int = 0) -> str:
-    """Return the text of a value: itself, with its substitutions replaced, or symbolic."""
+    """Return the text of a value, with substitutions replaced or symbolic."""
     if depth > DEEPEST:
         return "$(too deep)"
     if isinstance(value, Substitution):
@@ -216,16 +216,16 @@ def performed(value: Any, context: Context, depth: int = 0) -> str:
 
 
 def symbolic(text: str) -> bool:
-    """Return whether a text depends on what only the robot knows."""
+    """Return whether a text depends on values known only on the robot."""
     return "$(" in text
 
 
 def known(text: str) -> Any:
-    """Return a text, or Unknown where it is symbolic."""
+    """Return a text; Unknown if it is symbolic."""
     return Unknown(0, text.removeprefix("$(").removesuffix(")")) if symbolic(text) else text
 
 
 def truth(text: str) -> bool | None:
-    """Return the truth value that a text stands for, None if it is none or symbolic."""
+    """Return the boolean that a text represents; None if it is symbolic or not a boolean."""
     plain = text.strip().lower()
     return True if plain in TRUE else False if plain in FALSE else None

@@ -29,7 +29,7 @@ class _Place:
     remaps: tuple[tuple[str, str], ...] = ()
     private: tuple[Setting, ...] = ()  # private parameters of all following nodes
     depth: int = 0
-    condition: str = ""  # around this place, known on the robot only
+    condition: str = ""  # enclosing condition, known only on the robot
 
 
 @dataclass
@@ -174,14 +174,14 @@ class _Reader:
         return Setting(_parameter(above, name.strip("/")), path, yaml=content)
 
     def _name(self, element: Element, key: str, place: _Place) -> str:
-        """Return an attribute in which stays what only the robot knows."""
+        """Return an attribute, with parts known only on the robot as `$(…)`."""
         text, reasons = place.scope.symbolic(element.get(key, ""))
         for reason in reasons:
             self._problem(element, place, f"{key} of <{element.tag}>: {reason}")
         return text
 
     def _holds(self, element: Element, place: _Place) -> tuple[bool, str]:
-        """Return whether `if` and `unless` let an element count, and a condition that is unknown: then it counts."""
+        """Return whether `if` and `unless` keep an element, and its condition if unknown; then it is kept."""
         for key, wanted in (("if", True), ("unless", False)):
             if key in element.attrib:
                 try:

@@ -1,10 +1,10 @@
-"""Names of ROS: join a namespace and a name, resolve a name as a node does."""
+"""Resolve ROS names: join a namespace and a name."""
 
 from __future__ import annotations
 
 
 def joined(namespace: str, name: str) -> str:
-    """Return an absolute name: `name` within `namespace`, or `name` itself where it is absolute."""
+    """Return an absolute name: `name` in `namespace`, or `name` itself if it is absolute."""
     whole = name if name.startswith("/") else f"{namespace}/{name}"
     return "/" + "/".join(part for part in whole.split("/") if part)
 

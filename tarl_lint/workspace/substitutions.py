@@ -38,7 +38,7 @@ class Scope:
         return _ARGUMENT.sub(lambda found: self._replaced(found[1].split()), text)
 
     def symbolic(self, text: str) -> tuple[str, list[str]]:
-        """Return a text in which stays what only the robot knows, as `$(arg robot)`, and the reasons."""
+        """Return a text with parts known only on the robot as `$(arg robot)`, and the reasons for them."""
         reasons: list[str] = []
 
         def replaced(found: re.Match[str]) -> str:

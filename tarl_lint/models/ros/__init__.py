@@ -1,1 +1,1 @@
-"""Models of ROS: sources, sinks and what runs callbacks."""
+"""Models of ROS: sources, sinks, and registrations of callbacks."""

@@ -1,4 +1,4 @@
-"""What the catalog's calls do: sources, sinks, publishers, timers, parameters."""
+"""Models of the catalog's calls: sources, sinks, publishers, timers, parameters."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from tarl_lint.models.ros import publications, services, subscriptions
 
 
 def ros_call(ctx: Interpreter, it: Invocation) -> Value:
-    """Do what the catalog says about a call."""
+    """Apply the catalog's entry for a call."""
     if "**" in it.arguments[1]:
         it.arguments = it.arguments[0], _unpacked_keywords(ctx, it)
     action = ACTIONS.get(it.fact.kind)
-    return action(ctx, it) if action is not None else UNKNOWN  # a callback of what nothing is known of
+    return action(ctx, it) if action is not None else UNKNOWN  # no model for this kind of call
 
 
 def _unpacked_keywords(ctx: Interpreter, it: Invocation) -> dict[str, Value]:
-    """Return the keywords of a call with those that a `**mapping` among them passes, as far as the catalog asks."""
+    """Return the keywords of a call, including those from `**mapping` that the catalog's entry uses."""
     fact, named = it.fact, dict(it.arguments[1])
     for _, name in (fact.topic, fact.type, fact.callback, fact.extra):
         for obj in named["**"].pts if name and name not in it.arguments[1] else ():
@@ -45,7 +45,7 @@ def _timer(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _done(ctx: Interpreter, it: Invocation) -> Value:
-    """Run a callback on a future, with the future."""
+    """Run a future's done callback with the future."""
     future = containers.through_statement(ctx, it.base, it.frame, it.call, "future")
     for target in it.argument(it.fact.callback).pts:
         subscriptions.call_when(
@@ -88,7 +88,7 @@ def _copied(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def parameter(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a parameter's value: its default, as far as is known here."""
+    """Return a parameter's value: its default, if known."""
     default = it.argument(it.fact.extra)
     if default is BOTTOM:
         node = ctx.node(it.frame, ("parameter", it.call.slot), "assign")
@@ -108,12 +108,12 @@ def _default_of(
         literals.mark(ctx, node, expr, default, frame)
     ctx.graph.flow(default.deps, node)
     if ctx.thorough and default.pts:
-        return ctx.carry(default, node)  # a table with its entries
+        return ctx.carry(default, node)  # a mapping with its entries
     return Value(ctx.kept(node))
 
 
 def declare(ctx: Interpreter, it: Invocation) -> Value:
-    """Remember a declared parameter's default under the node and its name."""
+    """Record a declared parameter's default by node and name."""
     default = it.argument(it.fact.extra)
     expr = _default(it)
     value = (
@@ -128,7 +128,7 @@ def declare(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def declare_all(ctx: Interpreter, it: Invocation) -> Value:
-    """Remember the defaults of several declared parameters, tuples of a name and a default; return all of them."""
+    """Record the defaults of several parameters declared as (name, default); return all of them."""
     prefix = it.argument(it.fact.topic).texts()
     written = _written_defaults(it)
     declared = recency.allocate(ctx, "sequence", it.frame, ("declared", it.call.slot))
@@ -146,7 +146,7 @@ def declare_all(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _written_defaults(it: Invocation) -> Mapping[int, ir.Expr]:
-    """Return the expressions of the defaults, by number, where the call itself holds the list."""
+    """Return the expressions of the defaults by index, if the list is literal in the call."""
     given = _default(it)
     entries = given.items if isinstance(given, ir.SequenceDisplay) else ()
     return {
@@ -157,7 +157,7 @@ def _written_defaults(it: Invocation) -> Mapping[int, ir.Expr]:
 
 
 def parameter_or(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a parameter, or the one given instead."""
+    """Return a parameter, or the alternative argument."""
     found = _parameters(ctx, it.base, it.argument(it.fact.topic))
     return join(found, it.argument(it.fact.extra))
 
@@ -196,7 +196,7 @@ ACTIONS: Mapping[str, Callable[..., Value]] = {
 
 
 def _default(it: Invocation) -> ir.Expr | None:
-    """Return the expression that gives a parameter's default."""
+    """Return the expression of a parameter's default."""
     if len(it.call.arguments) > 1:
         return it.call.arguments[1]
     return next((e for name, e in it.call.keywords if name == it.fact.extra[1]), None)

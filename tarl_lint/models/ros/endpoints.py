@@ -1,4 +1,4 @@
-"""The two ends of flows as found, subscriptions and publish calls, and the publishers between."""
+"""Records of the ends of flows, subscriptions and publish calls, and of publishers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Kind = Literal["topic", "service", "action", "transform"]
 
 @dataclass(slots=True, eq=False)
 class SourceRecord:
-    """A subscription as found: where, what, and the nodes at which its messages arrive."""
+    """A subscription: its place, its topics, and the nodes at which its messages arrive."""
 
     path: str
     pos: ir.Pos
@@ -36,7 +36,7 @@ class SourceRecord:
 
 @dataclass(slots=True, eq=False)
 class SinkRecord:
-    """A publish call as found."""
+    """A publish call."""
 
     path: str
     pos: ir.Pos
@@ -46,13 +46,13 @@ class SinkRecord:
     topics: set[str] = field(default_factory=set)
     types: set[str] = field(default_factory=set)
     nodes: set[int] = field(default_factory=set)
-    publishers: set[tuple[str, ir.Pos]] = field(default_factory=set)  # where they are made
+    publishers: set[tuple[str, ir.Pos]] = field(default_factory=set)  # positions where they are created
     kind: Kind = "topic"
 
 
 @dataclass(slots=True, eq=False)
 class Publisher:
-    """What a publisher object is for, where it is made, and whether anything publishes with it."""
+    """A publisher: its topics, the place of its creation, and whether it is used."""
 
     topics: set[str] = field(default_factory=set)
     types: set[str] = field(default_factory=set)
@@ -61,4 +61,4 @@ class Publisher:
     pos: ir.Pos = (0, 0, 0, 0)
     used: bool = False
     kind: Kind = "topic"
-    methods: frozenset[str] = frozenset(["publish"])  # those that send
+    methods: frozenset[str] = frozenset(["publish"])  # methods that send

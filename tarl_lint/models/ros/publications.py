@@ -1,4 +1,4 @@
-"""Publishers and publish calls."""
+"""Models of publishers and publish calls."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ def made_publisher(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def topics(ctx: Interpreter, it: Invocation) -> list[str]:
-    """Return the names that a registration's topic may have, as they are when launched."""
+    """Return the possible topic names of a registration, after remapping."""
     names = ctx.config.launched
     return [names.get(text.lstrip("/"), text) for text in it.argument(it.fact.topic).texts()]
 
 
 def names_of(info: Publisher) -> tuple[int, int]:
-    """Return how many topics and types a publisher may have: they only become more."""
+    """Return the number of possible topics and types of a publisher; it never decreases."""
     return len(info.topics), len(info.types)
 
 
 def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
-    """Record a sink: everything inside the message reaches it, and whether it is reached at all."""
+    """Record a sink, which depends on everything inside the message and on the conditions of the call."""
     frame, call = it.frame, it.call
     key = (frame.program.path, call.pos)
     record = ctx.sinks.get(key)
@@ -53,7 +53,7 @@ def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
     node = ctx.node(frame, ("publish", call.slot), "publish")
     ctx.graph.flow(call_contexts.all_used(ctx, it.arguments), node)
     ctx.graph.choice(it.base.deps, node)
-    ctx.graph.depend(node, it.base.deps)  # which publisher it is
+    ctx.graph.depend(node, it.base.deps)  # the choice of the publisher
     ctx.graph.depend(node, [n for n, _ in ctx.guards])
     if frame.statement is not None:
         under(ctx, frame, frame.statement, node)
@@ -62,7 +62,7 @@ def send(ctx: Interpreter, it: Invocation, info: Publisher) -> Value:
 
 
 def under(ctx: Interpreter, frame: Frame, statement: ir.Stmt, node: int) -> None:
-    """Let a node depend on the conditions that decide whether its statement runs, in callers too."""
+    """Make a node depend on the conditions of a statement, including those in callers."""
     control = ctx.control(frame)
     for branch in control.direct.get(statement.id, ()):
         decision, _ = ctx.branch(frame, branch)
@@ -73,7 +73,7 @@ def under(ctx: Interpreter, frame: Frame, statement: ir.Stmt, node: int) -> None
 
 
 def _reached(ctx: Interpreter, frame: Frame, number: int, node: int) -> None:
-    """Let a node depend on what decides whether a condition is evaluated."""
+    """Make a node depend on the conditions under which a condition is evaluated."""
     place = ctx.graph.places[ctx.branch(frame, (number, ""))[0]]
     if place.statement is None:
         return
@@ -87,7 +87,7 @@ def _reached(ctx: Interpreter, frame: Frame, number: int, node: int) -> None:
 
 
 def _entered(ctx: Interpreter, frame: Frame, node: int) -> None:
-    """Let a node depend on what decides whether its function is called."""
+    """Make a node depend on the conditions under which its function is called."""
     caller, call = frame.caller, frame.call
     if caller is None or call is None:
         return
@@ -108,12 +108,12 @@ def qualname(frame: Frame) -> str:
 
 
 def type_names(value: Value) -> list[str]:
-    """Return the names of message types: the last part."""
+    """Return the last parts of message types' names."""
     return [o.name.rpartition(".")[2] for o in value.pts if o.kind in ("ext", "class")]
 
 
 def _api(info: Publisher, it: Invocation) -> str:
-    """Name the call that sends, by who made the sender."""
+    """Return the name of the sending API, by the call that created the sender."""
     if info.kind != "topic":
         return f"{info.api}.{it.name}"
     library = info.api.partition(".")[0]

@@ -1,4 +1,4 @@
-"""Objects of libraries that publish what they are given, though nothing in the files says how."""
+"""Library objects that probably publish: their class got a topic name, and has a `publish` method."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from tarl_lint.memory.frames import Frame
 from tarl_lint.memory.values import Obj, Value
 from tarl_lint.models.ros.endpoints import Publisher
 
-SIGNS: Final = ("~", "/")  # with which names of topics begin
+SIGNS: Final = ("~", "/")  # beginnings of topic names
 
 
 def note(
     ctx: Interpreter, qualified: str, made: Value, arguments: Arguments, frame: Frame, call: ir.Call
 ) -> None:
-    """Remember an object whose class was given the name of a topic first: its `publish` publishes there."""
+    """Record an object whose class got a topic name as first argument: its `publish` publishes there."""
     names = sorted(t for t in arguments[0][0].texts() if t.startswith(SIGNS)) if arguments[0] else []
     if names:
         launched = ctx.config.launched
@@ -27,7 +27,7 @@ def note(
 
 
 def sender(ctx: Interpreter, obj: Obj) -> Publisher | None:
-    """Return what is known of an object that publishes: a publisher, noted, or held by a base class."""
+    """Return the publisher of an object: its own, a recorded one, or one held by a base class."""
     if isinstance(obj.info, Publisher):
         return obj.info
     found = ctx.senders.get(obj)

@@ -1,4 +1,4 @@
-"""Services, actions and transforms: requests come in, responses, feedback and results go out."""
+"""Models of services, actions and transforms: requests are sources; responses, feedback and results are sinks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RUN: Final = frozenset([*CALLABLE, "instance"])
 
 @dataclass(slots=True, eq=False)
 class Server:
-    """An action server, or the handle of one goal: where goals come from and how results leave."""
+    """An action server or goal handle, with the source of goals and the sink of results."""
 
     record: SourceRecord
     sends: Publisher
@@ -29,7 +29,7 @@ class Server:
 
 
 def service(ctx: Interpreter, it: Invocation) -> Value:
-    """Run a handler on every request; what it returns is the response."""
+    """Run a handler for requests; its result is the response."""
     callback = it.argument(it.fact.callback)
     record = subscriptions.source(ctx, it, callback)
     answer = _sender(it, record, "service")
@@ -87,13 +87,13 @@ def _goal_callback(ctx: Interpreter, server: Server, way: str, target: Obj) -> N
 
 
 def serve(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
-    """Call a method of an action server or of a goal's handle."""
+    """Call a method of an action server or goal handle."""
     ctx.store.reads.look(target)
     server = target.info
     if not isinstance(server, Server):
         return UNKNOWN
     if it.name in server.sends.methods:
-        given = bool(it.arguments[0] or it.arguments[1])  # without a result there is nothing to send
+        given = bool(it.arguments[0] or it.arguments[1])  # no result, nothing to send
         return publications.send(ctx, it, server.sends) if given else UNKNOWN
     if it.name in catalog.GOAL_READERS:
         if server.handle:
@@ -109,7 +109,7 @@ def serve(ctx: Interpreter, target: Obj, it: Invocation) -> Value:
 
 
 def _accepted(ctx: Interpreter, record: SourceRecord, it: Invocation) -> Value:
-    """Return the goal that a server gives out when it is asked for one."""
+    """Return the goal that a server returns from `accept_new_goal`."""
     key = (it.frame.id, it.call.slot)
     obj = record.messages.get(key)
     if obj is None:
@@ -124,7 +124,7 @@ def _accepted(ctx: Interpreter, record: SourceRecord, it: Invocation) -> Value:
 
 
 def transform_look_up(ctx: Interpreter, it: Invocation) -> Value:
-    """Return what a look-up in the tree of transforms gives: a source when the settings say so."""
+    """Return the result of a transform look-up, a source with the setting `tf2`."""
     if not ctx.config.tf2:
         return library.generic(ctx, it.fact.api, it.arguments, it.frame, it.call)
     record = subscriptions.source(ctx, it, BOTTOM)

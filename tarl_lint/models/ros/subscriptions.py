@@ -1,4 +1,4 @@
-"""Subscriptions: where messages come in, and the callbacks that they go to."""
+"""Models of subscriptions and their callbacks."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ from tarl_lint.models.smach import LATER
 
 KINDS: Final[Mapping[str, Kind]] = {"service": "service", "action": "action", "transform": "transform"}
 NOTHING: Final[Mapping[str, Value]] = {}
-Fresh = Sequence[tuple[Obj, str, Value]]  # objects that a call brings anew, with a field and what it is
+Fresh = Sequence[tuple[Obj, str, Value]]  # (new object of each call, field, value)
 
 
 def source(ctx: Interpreter, it: Invocation, callback: Value) -> SourceRecord:
-    """Record a subscription at the outermost call that supplies its callback."""
+    """Record a subscription, at the outermost call that supplies its callback."""
     place, pos, statement, via = it.frame, it.call.pos, it.frame.statement, []
     while place.caller is not None and place.call is not None and _supplied(place, callback):
         via.append((place.program.path, pos))
@@ -55,13 +55,13 @@ def source(ctx: Interpreter, it: Invocation, callback: Value) -> SourceRecord:
 
 
 def call_position(frame: Frame) -> ir.Pos:
-    """Return where the call stands that entered a frame."""
+    """Return the position of the call that entered a frame."""
     assert frame.call is not None  # noqa: S101 - asked before
     return frame.call_pos or frame.call.pos
 
 
 def subscribe(ctx: Interpreter, it: Invocation) -> Value:
-    """Record a source and run its callback with messages."""
+    """Record a source, and run its callback with messages."""
     callback = it.argument(it.fact.callback)
     record = source(ctx, it, callback)
     extra = it.argument(it.fact.extra)
@@ -72,7 +72,7 @@ def subscribe(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def _forward(ctx: Interpreter, record: SourceRecord, callback: Value, it: Invocation) -> None:
-    """Where the callback is a method of no class of ours, as `other.publish`, call it where it is registered."""
+    """If the callback is a library method, as `other.publish`, call it at the registration."""
     for target in in_order(callback.pts):
         if target.kind == "method":
             obj = _received(ctx, record, it.frame, ("forward", it.call.slot, target.key))
@@ -91,7 +91,7 @@ def _received(ctx: Interpreter, record: SourceRecord, frame: Frame, slot: Hashab
 
 
 def configured_source(ctx: Interpreter, it: Invocation) -> Value:
-    """Subscribe when one of the arguments is a function, else return the message."""
+    """Subscribe if one of the arguments is a function, else return the message."""
     given = [*it.arguments[0], *it.arguments[1].values()]
     callbacks = [v for v in given if any(o.kind in ("closure", "bound", "partial") for o in v.pts)]
     if not callbacks:
@@ -101,7 +101,7 @@ def configured_source(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def handle(ctx: Interpreter, frame: Frame, call: ir.Call) -> Value:
-    """Return the object that a registration gives back."""
+    """Return the object that a registration returns."""
     return pointer(recency.allocate(ctx, "lib", frame, ("made", call.slot)))
 
 
@@ -116,7 +116,7 @@ def connect(ctx: Interpreter, record: SourceRecord, callback: Value, extra: Sequ
 
 
 def message(ctx: Interpreter, record: SourceRecord, target: Obj) -> Obj:
-    """Return the message object that a source hands to a callback."""
+    """Return the message object that a source passes to a callback."""
     obj = record.messages.get(target.key)
     if obj is None:
         obj = record.messages[target.key] = Obj("message", (record.path, record.pos, target.key))
@@ -132,7 +132,7 @@ def message(ctx: Interpreter, record: SourceRecord, target: Obj) -> Obj:
 
 
 def described(ctx: Interpreter, target: Obj) -> Frame | None:
-    """Return a frame that stands for a callback's function, whoever calls it."""
+    """Return a frame that represents a callback's function, independent of callers."""
     while target.kind in ("bound", "partial", "instance"):
         if target.kind == "bound" and isinstance(target.info, tuple):
             target = target.info[0]
@@ -152,14 +152,14 @@ def described(ctx: Interpreter, target: Obj) -> Frame | None:
 
 
 def receive(ctx: Interpreter, it: Invocation) -> Value:
-    """Return the message that a waiting call gives."""
+    """Return the message from a call that waits for one."""
     obj = _received(ctx, source(ctx, it, BOTTOM), it.frame, it.call.slot)
     recency.clear_fields(ctx, obj)
     return pointer(obj)
 
 
 def message_filter(ctx: Interpreter, it: Invocation) -> Value:
-    """Return a subscriber of message_filters: rospy's starts with the topic, rclpy's with the node."""
+    """Return a subscriber of message_filters; its first argument is the topic in rospy, the node in rclpy."""
     first = it.arguments[0][0] if it.arguments[0] else BOTTOM
     if len(it.arguments[0]) > 2 and not first.texts() and not it.argument(it.fact.type).texts():
         it.fact = catalog.FILTER_WITH_NODE
@@ -182,7 +182,7 @@ def synchronizer(ctx: Interpreter, it: Invocation) -> Value:
 
 
 def register_filter(ctx: Interpreter, target: Obj | None, it: Invocation) -> Value:
-    """Run a callback with one message of each subscriber."""
+    """Register a callback that gets one message of each subscriber."""
     if target is None:
         return UNKNOWN
     ctx.store.reads.look(target)
@@ -206,7 +206,7 @@ def register_filter(ctx: Interpreter, target: Obj | None, it: Invocation) -> Val
 
 
 def _filtered(ctx: Interpreter, part: Value, function: Obj, places: set[tuple[str, ir.Pos]]) -> Value:
-    """Return the message that a subscriber of message_filters hands on."""
+    """Return the message that a subscriber of message_filters forwards."""
     arriving = BOTTOM
     ctx.look(part.pts)
     for subscriber in part.pts:
@@ -227,7 +227,7 @@ def call_when(
     named: Mapping[str, Value] = NOTHING,
     program: str = "",
 ) -> None:
-    """Run a function on its own with these arguments; `answer` takes what it returns."""
+    """Queue a function as root with these arguments; `answer` gets its result."""
     root = Root((key, target.kind, target.key), kind, target.name, kind == "thread", function_of(target))
     root.maker = ctx.store.root
     root.program = program or root.maker.program
@@ -252,7 +252,7 @@ def call_when(
 
 
 def _too_many(ctx: Interpreter, root: Root) -> bool:
-    """Tell whether a function runs on its own often enough: for itself, or for other objects of a class."""
+    """Return whether a function has enough roots already: its own restarts, or other objects of its class."""
     if root.function is None:
         return False
     if root.generations() > MAX_GENERATIONS:
@@ -264,17 +264,17 @@ def _too_many(ctx: Interpreter, root: Root) -> bool:
 
 
 def call_later(ctx: Interpreter, target: Obj, values: Sequence[Value]) -> None:
-    """Have a function run on its own; of other arguments than these nothing is known."""
+    """Queue a function as root; its other arguments are unknown."""
     call_when(ctx, "later", target, values, "callback")
 
 
 def _for_each_object(root: Root) -> bool:
-    """Tell whether a thread or a framework runs something, which it does for each object of a class."""
+    """Return whether a thread or framework runs a method, which it does for each object of a class."""
     return root.kind == "thread" or (isinstance(root.key, tuple) and root.key[0] == "framework")
 
 
 def _supplied(frame: Frame, callback: Value) -> bool:
-    """Tell whether a function's caller hands in the callback."""
+    """Return whether a function's caller supplies the callback."""
     wanted = {o for o in callback.pts if o.kind in CALLABLE}
     for target in tuple(wanted):
         wanted |= _wrapped(target, frame)
@@ -282,7 +282,7 @@ def _supplied(frame: Frame, callback: Value) -> bool:
 
 
 def _wrapped(target: Obj, frame: Frame) -> set[Obj]:
-    """Return the functions that a helper, this one or one called from here, was given to make a callback around."""
+    """Return the functions passed to a helper, directly or in nested calls, that wraps them in a callback."""
     if target.kind == "partial" and isinstance(target.info, tuple):
         return {o for o in target.info[0].pts if o.kind in CALLABLE}
     maker = target.info[1] if target.kind == "closure" and isinstance(target.info, tuple) else None
