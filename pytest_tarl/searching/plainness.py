@@ -13,11 +13,16 @@ from tarl_lint.model import Operand
 
 
 class Oddness(IntEnum):
-    """How unusual a change reads: scaling a named constant, scaling a literal, adding an offset or flipping a sign."""
+    """How unusual a change reads, from the plainest to the oddest.
+
+    `NAMED` scales a named constant, `INNER` a literal, `VARIABLE` a name that stands for several constants, so that the
+    repair writes a new factor beside it. `OFFSET` adds a number or flips a sign.
+    """
 
     NAMED = 0
     INNER = 1
-    OFFSET = 2
+    VARIABLE = 2
+    OFFSET = 3
 
 
 def oddness(mutations: Iterable[Mutation]) -> Oddness:
@@ -30,12 +35,12 @@ def plainer(
 ) -> list[Unit]:
     """Return the units whose change is plainer than the candidate found, best gain first.
 
-    Units that gain at least `promising` are worth refining. If the candidate is an offset, untried units are worth
-    trying too, named constants first.
+    Units that gain at least `promising` are worth refining. If the candidate scales a variable or is an offset,
+    untried units are worth trying too, the plainest first.
     """
     read = [unit for unit in units if _kind(unit) < odd]
     gaining = [unit for unit in read if max(gains.get(unit, {}).values(), default=0.0) >= promising]
-    others = [unit for unit in read if unit not in gains] if odd is Oddness.OFFSET else []
+    others = [unit for unit in read if unit not in gains] if odd >= Oddness.VARIABLE else []
     return [*sorted(gaining, key=lambda unit: -max(gains[unit].values())), *sorted(others, key=_kind)]
 
 
@@ -47,7 +52,7 @@ def writing(operand: Operand) -> Oddness:
     """
     zero = operand.value == 0 and not isinstance(operand.value, bool)
     if not operand.literal:
-        return Oddness.INNER if zero else Oddness.NAMED
+        return Oddness.INNER if zero else _scaled(operand)
     return Oddness.OFFSET if zero else Oddness.INNER
 
 
@@ -64,14 +69,21 @@ def _kind(unit: Unit) -> Oddness:
     operand = unit.operands[0]
     if operand.value == 0 and not isinstance(operand.value, bool):
         return Oddness.OFFSET
-    return Oddness.INNER if operand.literal else Oddness.NAMED
+    return _scaled(operand)
+
+
+def _scaled(operand: Operand) -> Oddness:
+    """Return the oddness of scaling an operand that is not 0."""
+    if operand.literal:
+        return Oddness.INNER
+    return Oddness.VARIABLE if operand.definition is None and not operand.setting else Oddness.NAMED
 
 
 def _of(mutation: Mutation) -> Oddness:
     operand, value = mutation.operand, mutation.value
     if isinstance(operand.value, bool) or isinstance(value, bool):
-        return Oddness.INNER if operand.literal else Oddness.NAMED
+        return _scaled(operand)
     factor = value / operand.value if operand.literal and operand.value else value
     if operand.value == 0 or factor < 0:
         return Oddness.OFFSET
-    return Oddness.INNER if operand.literal else Oddness.NAMED
+    return _scaled(operand)

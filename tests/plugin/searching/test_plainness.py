@@ -34,6 +34,11 @@ POSITION = Sensor("pos", topic="/odom", field="x", low=0, high=10, bins=10)
         (Mutation(INNER, -2.5), Oddness.OFFSET),
         (Mutation(INNER, 5.0), Oddness.INNER),
         (Mutation(NAMED, 2.2), Oddness.NAMED),
+        (Mutation(replace(operand(7, "goal", 1.0), value=None, definition=None), 2.2), Oddness.VARIABLE),
+        (
+            Mutation(replace(operand(8, "gain", 1.0), value=None, definition=None, setting="gain"), 2.2),
+            Oddness.NAMED,
+        ),
         (Mutation(operand(6, "True", True), value=False), Oddness.INNER),
     ],
 )
@@ -103,4 +108,4 @@ def test_named_constants_are_tried_before_literals_and_zeros_last() -> None:
     unknown = replace(operand(7, "self.k", None), definition=None)
     flag = operand(8, "False", False)
     ordered = sorted([OFFSET, INNER, named_zero, flag, NAMED, unknown], key=writing)
-    assert ordered == [NAMED, unknown, INNER, named_zero, flag, OFFSET]
+    assert ordered == [NAMED, INNER, named_zero, flag, unknown, OFFSET]
