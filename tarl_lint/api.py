@@ -46,7 +46,7 @@ class Analysis:
 
     @property
     def timing(self) -> tuple[Step, ...]:
-        """Return the statements beside the flows that wait, or say how often something runs, sorted by place."""
+        """Return the statements outside of the flows that wait or set a rate, sorted by position."""
         return tuple(sorted(self.prober.timing.values(), key=lambda s: s.span))
 
     def operands(self, site: SiteId) -> tuple[Operand, ...]:

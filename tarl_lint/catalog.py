@@ -104,7 +104,8 @@ OTHER_KINDS: Final = ("rospy.Service", "rclpy.create_service", "actionlib.", "rc
 
 FILLS_RESPONSE: Final = frozenset(["rclpy.create_service"])  # handlers receive a response to fill
 
-# Callbacks of action servers: "goal" gets the goal, the others a handle of it; what "execute" returns is the result.
+# Callbacks of action servers: "goal" gets the goal, the others a goal handle; the return value of "execute" is the
+# result.
 ACTION_CALLBACKS: Final[Mapping[str, Mapping[str, tuple[int, str]]]] = {
     "actionlib.SimpleActionServer": {"goal": (2, "execute_cb")},
     "actionlib.ActionServer": {"accepted": (2, "goal_cb"), "cancel": (3, "cancel_cb")},

@@ -120,7 +120,7 @@ def _lint(chosen: Options, config: Config) -> Result:
 
 
 def _with_progress(work: Callable[[Tell], T]) -> T:
-    """Do what may take long; show its progress on a terminal."""
+    """Run a long computation; show its progress on a terminal."""
     if not sys.stderr.isatty():
         return work(silent)
     from tarl_lint.run.progress import Progress

@@ -205,7 +205,7 @@ def _add_policy(group: argparse._ArgumentGroup) -> None:
         help="fail never, on new hazards, also on new explicit flows (default), or also on new implicit ones",
     )
     group.add_argument(
-        "--exit-zero", action="store_true", help="exit with 0 whatever is found; overrides --fail-on"
+        "--exit-zero", action="store_true", help="exit with 0 even if there are findings; overrides --fail-on"
     )
     group.add_argument(
         "--baseline", type=Path, metavar="FILE", help=f"file of accepted findings (default: {BASELINE_NAME})"

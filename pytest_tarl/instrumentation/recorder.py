@@ -54,8 +54,9 @@ class Recorder:
     """Record one episode.
 
     `hook` can be called from any thread. `bind` gives instrumented code a faster hook, and the buffer of the thread
-    that created the recorder. That buffer begins to distinguish threads before a second thread runs its first line;
-    from the start if another thread that may run the program already exists, or with `threads=True`, as for real ROS.
+    that created the recorder. That buffer assumes a single thread until a second one starts, and then distinguishes
+    them. With `threads=True`, for real ROS, or if another thread that may run the program exists already, it
+    distinguishes threads from the start.
     """
 
     _packing = True  # whether `reward` may pack the buffer of the recorder's own thread
@@ -65,7 +66,7 @@ class Recorder:
         self._local = threading.local()
         self._buffers: list[_Buffer] = []
         self._cells: dict[Cell, int] = {}
-        self._latched: list[int] = []  # the cell from each mark on
+        self._latched: list[int] = []  # the current cell from each mark on
         self._rewards: list[int] = []  # indices of the marks that close a step
         self._totals: list[float] = []
         self._parts: list[Mapping[str, float]] = []

@@ -209,7 +209,7 @@ def _patch_receiving(copy: RospyCopy, network: RospyNetwork) -> None:
         connections, self.connections = (
             self.connections,
             [],
-        )  # latched messages arrive in their turn, not at once
+        )  # latched messages are delivered in order, not immediately
         try:
             add_callback(self, callback, arguments)
         finally:

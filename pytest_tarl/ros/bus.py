@@ -123,7 +123,7 @@ class Bus:
         if reply[0] is None:
             names = [name for name, _ in services.names()]
             raise RecordingError(
-                f"No node serves {absolute(service)} now; services that are there: {', '.join(names) or 'none'}."
+                f"No node serves {absolute(service)} now; available services: {', '.join(names) or 'none'}."
             )
         return reply[0]
 

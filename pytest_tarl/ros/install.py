@@ -148,7 +148,7 @@ _IMPORT_DATA = ("__name__", "__spec__", "__loader__", "__file__", "__cached__", 
 
 
 class StandinFinder:
-    """A finder for `sys.meta_path`. Every episode gets module objects of its own."""
+    """A finder for `sys.meta_path`. Every episode gets its own module objects."""
 
     def __init__(self) -> None:
         self.loaded: list[str] = []

@@ -46,7 +46,7 @@ def generated(name: str) -> ModuleType:
     if found is None:
         names = ", ".join(f"{one}Config" for one in sorted(_of_package(known.configurations))) or "none"
         raise UnsupportedApiError(
-            f"No .cfg file of {package} generates {wanted}; what its files generate: {names}. The third argument of "
+            f"No .cfg file of {package} generates {wanted}; its files generate: {names}. The third argument of "
             "gen.generate has to be a constant."
         )
     _fill(module, found)

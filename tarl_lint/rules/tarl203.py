@@ -94,7 +94,7 @@ ACTIONS: Final = (
 
 
 def ruled_out(side: Side) -> bool:
-    """Return whether the group subscribes to nothing, or no function that does nothing is handed on."""
+    """Return whether the group subscribes to nothing, or passes on no function without effect."""
     if not side.hears:
         return True
     idle = [f for m in side.modules for f in _functions(m.tree.body) if not acting(f)]

@@ -1,1 +1,1 @@
-"""The nodes of a launch file as one system: which topics they use, and which data flows across them."""
+"""Analyse the nodes of a launch file as one system: their topics, and the flows across nodes."""

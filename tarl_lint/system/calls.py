@@ -1,4 +1,4 @@
-"""Services that a program calls, by the literals in its code."""
+"""Find the services that a program calls, by literals in its code."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _CLIENTS: Final = frozenset(["create_client"])
 
 
 def called_services(outline: Outline) -> Iterator[tuple[ast.Call, str, str]]:
-    """Yield the calls that make a client, with the literal name of the service and the last part of its type."""
+    """Yield the calls that create a client, with the service's literal name and the last part of its type."""
     for calls in outline.calls.values():
         for call in calls:
             made = _last(call.func)

@@ -1,4 +1,4 @@
-"""Flows across nodes: chains of hops in which each begins at the topic where the one before ends."""
+"""Flows across nodes: chains of hops, each of which begins at the topic where the previous one ends."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Final
 from tarl_lint.system.compose import UNKNOWN
 from tarl_lint.system.model import Chain, Hop
 
-MOST: Final = 200  # chains of one system
-STEPS: Final = 100_000  # of the search
+MOST: Final = 200  # limit on the chains of one system
+STEPS: Final = 100_000  # limit on the steps of the search
 
 
 def chains(hops: Sequence[Hop], origin: str = "", target: str = "") -> tuple[tuple[Chain, ...], bool]:
     """Return the chains between two topics, and whether there are more than `MOST`.
 
-    Without `origin`, chains begin where data enters the nodes that were read; without `target`, they end where it
-    leaves them. A chain passes each topic once.
+    Without `origin`, chains begin where data enters the analysed nodes; without `target`, they end where it leaves
+    them. A chain passes each topic once.
     """
     from_topic: dict[str, list[Hop]] = {}
     for hop in hops:
@@ -48,7 +48,7 @@ def _last(hops: Sequence[Hop]) -> set[str]:
 
 
 def _ends(topics: set[str], edges: Sequence[tuple[str, str, bool]]) -> set[str]:
-    """Return the topics from which no edge leads on, or none of a node that was read and only in a circle."""
+    """Return the topics without successors, and those on a cycle whose edges all come from unread nodes."""
     after: dict[str, set[str]] = {}
     for one, other, _ in edges:
         after.setdefault(one, set()).add(other)
@@ -70,12 +70,12 @@ def _returns(topic: str, after: Mapping[str, set[str]]) -> bool:
 
 
 def slashed(topic: str) -> str:
-    """Return a topic as the user wrote it, as an absolute name."""
+    """Return the user's topic as an absolute name."""
     return topic if topic.startswith("/") else f"/{topic}"
 
 
 def _leading(hops: Iterable[Hop], wanted: set[str]) -> set[str]:
-    """Return the topics from which hops lead to a wanted one."""
+    """Return the topics from which hops lead to the target."""
     before: dict[str, set[str]] = {}
     for hop in hops:
         before.setdefault(hop.sink, set()).add(hop.source)

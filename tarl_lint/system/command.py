@@ -35,7 +35,7 @@ FORMATS: Final = ("text", "json", "mermaid", "svg")
 
 @dataclass(frozen=True)
 class Request:
-    """What the user asked for: a launch file, `all`, or "" for all nodes without launch files; its arguments."""
+    """A user's request: a launch file, `all`, or "" for all nodes without launch files, and the arguments."""
 
     launch: str = ""
     arguments: tuple[tuple[str, str], ...] = ()
@@ -106,7 +106,7 @@ class _Workbench:
 
 
 def systems(asked: Request, config: Config, tell: Tell = silent) -> tuple[System, ...]:
-    """Return the systems that are asked for. Raises UsageError without a workspace or launch file."""
+    """Return the requested systems. Raises UsageError without a workspace or launch file."""
     if not asked.root.is_dir():
         raise UsageError(f"{asked.root}: no such folder. Name the folder of a workspace.")
     bench = _Workbench(asked.root.resolve(), config, tell)

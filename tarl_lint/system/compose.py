@@ -1,4 +1,4 @@
-"""Compose a system: which nodes a launch file starts, with the interfaces of their programs, and the flows of each."""
+"""Compose a system: the nodes of a launch file, the interfaces of their programs, and the flows of each."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from tarl_lint.workspace.model import Workspace
 from tarl_lint.workspace.programs import Program, program
 
 UNKNOWN: Final = "?"
-# programs of ROS whose topics are those of transforms, robot models and displays
+# ROS programs that use only topics of transforms, robot models and displays
 _SILENT: Final = frozenset(
     ["static_transform_publisher", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui",
      "state_publisher", "rviz", "rviz2", "rqt_gui", "rqt_graph", "rqt_plot", "rqt_console", "rqt_image_view", "xacro"]
 )  # fmt: skip
 
-Reader = Callable[[Program], Interface | str]  # of a program, or the reason why it cannot be analysed
+Reader = Callable[[Program], Interface | str]  # returns a program's interface, or why it cannot be analysed
 
 
 def composed(launch: Launch, workspace: Workspace, files: Sequence[Path], read: Reader) -> System:
-    """Return the system that a launch file starts. `files` are the Python files of the workspace."""
+    """Return the system of a launch file. `files` are the Python files of the workspace."""
     instances = [_instance(node, workspace, files, read) for node in launch.nodes]
     return System(launch.file, tuple(instances), launch.settings, tuple(hops(instances)), launch.problems)
 
@@ -39,7 +39,7 @@ def _instance(node: LaunchedNode, workspace: Workspace, files: Sequence[Path], r
 
 
 def hops(instances: Sequence[Instance]) -> list[Hop]:
-    """Return the flows of each node by topics as launched, and those that nodes that were not read may have."""
+    """Return the flows of each node by launched topics, and the possible flows of nodes that were not read."""
     found: dict[tuple[str, str, str], list[Finding]] = {}
     for instance in instances:
         for finding, source, sink in _flows(instance):

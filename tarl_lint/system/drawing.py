@@ -1,4 +1,4 @@
-"""The picture of a system: nodes, the topics between them, and who publishes and subscribes."""
+"""The layout of a system's picture: nodes, topics, and edges for publishers and subscriptions."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from tarl_lint.system.model import System
 class Drawing:
     """Names of nodes and topics, and edges between their numbers. Nodes in `unread` are drawn dashed.
 
-    An edge from a topic to a node is `(topic, node, kind)`: how data of the topic leaves the node again, "" if it does
-    not. `touching` are pairs of a node that was not read and a topic that its remappings name.
+    An edge from a topic to a node is `(topic, node, kind)`; `kind` is that of the strongest flow of its data out of
+    the node, "" if there is none. `touching` are pairs of a node that was not read and a topic that its remappings
+    name.
     """
 
     nodes: tuple[str, ...]
@@ -26,7 +27,7 @@ class Drawing:
 
 
 def drawing(system: System) -> Drawing:
-    """Return the picture of a system, the same for the same system."""
+    """Return the picture of a system; equal systems have equal pictures."""
     kinds: dict[tuple[str, str], str] = {}
     outputs: set[tuple[str, str]] = set()
     for hop in system.hops:
@@ -51,7 +52,7 @@ def drawing(system: System) -> Drawing:
 
 
 def layers(drawn: Drawing) -> list[list[str]]:
-    """Return nodes and topics in columns from left to right: each after what leads to it, as far as cycles allow.
+    """Return nodes and topics in columns from left to right, each after its predecessors as far as cycles allow.
 
     Names of nodes begin with `n `, those of topics with `t `.
     """
@@ -68,7 +69,7 @@ def layers(drawn: Drawing) -> list[list[str]]:
         if not moved:
             break
     entered = {other for _, other in forward}
-    for name in every:  # what nothing leads to stands just before what it leads to
+    for name in every:  # names without predecessors are placed just before their successors
         after = [depth[other] for one, other in forward if one == name]
         if name not in entered and after:
             depth[name] = min(after) - 1
@@ -79,7 +80,7 @@ def layers(drawn: Drawing) -> list[list[str]]:
 
 
 def _without_cycles(every: Iterable[str], edges: list[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Return the edges without those that lead back to where a search in depth came from."""
+    """Return the edges without the back edges of a depth-first search."""
     after: dict[str, list[str]] = {}
     for one, other in edges:
         after.setdefault(one, []).append(other)
@@ -104,7 +105,7 @@ def _without_cycles(every: Iterable[str], edges: list[tuple[str, str]]) -> list[
 
 
 def _untangled(columns: list[list[str]], edges: list[tuple[str, str]]) -> list[list[str]]:
-    """Return the columns sorted by the mean height of what leads to each name (Sugiyama et al. 1981)."""
+    """Return the columns sorted by the mean height of each name's predecessors (Sugiyama et al. 1981)."""
     before: dict[str, list[str]] = {}
     for one, other in edges:
         before.setdefault(other, []).append(one)

@@ -1,6 +1,6 @@
-"""The interface of one program: what it publishes, subscribes, serves and calls, and its flows.
+"""The interface of one program: topics and services that it uses, and its flows.
 
-A program is analysed with the modules that it imports, each as an import: their main blocks do not run.
+A program is analysed with the modules that it imports, whose main blocks do not run.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def interface(
     imported = [parsed(one) for one in reached([script], others) if one.path != script.path]
     modules = [replace(first, started=(entry,) if entry else ()),
                *(_as_import(one) for one in imported if isinstance(one, Module))]  # fmt: skip
-    plain = replace(config, remaps=())  # names as they are in the code
+    plain = replace(config, remaps=())  # names as in the code
     machine, flows = engine.trace(modules, plain, thorough=False)
     tracer = Tracer(machine)
     endpoints = tuple(sorted(_endpoints(machine, tracer, modules), key=lambda e: (e.span, e.role)))
@@ -76,7 +76,7 @@ def _of_topics(flow: Flow) -> bool:
 
 
 def _marked(finding: Finding, flow: Flow, package: str, config: Config) -> Finding:
-    """Return a flow with the fingerprint that it has in a run without launch files."""
+    """Return a flow with its fingerprint of a run without launch files."""
     names = config.launched
 
     def named(topics: tuple[str, ...]) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""The values of a system: programs with their interfaces, the nodes that run them, and what flows between."""
+"""Data types of a system: programs with their interfaces, the nodes that run them, and flows across nodes."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ Role = Literal["publishes", "subscribes", "serves", "calls"]
 
 @dataclass(frozen=True, slots=True)
 class Qos:
-    """Quality of service as far as the code states it; None where it is not constant."""
+    """Quality of service; None for each part that is not constant in the code."""
 
     reliable: bool | None = None
-    latched: bool | None = None  # durability: transient local
+    latched: bool | None = None  # whether durability is transient local
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,11 +38,11 @@ class Endpoint:
 
 @dataclass(frozen=True)
 class Interface:
-    """What a program does as a node, by the names in its code.
+    """The topics, services and parameters of a program, by the names in its code.
 
     `flows` are the findings TARL101 to TARL103. `name` is the node's name in the code, "" if it is computed.
-    `parameters` are the names that it declares or reads, None if some of them are computed. `whole` says that all
-    topics have constant names and that the analysis was complete.
+    `parameters` are the names that it declares or reads, None if some of them are computed. `whole` is true if all
+    topics have constant names and the analysis was complete.
     """
 
     path: str
@@ -57,7 +57,7 @@ class Interface:
 
 @dataclass(frozen=True)
 class Instance:
-    """A node as launched. Without an interface, `unread` is the reason why its program was not read."""
+    """A launched node. Without an interface, `unread` is the reason why its program was not read."""
 
     node: LaunchedNode
     name: str
@@ -66,12 +66,12 @@ class Instance:
     silent: bool = False  # known to publish nothing that other nodes subscribe to
 
     def resolve(self, name: str) -> str:
-        """Return the name of a topic or service of the code as launched."""
+        """Return the launched name of a topic or service in the code."""
         own = self.name.rpartition("/")[2]
         return remapped(name, self.node.namespace, own, self.node.remaps)
 
     def ends(self, role: Role) -> Iterator[tuple[str, Endpoint]]:
-        """Yield the endpoints of a role, by their names as launched; those with unknown names are left out."""
+        """Yield the endpoints of a role by launched name, without those whose name is unknown."""
         for one in self.interface.endpoints if self.interface is not None else ():
             if one.role == role:
                 for name in one.names:
@@ -79,7 +79,7 @@ class Instance:
 
     @cached_property
     def touched(self) -> tuple[str, ...]:
-        """Return the topics that the remappings of a node that was not read name, as launched."""
+        """Return the launched topics in the remappings of a node that was not read."""
         own = self.name.rpartition("/")[2]
         names = {remapped(old, self.node.namespace, own, self.node.remaps) for old, _ in self.node.remaps}
         return () if self.interface is not None else tuple(sorted(names))
@@ -98,7 +98,7 @@ class Hop:
 
 @dataclass(frozen=True)
 class Chain:
-    """A flow across nodes: hops of which each begins where the one before ends."""
+    """A flow across nodes: hops, each of which begins where the previous one ends."""
 
     hops: tuple[Hop, ...]
 
@@ -111,7 +111,7 @@ class Chain:
 
 @dataclass(frozen=True)
 class System:
-    """What one launch file starts. Hops and chains are sorted."""
+    """The nodes of one launch file. Hops and chains are sorted."""
 
     file: Path
     instances: tuple[Instance, ...] = ()
@@ -123,13 +123,13 @@ class System:
 
     @property
     def complete(self) -> bool:
-        """Return whether every node was read, so that topics without another end have none."""
+        """Return whether every node was read, so that a topic with one known end certainly has no other."""
         return all(
             one.silent or (one.interface is not None and one.interface.whole) for one in self.instances
         )
 
     def ends(self, role: Role) -> Iterator[tuple[str, Instance, Endpoint]]:
-        """Yield the endpoints of a role of all nodes, by their names as launched."""
+        """Yield the endpoints of a role of all nodes, by launched name."""
         for instance in self.instances:
             for name, endpoint in instance.ends(role):
                 yield name, instance, endpoint

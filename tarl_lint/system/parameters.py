@@ -1,4 +1,4 @@
-"""Names of the parameters that a program declares or reads, by the literals in its code."""
+"""Find the names of parameters that a program declares or reads, by literals in its code."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def parameter_names(modules: Sequence[Module]) -> frozenset[str] | None:
 
 
 def _computed(argument: ast.expr) -> bool:
-    """Return whether an argument is no literal name, or reads a whole group (`~`, `/`)."""
+    """Return whether an argument is not a literal name, or names a whole group (`~`, `/`)."""
     if isinstance(argument, ast.List | ast.Tuple):
         return any(map(_computed, argument.elts[:1]))
     if isinstance(argument, ast.Constant):

@@ -1,4 +1,4 @@
-"""Quality of service that a publisher or subscription of rclpy asks for, as far as its code is constant."""
+"""Find the quality of service of rclpy publishers and subscriptions, as far as it is constant."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FIELDS: Final = frozenset(["reliability", "durability"])
 
 
 def of_call(outline: Outline, pos: Pos) -> Qos | None:
-    """Return the quality of service that a call at a position asks for, None if it is not constant."""
+    """Return the quality of service in a call at a position; None if it is not constant."""
     call = outline.call(pos)
     if call is None:
         return None
@@ -69,7 +69,7 @@ def _policy(expr: ast.expr | None, otherwise: str) -> str:
 
 
 def _changed(outline: Outline, name: str) -> bool:
-    """Return whether a policy of a profile is set after it was made."""
+    """Return whether a profile's policy is changed after its creation."""
     return any(
         isinstance(node, ast.Attribute)
         and node.attr in _FIELDS

@@ -11,7 +11,7 @@ from tarl_lint.files import shown
 from tarl_lint.system.drawing import Drawing, drawing, layers
 from tarl_lint.system.model import System
 
-CHARACTER: Final = 7.2  # width in pixels at a size of 12
+CHARACTER: Final = 7.2  # pixels, mean width at font size 12
 ROW: Final = 44.0
 BOX: Final = 26.0
 GAP: Final = 56.0  # between columns
@@ -54,7 +54,7 @@ def report(systems: Sequence[System]) -> Iterator[str]:
 
 
 def _system(drawn: Drawing, top: float) -> tuple[list[str], float, float]:
-    """Return the lines of a picture, and its right and lower edge."""
+    """Return the lines of a picture, and the coordinates of its right and lower edge."""
     columns = layers(drawn)
     tallest = max(map(len, columns), default=0)
     boxes: dict[str, _Box] = {}
@@ -85,7 +85,7 @@ def _edge(one: _Box, other: _Box, style: str, *, arrow: bool = True) -> str:
     x1, y1 = one.x + one.width, one.y + BOX / 2
     x2, y2 = other.x, other.y + BOX / 2
     bend = GAP if x2 < x1 else max(GAP / 2, (x2 - x1) / 2)
-    below = 2 * BOX if x2 < x1 else 0.0  # an edge back passes below the boxes between
+    below = 2 * BOX if x2 < x1 else 0.0  # a backward edge passes below the boxes in between
     marker = ' marker-end="url(#arrow)"' if arrow else ""
     kind = f' class="{style}"' if style else ""
     return (

@@ -49,7 +49,7 @@ def _system(system: System, view: View, origin: str, target: str) -> Iterator[Li
 
 
 def _nothing(system: System, origin: str, target: str) -> str:
-    """Say that there is no chain, and whether the named topics exist."""
+    """Yield the message that there is no chain, and the named topics that do not exist."""
     if not (origin or target):
         return "No flows across nodes."
     known = {name for role in ("publishes", "subscribes") for name, _, _ in system.ends(role)}

@@ -77,7 +77,7 @@ class Interpreter(Evaluator):
             self.line = before
 
     def entered(self, function: Function, args: list[Any], keywords: dict[str, Any]) -> Any:
-        """Return what a function of the file returns, `Unknown` where it cannot be followed."""
+        """Interpret a function of the file and return its value; `Unknown` if it cannot be interpreted."""
         try:
             return self._enter(function, args, keywords)
         except (_Left, RecursionError):

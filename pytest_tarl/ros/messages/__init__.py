@@ -61,8 +61,8 @@ def class_of(kind: Kind, name: str) -> type[Any]:
 def unknown_type(package: str, name: str) -> UnsupportedApiError:
     """Return the error for a type without a definition."""
     return UnsupportedApiError(
-        f"Message type {package}/{name} is not known here: its definition comes neither with `rosbags` nor with us, "
-        f"there is no {name}.msg, .srv or .action in the repository of the node, and no installed ROS package "
+        f"Message type {package}/{name} is unknown: neither `rosbags` nor TARL has its definition, "
+        f"there is no {name}.msg, .srv or .action in the node's repository, and no installed ROS package "
         f"{package!r} of the right generation was found. Check the spelling, or put the package's definitions "
         "below the repository, or install it (source your workspace) in the environment that runs pytest."
     )

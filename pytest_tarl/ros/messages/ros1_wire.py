@@ -119,7 +119,7 @@ def _read(kind: str, data: bytes, at: int, find: Find) -> tuple[Any, int]:
         raise WireError(f"an array of {count} elements does not fit {len(data)} bytes")
     if base in ("uint8", "char"):
         if at + count > len(data):
-            raise WireError("an array ends after its bytes")
+            raise WireError("an array is longer than the remaining bytes")
         return data[at : at + count], at + count
     if base in _CODES:
         numbers = struct.Struct(f"<{count}{_CODES[base]}")
@@ -138,7 +138,7 @@ def _read_one(base: str, data: bytes, at: int, find: Find) -> tuple[Any, int]:
     if base == "string":
         (count,), at = _LENGTH.unpack_from(data, at), at + _LENGTH.size
         if at + count > len(data):
-            raise WireError("a text ends after its bytes")
+            raise WireError("a string is longer than the remaining bytes")
         return data[at : at + count].decode(errors="replace"), at + count
     if base in _TIMES:
         made, form = _TIMES[base]

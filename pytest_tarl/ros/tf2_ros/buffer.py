@@ -153,7 +153,7 @@ class Buffer(BufferInterface):
         return _stamp(when)
 
     def frame_exists(self, frame: str) -> bool:
-        """Return whether a frame was heard of."""
+        """Return whether a frame is known."""
         return clean(frame) in self._tree.edges or any(
             e.parent == clean(frame) for e in self._tree.edges.values()
         )

@@ -23,7 +23,7 @@ State = tuple[object, str]  # an object with one of its attributes, or a module 
 class Spot:
     """An access, or a call that leads to it: its place, its function, and the locks held there.
 
-    `asked` are locks that the function takes later, if this access only decides whether to return early.
+    `asked` are locks that the function takes later, if this access only decides on an early return.
     """
 
     path: str

@@ -296,7 +296,7 @@ def test_exception_in_an_execute_callback_aborts_the_goal(
 def test_unknown_service_is_told_to_the_world_with_those_that_are_there(start: Start) -> None:
     ros = start(LIFECYCLE)
     with pytest.raises(
-        Exception, match=r"No node serves /camera/stop now; services that are there: /camera/change_state"
+        Exception, match=r"No node serves /camera/stop now; available services: /camera/change_state"
     ):
         ros.bus.call("/camera/stop", message_type("std_srvs/srv/Trigger").Request())
 
