@@ -204,7 +204,10 @@ def _made(monitor: Any) -> Monitor:
 
 
 def _judging(judge: Judge | None, sensors: Sequence[Sensor]) -> Monitor:
-    """Return a monitor that calls the marker's `judge` with the sensors before and after each step."""
+    """Return a monitor that calls the marker's `judge` with the sensors before and after each step.
+
+    Raises SettingsError if the marker has no `judge`.
+    """
     if judge is None:
         raise SettingsError(NO_REWARDS)
     before: dict[str, Any] = {}

@@ -150,7 +150,10 @@ def _inflated(data: bytes, compression: str) -> bytes:
 
 
 def _decompressor(compression: str) -> Any:
-    """Return a streaming decompressor, from whichever library the installed `rosbags` depends on."""
+    """Return a streaming decompressor from the library that the installed `rosbags` depends on.
+
+    Raises ValueError for an unsupported compression.
+    """
     if compression == "bz2":
         return bz2.BZ2Decompressor()
     homes = {

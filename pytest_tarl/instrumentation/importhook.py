@@ -133,7 +133,10 @@ class NodeImports:
         return module
 
     def run_entry(self, path: Path, entry: str) -> None:
-        """Import a file under its own name and call its function `entry`, as a `console_scripts` entry point does."""
+        """Import a file under its own name and call its function `entry`, as a `console_scripts` entry point does.
+
+        Raises SystemExit with the function's return value unless it is false.
+        """
         __tracebackhide__ = True
         root, name = importable(path)
         on_search_path(root)

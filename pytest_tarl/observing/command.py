@@ -130,7 +130,10 @@ def _sites(order: Order) -> Plan:
 
 
 def _fixture_of(node: Path) -> Path:
-    """Return the only recording below the working directory whose taint lists contain the node's file."""
+    """Return the only recording below the working directory whose taint lists contain the node's file.
+
+    Raises LogError if there is none or several.
+    """
     found = [path for path in sorted(Path.cwd().glob("**/.tarl/utility/*.npz")) if _names(load(path), node)]
     if len(found) != 1:
         listed = ", ".join(str(path.relative_to(Path.cwd())) for path in found) or "none"

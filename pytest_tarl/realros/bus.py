@@ -71,7 +71,7 @@ class RealBus(Bus):
         self.send(place, message, latch)
 
     def _own_class(self, message: Any, topic: str) -> Any:
-        """Return the message as an object of the installed ROS' class."""
+        """Return the message in the installed ROS' class. Raises RecordingError if it is invalid or not installed."""
         own = type(message)
         package, _, short = type_name(own).partition("/")
         wanted = find_class(self.kind, package, short) if short else None

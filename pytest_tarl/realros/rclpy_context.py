@@ -65,7 +65,7 @@ class SharedParticipant:
             self._cleanup()
 
     def on_shutdown(self, callback: Any) -> None:
-        """Register a callback for the shutdown."""
+        """Register a callback for the shutdown. Raises TypeError if it is not callable."""
         if not callable(callback):
             raise TypeError("callback should be a callable, got {}", type(callback))
         if self.handle is not None and not self.ok():

@@ -29,7 +29,7 @@ class RclpyBus(RealBus):
         self._publishers: dict[tuple[str, bool], Any] = {}
 
     def send(self, place: Topic, message: Any, latch: bool) -> None:
-        """Publish through rclpy."""
+        """Publish by rclpy. Raises RecordingError if a subscriber has another type."""
         for _, node in self._network.nodes:
             for subscription in node.subscriptions:
                 if subscription.topic_name == place.name and subscription.msg_type is not type(message):

@@ -91,7 +91,10 @@ class RospyNetwork:
         return self._copies[process]
 
     def initialise(self, copy: RospyCopy, name: str, args: Sequence[Any], kwargs: Mapping[str, Any]) -> None:
-        """Do the work of `init_node`; a kept node is reset to look like a new one."""
+        """Do the work of `init_node`; a kept node is reset to look like a new one.
+
+        Raises NodeError if the node's name has changed since an earlier episode.
+        """
         if copy.core.is_initialized():
             copy.real["init_node"](name, *args, **kwargs)  # raises if the arguments differ
             return
@@ -101,7 +104,8 @@ class RospyNetwork:
         elif not given.get("anonymous") and copy.name.rpartition("/")[2] not in (name, self._renamed(copy)):
             raise NodeError(
                 f"The node called itself {copy.name} in an earlier episode and {name} now: real rospy cannot rename a "
-                "node while its connections are kept. Start it with tarl.start(…, argv=[…]) that tell the names apart."
+                "node while its connections are kept. Start it with tarl.start(…, argv=[…]), with a different argv for "
+                "each name."
             )
         copy.core.set_initialized(True)
         copy.rostime.set_rostime_initialized(True)
@@ -121,7 +125,7 @@ class RospyNetwork:
         self.connect(impl.resolved_name)
 
     def connect(self, topic: str) -> None:
-        """Wait until every publisher of a topic is connected with every subscriber."""
+        """Wait until every publisher of a topic is connected with every subscriber. Raises RecordingError."""
         deadline = monotonic() + PATIENCE
         for sender, publisher in self._ends(topic, "pubs"):
             for receiver, subscriber in self._ends(topic, "subs"):
@@ -130,7 +134,8 @@ class RospyNetwork:
                 while not _connected(sender, publisher, receiver, subscriber):
                     if monotonic() > deadline:
                         raise RecordingError(
-                            f"{sender.name} and {receiver.name} did not connect on {topic} within {PATIENCE:g} s."
+                            f"{sender.name} and {receiver.name} did not connect on {topic} within {PATIENCE:g} s: "
+                            "check that processes on this machine can communicate through 127.0.0.1."
                         )
                     sleep_really(0.0005)
         WATCHDOG.beat()

@@ -34,7 +34,7 @@ class RospyBus(RealBus):
         network.node_subscribes = self.subscribed.add
 
     def send(self, place: Topic, message: Any, latch: bool) -> None:
-        """Publish through rospy."""
+        """Publish by rospy. Raises RecordingError if the message is invalid or a subscriber has another type."""
         publisher = self._publisher(place.name, type(message))
         for copy, subscriber in self._network.subscribers(place.name):
             if copy.process is not None and subscriber.callbacks and mismatch(publisher.impl, subscriber):

@@ -56,7 +56,10 @@ class CvBridge:
         )
 
     def cv2_to_imgmsg(self, cvim: Any, encoding: str = "passthrough", header: Any = None) -> Any:
-        """Return an array as an image message."""
+        """Return an array of shape (height, width[, channels]) as an image message.
+
+        Raises TypeError if it is not an array, CvBridgeError if its type does not fit the encoding.
+        """
         if not hasattr(cvim, "dtype"):
             raise TypeError("Your input type is not a numpy array")
         message: Any = import_module("sensor_msgs.msg").Image()
@@ -75,7 +78,10 @@ class CvBridge:
         return message
 
     def compressed_imgmsg_to_cv2(self, cmprs_img_msg: Any, desired_encoding: str = "passthrough") -> Any:
-        """Return a compressed message as an array; needs OpenCV."""
+        """Return a compressed message as an array of shape (height, width[, channels]); needs OpenCV.
+
+        Raises CvBridgeError if it cannot be decoded.
+        """
         import numpy as np
 
         data = np.frombuffer(bytes(cmprs_img_msg.data), dtype=np.uint8)
@@ -93,7 +99,7 @@ class CvBridge:
         return message
 
     def encoding_to_dtype_with_channels(self, encoding: str) -> tuple[str, int]:
-        """Return the numpy type and the number of channels of an encoding."""
+        """Return the numpy type and the number of channels of an encoding. Raises CvBridgeError if it is unknown."""
         if encoding in _NAMED:
             depth, channels = _NAMED[encoding]
             return _DEPTHS[depth], channels
@@ -116,7 +122,7 @@ def _depth_of(dtype: Any) -> str:
 
 
 def _converted(image: Any, origin: str, wanted: str) -> Any:
-    """Change the order and number of channels and the depth between named encodings."""
+    """Convert channels and depth between named encodings. Raises CvBridgeError if that is impossible."""
     import numpy as np
 
     if origin == wanted:

@@ -215,7 +215,7 @@ class StandinFinder:
         """Do nothing: the module is complete."""
 
     def _talking_spec(self, name: str) -> ModuleSpec:
-        """Find a message part (`msg`, `srv`, `action`) of a package, if it has any."""
+        """Find a message part (`msg`, `srv`, `action`) of a package. Raises UnsupportedApiError if there is none."""
         root, _, part = name.partition(".")
         kind = self._kind or "ros1"
         if part.partition(".")[0] in PARTS and is_package(kind, root):

@@ -40,7 +40,7 @@ def _folder(package: str) -> Path | None:
 
 
 def get_package_share_directory(package_name: str) -> str:
-    """Return a package's source folder, which stands in for its share directory."""
+    """Return a package's source folder, which stands in for its share directory. Raises PackageNotFoundError."""
     found = _folder(package_name)
     if found is None:
         raise PackageNotFoundError(
@@ -65,7 +65,7 @@ def get_packages_with_prefixes() -> dict[str, str]:
 
 
 def get_pkg_dir(package: str, required: bool = True) -> str | None:
-    """Return a package's folder, as roslib does."""
+    """Return a package's folder, as roslib does. Raises InvalidROSPkgException if it is unknown."""
     found = _folder(package)
     if found is None and required:
         raise InvalidROSPkgException(f"cannot locate package {package!r} below the repository of the node")
@@ -81,7 +81,7 @@ class RosPack:
     """rospkg's view of the packages."""
 
     def get_path(self, name: str) -> str:
-        """Return a package's folder."""
+        """Return a package's folder. Raises ResourceNotFound if it is unknown."""
         found = _folder(name)
         if found is None:
             raise ResourceNotFound(name)

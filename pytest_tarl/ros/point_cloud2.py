@@ -97,7 +97,10 @@ def read_points_list(
 
 
 def read_points_numpy(cloud: Any, field_names: Any = None, skip_nans: bool = False, uvs: Any = None) -> Any:
-    """Return the points as a plain array of shape (points, fields); all fields must have the same type."""
+    """Return the points as a plain array of shape (points, fields).
+
+    Raises AssertionError, as in ROS, unless all fields have the same type.
+    """
     import numpy as np
 
     points = _structured(cloud, field_names, skip_nans, uvs or None)

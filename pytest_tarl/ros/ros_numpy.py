@@ -99,7 +99,10 @@ def occupancygrid_to_numpy(msg: Any) -> Any:
 
 
 def numpy_to_occupancy_grid(arr: Any, info: Any = None) -> Any:
-    """Return an array of shape (height, width) as a map; masked cells become unknown."""
+    """Return an array of shape (height, width) as a map; masked cells become unknown.
+
+    Raises TypeError unless it is a two-dimensional array of int8.
+    """
     import numpy as np
 
     if arr.ndim != 2 or arr.dtype != np.int8:

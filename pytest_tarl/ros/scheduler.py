@@ -88,7 +88,10 @@ class Worker(greenlet):
 
 
 def hand_over() -> Any:
-    """Switch to the greenlet that resumed the running one; return the value passed at the next resumption."""
+    """Switch to the greenlet that resumed the running one; return the value passed at the next resumption.
+
+    Raises RuntimeError outside of tasks.
+    """
     parent = getcurrent().parent
     if parent is None:
         raise RuntimeError("only a task can hand over")
@@ -122,7 +125,10 @@ class Scheduler:
         self._idle: list[Worker] = []
 
     def wait(self, until: int | None = None) -> bool:
-        """Suspend the running task until the instant `until` or until woken; return whether it was woken."""
+        """Suspend the running task until the instant `until` or until woken; return whether it was woken.
+
+        Raises RuntimeError outside of tasks.
+        """
         worker = getcurrent()
         task = worker.task if isinstance(worker, Worker) else None
         if task is None or worker.parent is None:

@@ -54,7 +54,7 @@ class Lock:
         self._waiting: deque[Task] = deque()
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Acquire the lock; return whether that succeeded."""
+        """Acquire the lock; return whether that succeeded. Raises RuntimeError on a deadlock of the test itself."""
         clock = self._scheduler
         until = clock.time + nanoseconds(timeout) if timeout >= 0 else None
         while self._held:
@@ -63,7 +63,7 @@ class Lock:
                 return False
             if task is None:
                 raise RuntimeError(
-                    "The test waits for a lock that a waiting node holds: this would never end."
+                    "The test waits for a lock that a waiting node holds, which never ends: call tarl.step first."
                 )
             self._waiting.append(task)
             clock.wait(until)
@@ -73,7 +73,7 @@ class Lock:
         return True
 
     def release(self) -> None:
-        """Release the lock; wake the task that has waited longest."""
+        """Release the lock; wake the task that has waited longest. Raises RuntimeError if it is not held."""
         if not self._held:
             raise RuntimeError("release unlocked lock")
         self._held = False
@@ -109,7 +109,10 @@ class ReentrantLock(Lock):
         return True
 
     def release(self) -> None:
-        """Release the lock once; it is free after as many releases as acquisitions."""
+        """Release the lock once; it is free after as many releases as acquisitions.
+
+        Raises RuntimeError unless the running task holds it.
+        """
         if not self._is_owned():
             raise RuntimeError("cannot release un-acquired lock")
         self._count -= 1

@@ -283,7 +283,10 @@ def is_same_transform(matrix0: Any, matrix1: Any) -> bool:
 
 
 def _eigenvector(matrix: Any, value: float, size: int) -> Any:
-    """Return the unit eigenvector of an eigenvalue; for a 4×4 matrix, scaled so that its last element is one."""
+    """Return the unit eigenvector of an eigenvalue; for a 4×4 matrix, scaled so that its last element is one.
+
+    Raises ValueError if there is none.
+    """
     import numpy as np
 
     values, vectors = np.linalg.eig(np.asarray(matrix, float)[:size, :size])

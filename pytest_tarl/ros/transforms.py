@@ -160,7 +160,11 @@ class TransformTree:
             del edge.poses[edge.times.pop(0)]
 
     def look_up(self, target: str, source: str, time: int) -> tuple[Rigid, int]:
-        """Return the pose of `source` in `target`, and its instant (0 requests the latest common one)."""
+        """Return the pose of `source` in `target`, and its instant (0 requests the latest common one).
+
+        Raises LookupException for an unknown frame, ConnectivityException if the frames are in different trees, and
+        ExtrapolationException outside of the received data.
+        """
         target, source = self._known(target), self._known(source)
         up, down = self._way_up(source), self._way_up(target)
         common = next((frame for frame in up if frame in down), None)

@@ -88,7 +88,7 @@ def _ours(finding: Finding, theirs: Set[str]) -> bool:
 
 
 def search_path(home: Path) -> list[Path]:
-    """Return the directories in which a virtual environment finds packages."""
+    """Return the directories in which a virtual environment finds packages. Raises ConfigError if it is not one."""
     try:
         text = (home / "pyvenv.cfg").read_text("utf-8", errors="replace")
     except OSError:

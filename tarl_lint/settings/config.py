@@ -195,7 +195,10 @@ def _mentions_us(path: Path) -> bool:
 
 
 def read_settings(path: Path, *, required: bool) -> Mapping[str, Any]:
-    """Return the checked values of `[tool.tarl-lint]`, or of the top level of a separate settings file."""
+    """Return the checked values of `[tool.tarl-lint]`, or of the top level of a separate settings file.
+
+    Raises ConfigError for an unusable file, key or value.
+    """
     try:
         data = path.read_bytes()
     except OSError as error:
@@ -207,7 +210,7 @@ def read_settings(path: Path, *, required: bool) -> Mapping[str, Any]:
 
 
 def _table(path: Path, data: bytes) -> dict[str, Any] | None:
-    """Parse TOML and return the table, None if there is none."""
+    """Parse TOML and return the table, None if there is none. Raises ConfigError for invalid TOML."""
     document = _parse_toml(path, data)
     tool = document.get("tool")
     if isinstance(tool, dict) and TABLE in tool:

@@ -57,7 +57,10 @@ class Request:
 
 
 def request(launch: str | None, paths: Sequence[Path], origin: str | None, target: str | None) -> Request:
-    """Return the request of a command line; a path with `:=` is an argument of the launch file."""
+    """Return the request of a command line; a path with `:=` is an argument of the launch file.
+
+    Raises UsageError for arguments without a launch file, and for several paths.
+    """
     pairs = [str(path).partition(":=") for path in paths if ":=" in str(path)]
     plain = tuple(path for path in paths if ":=" not in str(path))
     if pairs and (launch is None or launch == ALL):
@@ -142,7 +145,7 @@ def _launches(asked: Request, workspace: Workspace) -> Iterator[Launch]:
 
 
 def rendered(form: str, found: Sequence[System], asked: Request, view: View) -> Iterator[Line]:
-    """Yield the lines of a report in one of the `FORMATS`."""
+    """Yield the lines of a report in one of the `FORMATS`. Raises UsageError for other formats."""
     if form == "text":
         from tarl_lint.system import text
 

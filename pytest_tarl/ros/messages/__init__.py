@@ -26,6 +26,8 @@ def message_type(name: str) -> type[Any]:
     `nav_msgs/Odometry` is the ROS 1 class, `nav_msgs/msg/Odometry` the ROS 2 class. Nodes of either generation can
     receive both: a subscriber gets the class that it subscribed with. Services and actions likewise:
     `std_srvs/srv/SetBool`, `nav2_msgs/action/NavigateToPose`, `std_srvs/SetBool`.
+
+    Raises UnsupportedApiError if the type is unknown.
     """
     package, *middle, short = name.split("/") if "/" in name else ("", name)
     if middle not in ([], ["msg"], ["srv"], ["action"]) or not package or not short:

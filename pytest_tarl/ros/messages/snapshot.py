@@ -72,7 +72,7 @@ def _translated(value: Any, template: Any, wanted: type) -> Any:
 
 
 def _class_like(own: type, other: type) -> type[Any]:
-    """Return the class of the same message type as `own` in the ROS generation of `other`."""
+    """Return the class of the type of `own` in the ROS generation of `other`. Raises UnsupportedApiError."""
     package, _, short = type_name(own).partition("/")
     found = find_class("ros1" if hasattr(other, "_slot_types") else "ros2", package, short)
     if found is None:
@@ -116,7 +116,10 @@ def _stamp_parts(message: Any) -> tuple[str, str] | None:
 
 
 def _copier(own: type) -> Callable[[Any], Any]:
-    """Return the copy function of a class; for an installed ROS 1, serialise and deserialise."""
+    """Return the copy function of a class; for an installed ROS 1, serialise and deserialise.
+
+    Raises FieldError if the class is not a message class.
+    """
     copier: Callable[[Any], Any] | None = getattr(own, "_tarl_copy", None)
     if copier is not None:
         return copier

@@ -1,4 +1,4 @@
-"""Convert field values as a receiver gets them, or raise FieldError with the reason."""
+"""Convert field values as a receiver gets them. Every function raises FieldError for an unsuitable value."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ def _wanted(frame: Any, options: dict[str, Any]) -> bool:
 
 
 def get_logger(name: str) -> RcutilsLogger:
-    """Return the logger of that name."""
+    """Return the logger of that name. Raises ValueError if the name is empty."""
     if not name:
         raise ValueError("Logger name must not be empty.")
     return RcutilsLogger(name)

@@ -152,7 +152,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         return self._clock
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """Return the absolute name of a topic."""
+        """Return the absolute name of a topic. Raises InvalidTopicNameException."""
         if not isinstance(topic, str) or not _TOPIC.fullmatch(topic):
             raise InvalidTopicNameException(str(topic), _SAID.format("topic name"), _first_bad(str(topic)))
         if only_expand:
@@ -160,7 +160,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         return names.resolve(topic, self._full_name, self._remappings)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """Return the absolute name of a service."""
+        """Return the absolute name of a service. Raises InvalidServiceNameException."""
         try:
             return self.resolve_topic_name(service, only_expand=only_expand)
         except InvalidTopicNameException as error:
@@ -224,7 +224,7 @@ class Node(NodeEntities, NodeGraph, NodeParameters):
         return timer
 
     def create_rate(self, frequency: float, clock: Any = None) -> Rate:
-        """Create a rate in Hz."""
+        """Create a rate in Hz. Raises ValueError unless it is positive."""
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
         return Rate(self, frequency)

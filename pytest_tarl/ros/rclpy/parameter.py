@@ -45,7 +45,7 @@ def parameter_dict_from_yaml_file(
 
 
 def _named_values(section: Any, above: str) -> dict[str, Any]:
-    """Return the values of a node's section by full name, with dots between the parts."""
+    """Return the values of a node's section by full dotted name. Raises RuntimeError for an invalid file."""
     found: dict[str, Any] = {}
     if not isinstance(section, dict) or "ros__parameters" not in section:
         raise RuntimeError("YAML file is not a valid ROS parameter file")
@@ -88,7 +88,7 @@ class ParameterType(IntEnum):
 
 
 def type_of(value: Any) -> ParameterType:
-    """Return the parameter type of a Python value."""
+    """Return the parameter type of a Python value. Raises TypeError if no parameter type fits."""
     if value is None:
         return ParameterType.NOT_SET
     for python_type, plain in _PLAIN:

@@ -50,7 +50,11 @@ class NodeParameters:
     def declare_parameter(
         self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
     ) -> Parameter:
-        """Declare a parameter: an override takes precedence over the default, and the type is fixed from then on."""
+        """Declare a parameter: an override takes precedence over the default, and the type is fixed from then on.
+
+        Raises ParameterAlreadyDeclaredException, InvalidParameterException for an invalid name, and
+        InvalidParameterTypeException for a value of another type.
+        """
         if not name or not isinstance(name, str):
             raise InvalidParameterException(name)
         if name in self._parameters:
@@ -98,7 +102,10 @@ class NodeParameters:
         return declared
 
     def undeclare_parameter(self, name: str) -> None:
-        """Undeclare a parameter."""
+        """Undeclare a parameter.
+
+        Raises ParameterNotDeclaredException, and ParameterImmutableException if it is read-only.
+        """
         if name not in self._parameters:
             raise ParameterNotDeclaredException(name)
         if self.describe_parameter(name).read_only:
@@ -153,7 +160,7 @@ class NodeParameters:
         return made(names=sorted(names), prefixes=sorted(parents))
 
     def describe_parameter(self, name: str) -> Any:
-        """Return a parameter's descriptor."""
+        """Return a parameter's descriptor. Raises ParameterNotDeclaredException."""
         if name not in self._parameters:
             if self._allow_undeclared:
                 return new_descriptor(name=name)

@@ -113,7 +113,10 @@ class QoSProfile:
 
 
 def as_profile(given: Any) -> QoSProfile:
-    """Return a profile for an argument that is a profile or a depth."""
+    """Return a profile for an argument that is a profile or a depth.
+
+    Raises ValueError for a negative depth, TypeError for other arguments.
+    """
     if isinstance(given, QoSProfile):
         return given
     if isinstance(given, int) and not isinstance(given, bool):

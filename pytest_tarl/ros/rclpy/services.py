@@ -91,7 +91,10 @@ class Client:
         return found
 
     def call_async(self, request: Any) -> Future:
-        """Send a request; the future is done once an executor has handled the response."""
+        """Send a request; the future is done once an executor has handled the response.
+
+        Raises TypeError for a request of another type.
+        """
         if not isinstance(request, self.srv_type.Request):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
         future = Future()

@@ -103,7 +103,10 @@ class Rate:
         return Duration(0, self._period - (self._clock.time - self._last))
 
     def sleep(self) -> None:
-        """Wait for the end of the current cycle; catch up on late cycles, at most two."""
+        """Wait for the end of the current cycle; catch up on late cycles, at most two.
+
+        Raises ROSInterruptException when the node is shut down.
+        """
         began = self._clock.time
         until = self._last + self._period
         if until > began:

@@ -146,7 +146,10 @@ class Publisher(Topic):
         self._process.bus.advertise(self, self._place)
 
     def publish(self, *args: Any, **kwds: Any) -> None:
-        """Publish a message, or create one from fields given by position or keyword."""
+        """Publish a message, or create one from fields given by position or keyword.
+
+        Raises ROSSerializationException for an invalid message, ROSException if it cannot be published now.
+        """
         if self._closed:
             raise ROSException("publish() to an unregistered() handle")
         if not self._node.initialised:
@@ -185,7 +188,7 @@ class Publisher(Topic):
             self._place.kept.pop(self, None)
 
     def _make(self, args: tuple[Any, ...], kwds: dict[str, Any]) -> Any:
-        """Create the message from the arguments; a single message argument must fit the first field."""
+        """Create the message from the arguments. Raises TypeError if a single message does not fit the first field."""
         if args and kwds:
             raise TypeError("publish() can be called with arguments or keywords, but not both.")
         if len(args) == 1 and is_message(args[0]):

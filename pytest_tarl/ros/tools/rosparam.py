@@ -37,7 +37,10 @@ def load_file(filename: str, default_namespace: str | None = None, verbose: bool
 
 
 def load_str(text: str, filename: str, default_namespace: str | None = None, verbose: bool = False) -> Loaded:
-    """Parse parameters from YAML; return (parameters, namespace) for each document."""
+    """Parse parameters from YAML; return (parameters, namespace) for each document.
+
+    Raises RosParamException for invalid YAML.
+    """
     try:
         import yaml
     except ModuleNotFoundError:
@@ -58,7 +61,7 @@ def load_str(text: str, filename: str, default_namespace: str | None = None, ver
 
 
 def upload_params(ns: str, values: Any, verbose: bool = False) -> None:
-    """Set a mapping of parameters below a namespace."""
+    """Set a dict of parameters below a namespace. Raises RosParamException for another value in `/`."""
     if absolute(ns) == "/" and not isinstance(values, dict):
         raise RosParamException("global / can only be set to a dictionary")
     if verbose:
