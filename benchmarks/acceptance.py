@@ -1,11 +1,11 @@
-"""Print how often acceptance says yes: against the true reward and the true failure rate of a repair.
+"""Print how often acceptance accepts a repair, for given true rewards and failure rates.
 
     python benchmarks/acceptance.py [--runs 400]
 
-Worlds are drawn, not simulated: a mission that succeeds earns a normal total around `ratio` × 10, one that fails earns
-as little as the worst one recorded, -10. Designed missions earn 10 and never fail; of their spread a share is
-decided by the seed, so that pairing can see it. A repair is right where it loses less than 5 % of the designed reward
-in the mean, failures counted, and fails less than 5 % of its missions.
+Missions are drawn, not simulated: the total of a successful mission is normal with mean `ratio` × 10, a failed one
+earns as little as the worst recorded one, -10. Designed missions earn 10 on average and never fail; a share of their
+variance is determined by the seed, so that pairing can remove it. A repair is right if it loses less than 5 % of the
+designed reward on average, including failures, and fails in less than 5 % of its missions.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ FAILING = (0.0, 0.002, 0.005, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12)
 
 @dataclass(frozen=True)
 class Drawn:
-    """Totals of so many missions, as the seeds decide them, and a repair beside them."""
+    """Drawn totals of missions, as designed and with a repair on the same seeds."""
 
     seed: int
     spread: float
-    shared: float  # share of the spread that the seed decides
+    shared: float  # share of the variance that the seed determines
 
     def designed(self) -> np.ndarray:
-        """Return the totals of the program as it is in the designed world."""
+        """Return the totals of the unrepaired program in the designed world."""
         return self._totals(0, DESIGNED)
 
     def repaired(self, ratio: float, failing: float) -> list[Outcome]:
-        """Return the missions of the repair."""
+        """Return the missions of a repair with this ratio and failure rate."""
         failed = np.random.default_rng([self.seed, 3]).random(SEEDS) < failing
         totals = np.where(failed, WORST, self._totals(1, DESIGNED * ratio))
         return [Outcome(float(total), not bad) for total, bad in zip(totals, failed, strict=True)]
@@ -50,7 +50,7 @@ class Drawn:
 
 
 def tested(drawn: Drawn, ratio: float, failing: float) -> Acceptance:
-    """Test one repair, which changes nothing in the designed world."""
+    """Test one repair that changes nothing in the designed world."""
     designed, repaired = drawn.designed(), drawn.repaired(ratio, failing)
     recorded = np.random.default_rng([drawn.seed, 4]).normal(DESIGNED, drawn.spread, 200).tolist()
     return accept(

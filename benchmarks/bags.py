@@ -1,10 +1,10 @@
-"""How fast a recorded mission is replayed, as a multiple of real time.
+"""Measure the speed of replaying a recorded mission, as a multiple of real time.
 
     python benchmarks/bags.py [--seconds 60]
 
 A mission of the shuttle – odometry, terrain and leg ten times a second, and a picture of 640 × 480 once a second that
-nobody listens to – is written to bags of each kind, then replayed through the shuttle's node with everything recorded.
-Process CPU time, the least of three.
+no node receives – is written to bags of each kind, then replayed through the shuttle's node with all sites recorded.
+Times are CPU times of the process, the least of three runs.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ SENSORS = (
 
 
 def main() -> None:
-    """Print a line per kind of bag."""
+    """Print a line for each kind of bag."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=int, default=60, help="length of the mission (default 60)")
     seconds = parser.parse_args().seconds
@@ -72,7 +72,7 @@ def written(folder: Path, kind: str, seconds: int) -> Path:
 
 
 def fill(writer: Any, store: Any, serialize: Callable[[Any, str], Any], seconds: int) -> None:
-    """Let the shuttle go to and fro."""
+    """Write messages of a shuttle that drives back and forth."""
     types = {
         "/odom": "nav_msgs/msg/Odometry",
         "/terrain": "std_msgs/msg/Bool",
@@ -119,7 +119,7 @@ def odometry_message(kinds: Any) -> Any:
 
 
 def replayed(bag: Path) -> float:
-    """Replay a bag through the shuttle's node as one episode; CPU seconds."""
+    """Replay a bag through the shuttle's node as one episode; return CPU seconds."""
     sites = plan(analyse([EXAMPLE / "traveller.py"], root=EXAMPLE))
     positions = {EXAMPLE / path: at for path, at in sites.positions.items()}
     recorder = Recorder()
@@ -143,7 +143,7 @@ def replayed(bag: Path) -> float:
 
 
 def judged(moment: Moment) -> float:
-    """Judge a step."""
+    """Return the reward of a step."""
     newest = moment.latest("/odom")
     return -abs(11.0 - newest.pose.pose.position.x) if newest else 0.0
 

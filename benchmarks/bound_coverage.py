@@ -1,10 +1,10 @@
-"""How often bounds hold that are stated at 95 %, over many samples of worlds whose truth is known.
+"""Measure how often bounds at 95 % confidence hold, over many samples from known distributions.
 
     python benchmarks/bound_coverage.py [--repetitions 2000]
 
-Rows are distributions of an episode's total, columns numbers of episodes; a cell is the share of lower / upper bounds
-that held. Exact bounds must hold in at least 94 %, within the error of the benchmark; approximate ones have no goal. A
-loss is between 200 episodes off-line and so many on-line, of the same world.
+Rows are distributions of an episode's total, columns numbers of episodes. A cell is the share of lower / upper bounds
+that held. Exact bounds must hold in at least 94 %, within the error of the benchmark; approximate ones have no goal.
+A loss compares 200 recorded episodes with new episodes of the same world; their number is in the column.
 """
 
 from __future__ import annotations
@@ -36,23 +36,23 @@ from pytest_tarl.seeds import generator
 CONFIDENCE = 0.95
 GOAL = 0.94
 EPISODES = (8, 20, 50, 200)
-ONLINE = (8, 20, 50)  # for losses without a range, which take long
+ONLINE = (8, 20, 50)  # numbers of new episodes for losses without a range, which are slow to compute
 OFFLINE = 200
 QUANTILE = 0.05
-LIMIT = 0.01  # what a mean may be lower by in an acceptance, as a share of the range
-TRUTH = 2_000_000  # draws that a mean or quantile is known from
+LIMIT = 0.01  # margin of an acceptance, as a share of the range
+TRUTH = 2_000_000  # draws from which the true mean or quantile is computed
 
 Generator = np.random.Generator
 Held = tuple[bool, bool]
 
 
 def zero_inflated(draws: Generator, n: int) -> Floats:
-    """Return totals that are nothing nine times in ten."""
+    """Return totals of which nine in ten are zero."""
     return np.clip(draws.exponential(2, n), 0, 20) * (draws.random(n) < 0.1)
 
 
 def bimodal(draws: Generator, n: int) -> Floats:
-    """Return totals one in twenty of which is far lower."""
+    """Return totals of which one in twenty is far lower."""
     return np.where(draws.random(n) < 0.05, -9.0, 5.0) + draws.uniform(-1, 1, n)
 
 
@@ -72,18 +72,18 @@ RATES = (0.5, 0.9, 0.99)
 
 @dataclass(frozen=True)
 class World:
-    """A distribution of totals, and what is asked of a sample of it."""
+    """A distribution of totals, and checks whether bounds from a sample hold."""
 
     name: str
 
     @property
     def declared(self) -> Range | None:
-        """Return the range that holds all totals; None where there is none."""
+        """Return a range that contains all totals, None if there is none."""
         return DRAWN[self.name][1]
 
     @cached_property
     def truth(self) -> tuple[float, float]:
-        """Return mean and quantile."""
+        """Return the true mean and quantile."""
         many = self.drawn(generator(0, f"truth/{self.name}"), TRUTH)
         return float(np.mean(many)), float(np.quantile(many, QUANTILE))
 
@@ -93,20 +93,20 @@ class World:
         return totals
 
     def mean(self, draws: Generator, n: int, how: Range | None, anytime: bool = False) -> Held:
-        """Tell whether the bounds of the mean hold."""
+        """Tell whether the bounds on the mean hold."""
         return holds(mean_of(self.drawn(draws, n), CONFIDENCE, how, anytime=anytime), self.truth[0])
 
     def quantile(self, draws: Generator, n: int) -> Held:
-        """Tell whether the bound of the quantile holds; what is not stated holds."""
+        """Tell whether the bound on the quantile holds; True if the sample is too small for one."""
         low = quantile_low(self.drawn(draws, n), QUANTILE, CONFIDENCE)
         return low is None or low <= self.truth[1], True
 
     def loss(self, draws: Generator, n: int, how: Range | None) -> Held:
-        """Tell whether the bounds of a loss hold where there is none."""
+        """Tell whether the bounds on a loss hold if there is no loss."""
         return holds(loss_between(self.drawn(draws, OFFLINE), self.drawn(draws, n), CONFIDENCE, how), 0.0)
 
     def limit(self, draws: Generator, n: int, how: Range) -> Held:
-        """Tell whether the bets of an acceptance are never won in n episodes whose mean is at the limit."""
+        """Tell whether an acceptance's bets stay below the limit for n episodes whose mean loses exactly the margin."""
         margin = LIMIT * (how.high - how.low)
         least = how.low - self.truth[0] - margin
         away = self.truth[0] + margin
@@ -116,23 +116,23 @@ class World:
         return all(stakes.wealth(seen[:end]) < log(1 / (1 - CONFIDENCE)) for end in ends), True
 
     def welch(self, draws: Generator, n: int) -> Held:
-        """Tell whether Welch's do."""
+        """Tell whether Welch's bounds hold."""
         low, high = difference_bounds(self.drawn(draws, OFFLINE), self.drawn(draws, n), 1 - CONFIDENCE)
         return low <= 0.0, high >= 0.0
 
 
 def holds(bound: Bound, truth: float) -> Held:
-    """Tell whether the lower bound is one, and the upper."""
+    """Tell whether the lower and the upper bound hold."""
     return bound.low <= truth, truth <= bound.high
 
 
 def rate_holds(p: float, draws: Generator, n: int) -> Held:
-    """Tell whether the bounds of a rate hold."""
+    """Tell whether the bounds on a rate hold."""
     return holds(rate(int((draws.random(n) < p).sum()), n, CONFIDENCE), p)
 
 
 def sequence_holds(p: float, draws: Generator, n: int) -> Held:
-    """Tell whether the bounds of a rate hold after every one of n episodes."""
+    """Tell whether the bounds on a rate hold after every one of n episodes."""
     passed = np.cumsum(draws.random(n) < p)
     barred = log(1 / (1 - CONFIDENCE))
     ends = range(1, n + 1, max(1, n // 50))
@@ -142,7 +142,7 @@ def sequence_holds(p: float, draws: Generator, n: int) -> Held:
 
 @dataclass(frozen=True)
 class Row:
-    """A bound in a world: how often it held, by number of episodes."""
+    """How often a bound held for a distribution, by number of episodes."""
 
     bound: str
     exact: bool
@@ -164,7 +164,7 @@ def measured(
     repetitions: int,
     sizes: tuple[int, ...] = EPISODES,
 ) -> Row:
-    """Draw over and over and count."""
+    """Draw repeatedly and count how often the bounds hold."""
     found = []
     for n in sizes:
         seen = np.array([held(generator(seed, f"{bound}/{world}/{n}"), n) for seed in range(repetitions)])
@@ -174,7 +174,7 @@ def measured(
 
 
 def of_rate(p: float, repetitions: int) -> list[Row]:
-    """Return the rows of a success rate."""
+    """Return the rows for a success rate."""
     name = f"{p:.0%} succeed"
     return [
         measured("rate, Clopper-Pearson", True, name, lambda d, n: rate_holds(p, d, n), repetitions),
@@ -183,7 +183,7 @@ def of_rate(p: float, repetitions: int) -> list[Row]:
 
 
 def of_world(name: str, repetitions: int, kinds: str) -> list[Row]:
-    """Return the rows of a distribution of totals, of exact bounds, approximate ones, or both."""
+    """Return the rows for a distribution of totals: exact bounds, approximate ones, or both."""
     world = World(name)
     declared, fewer, few = world.declared, repetitions // 2, repetitions // 4
     found: list[Row] = []
@@ -220,7 +220,7 @@ def rows(repetitions: int, workers: int, kinds: str) -> Iterator[Row]:
 
 
 def main() -> None:
-    """Print the table, and how many cells of exact bounds miss the goal."""
+    """Print the table, and the number of exact bounds that miss the goal."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--repetitions", type=int, default=2000)
     parser.add_argument("--workers", type=int, default=2)

@@ -1,4 +1,4 @@
-"""How long the language server takes to answer: once for a tree, then after an edit of one file with a publish call.
+"""Measure the language server's latency: first for a tree, then after an edit of one file with a publish call.
 
     python benchmarks/editing.py TREE [--files 12] [--seed 0]
 

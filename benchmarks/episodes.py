@@ -1,8 +1,8 @@
-"""What an episode costs: the shuttle uninstrumented and recorded, and a test's repetition by itself.
+"""Measure the cost of an episode: the shuttle uninstrumented and recorded, and an empty test.
 
     python benchmarks/episodes.py [--episodes 200]
 
-CPU time of the process, the least of several rounds. The empty test has no world, no node and no sensor but one.
+Times are CPU times of the process, the least of several rounds. The empty test has no world, no node and one sensor.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Stopwatch:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Function, nextitem: pytest.Item | None) -> bool:
-        """Time plain and recorded episodes in turn."""
+        """Time plain and recorded episodes alternately."""
         marked = designated(item)
         assert marked is not None
         root = item.config.rootpath

@@ -1,4 +1,4 @@
-"""Close the operating system to a process that runs code of strangers: no programs, no network, no files elsewhere."""
+"""Restrict a process that runs untrusted code: no programs, no network, no files outside a folder."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
 
 def warm_up() -> None:
-    """Import what each test would import first, so that a forked process need not."""
+    """Import the modules that every test needs, so that forked processes need not."""
     import numpy  # noqa: F401
     import pytest  # noqa: F401
 
@@ -46,7 +46,7 @@ def warm_up() -> None:
 
 
 def close_all_but(folder: Path) -> None:
-    """Refuse from now on, in this process, all that changes anything outside of a folder, by PermissionError."""
+    """Raise PermissionError, from now on, for every operation of this process with effects outside a folder."""
     inside = (str(folder.resolve()) + os.sep, os.devnull)
     standard = {0, 1, 2}
 

@@ -1,4 +1,4 @@
-"""Messages as a newcomer would fill them in by hand: some values in every field, and whole images, scans and clouds."""
+"""Messages as a new user would write them: some value in every field, and complete images, scans and clouds."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import math
 import struct
 from typing import Any
 
-SOME = 3  # elements of an array whose length is open
+SOME = 3  # elements of an array of variable length
 
 
 def publish_to_all(tarl: Any, step: int) -> int:
-    """Publish a message on every topic that a node subscribes to; return how many."""
+    """Publish a message on every topic that a node subscribes to; return their number."""
     sent = 0
     for topic in tarl.bus.topics():
         kinds = [one.message_type for one in topic.subscriptions if one.message_type is not None]
@@ -21,7 +21,7 @@ def publish_to_all(tarl: Any, step: int) -> int:
 
 
 def filled(kind: Any, step: int) -> Any:
-    """Return a message of the class `kind` with values that change a little with each step."""
+    """Return a message of the class `kind` with values that change slightly from step to step."""
     message = kind()
     _fill(message, step, 0)
     return message
@@ -53,7 +53,7 @@ def _fill(message: Any, step: int, depth: int) -> None:
 
 
 def fields_of(value: Any) -> bool:
-    """Tell whether a value is a message with fields that may be filled; times stay as they are."""
+    """Tell whether a value is a message with fields to fill; times are not."""
     kind = type(value).__name__
     return (
         kind not in ("Time", "Duration")

@@ -1,12 +1,12 @@
-"""Run every node script of checked-out repositories in the in-process ROS, as a newcomer would, without any help.
+"""Run every node script of checked-out repositories in the in-process ROS, without any adaptation.
 
     python benchmarks/foreign_nodes.py FOLDER... [--only TEXT] [--keep SCRATCH] [--json FILE]
 
-Each FOLDER holds checkouts, one folder a repository. They are copied into a scratch folder. Each script gets a minimal
-simulation test: start it, then publish messages with some values on the topics that it subscribes to, for a few virtual
-seconds. A test runs in a process of its own with a time limit; there the operating system is closed: no programs, no
-network, no files outside of the scratch folder. Scripts in Python 2, tests, and those that need a GPU library or the
-SDK of a device that is not installed are counted apart, by name.
+Each FOLDER contains checkouts, one folder per repository. They are copied to a scratch folder. Each script gets a
+minimal simulation test: start it, then publish messages on the topics that it subscribes to, for a few virtual
+seconds. Each test runs in its own process with a time limit and restricted access: no programs, no network, no files
+outside the scratch folder. Counted separately, with the reason: scripts in Python 2, tests, and scripts that need a GPU
+library or the SDK of a device that is not installed.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ import foreign_closed
 from foreign_reasons import set_apart, why
 from foreign_scripts import Script, scripts
 
-LIMIT = 60  # seconds that a test may take
+LIMIT = 60  # time limit of a test in seconds
 TEST = """
 import json
 import sys
@@ -61,7 +61,7 @@ def test_node(tarl):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of one script."""
+    """Result of one script."""
 
     name: str
     apart: str = ""
@@ -73,7 +73,7 @@ class Outcome:
 
     @property
     def verdict(self) -> str:
-        """Return the furthest that it came."""
+        """Return the furthest stage that the script reached."""
         if self.apart:
             return "apart"
         if not self.starts:
@@ -84,24 +84,24 @@ class Outcome:
 
 
 class Told:
-    """A plugin of pytest that keeps why a test failed."""
+    """A pytest plugin that stores the reason for a failure."""
 
     def __init__(self) -> None:
         self.text = ""
 
     def pytest_runtest_logreport(self, report: Any) -> None:
-        """Keep the text of a failure."""
+        """Store the text of a failure."""
         if report.failed:
             self.text = str(report.longrepr)
 
     def pytest_collectreport(self, report: Any) -> None:
-        """Keep the text of a file that cannot be collected."""
+        """Store the error of a file that cannot be collected."""
         if report.failed:
             self.text = str(report.longrepr)
 
 
 def run(script: Script, number: int) -> Outcome:
-    """Write the test of a script into its package, run it, and read what came of it."""
+    """Write a test for a script into its package, run it, and return the result."""
     if script.apart:
         return Outcome(script.name, apart=script.apart)
     folder = script.package / "tarl_tests"
@@ -152,7 +152,7 @@ def _child(script: Script, test: Path, said: Path) -> None:
 
 
 def checkouts(folders: Sequence[Path], scratch: Path) -> list[Path]:
-    """Copy the repositories below the folders, each a git repository of its own as a clone is; return where."""
+    """Copy the repositories below the folders, each as its own git repository; return the copies."""
     copies = []
     for original in sorted(one for folder in folders for one in folder.iterdir() if one.is_dir()):
         copy = scratch / original.name
@@ -164,7 +164,7 @@ def checkouts(folders: Sequence[Path], scratch: Path) -> list[Path]:
 
 
 def report(outcomes: Sequence[Outcome]) -> None:
-    """Print the figures, the groups of what is missing, and what was set apart."""
+    """Print the figures, the missing features by group, and the scripts counted separately."""
     ran = [one for one in outcomes if not one.apart]
     started = [one for one in ran if one.starts]
     print(
@@ -191,8 +191,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("folders", type=Path, nargs="+", help="folders of checkouts, one folder a repository")
     parser.add_argument("--only", default="", help="run the scripts whose path contains this")
-    parser.add_argument("--keep", type=Path, help="scratch folder that stays, with the generated tests")
-    parser.add_argument("--json", type=Path, help="file for the outcome of every script")
+    parser.add_argument("--keep", type=Path, help="scratch folder to keep, with the generated tests")
+    parser.add_argument("--json", type=Path, help="file for the results of all scripts")
     options = parser.parse_args()
     foreign_closed.warm_up()
     with tempfile.TemporaryDirectory() as temporary:

@@ -1,4 +1,4 @@
-"""Why a node script fails: the missing thing by name, or a reason to count the script apart."""
+"""Classify failures of node scripts: name the missing feature, or the reason to count the script separately."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from foreign_scripts import DISTRIBUTED
 
-KINDS = {  # what a message of a failed test says → the missing thing
+KINDS = {  # pattern in the message of a failed test → name of the missing feature
     r"No module named '([\w.]+)'": "module {0}",
     r"cannot import name '(\w+)' from '([\w.]+)'": "name {1}.{0}",
     r"([\w.]+) is not in the in-process ROS yet": "ROS API {0}",
@@ -33,7 +33,7 @@ PYTHON_2 = re.compile(
 
 
 def why(fails: str) -> str:
-    """Return the missing thing that a failure names."""
+    """Return the missing feature that a failure names."""
     for pattern, name in KINDS.items():
         found = re.search(pattern, fails)
         if found is not None:
@@ -42,7 +42,7 @@ def why(fails: str) -> str:
 
 
 def set_apart(fails: str, repository: Path) -> str:
-    """Return why a script is counted apart: for Python 2, a display, or a package that is neither here nor in ROS."""
+    """Return why a script is counted separately: Python 2, a display, or a package not available here or in ROS."""
     old = PYTHON_2.search(fails)
     if old is not None:
         return f"Python 2 only ({old[1]})"
@@ -57,7 +57,7 @@ def set_apart(fails: str, repository: Path) -> str:
 
 @cache
 def _in_checkout(repository: Path) -> frozenset[str]:
-    """Return the names of files and folders that a checkout could import, and of its packages."""
+    """Return the names of all files, folders and packages that code in a checkout could import."""
     named = {path.stem for path in repository.rglob("*") if path.suffix in ("", ".py")}
     manifests = (path.read_text("utf-8", errors="replace") for path in repository.rglob("package.xml"))
     return frozenset(named | {name for text in manifests for name in re.findall(r"<name>\s*([\w-]+)", text)})

@@ -1,4 +1,4 @@
-"""Find the node scripts of checked-out repositories, and what sets some of them apart. Nothing is executed."""
+"""Find the node scripts of checked-out repositories, and which of them to count separately. Nothing is executed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ HARDWARE = frozenset({"RPi", "alsaaudio", "baxter_interface", "naoqi", "openhriv
                       "pr2_ik", "hironx_client", "rtm", "OpenHRP", "hrpsys"})  # fmt: skip
 TESTING = frozenset({"unittest", "rostest", "pytest", "rosunit", "launch_testing", "nose"})
 DISPLAY = frozenset({"PyQt5", "PySide", "PySide2", "python_qt_binding", "Tkinter", "tkinter", "wx"})
-DISTRIBUTED = frozenset(  # what `ros-noetic-desktop-full` and `ros-humble-desktop` bring, and MoveIt
+DISTRIBUTED = frozenset(  # packages of `ros-noetic-desktop-full`, `ros-humble-desktop` and MoveIt
     {"actionlib", "control_msgs", "cv_bridge", "diagnostic_updater", "dynamic_reconfigure", "genpy", "image_geometry",
      "interactive_markers", "laser_assembler", "laser_geometry", "message_filters", "moveit_commander", "moveit_msgs",
      "pcl_msgs", "rclpy", "rosbag", "rosgraph", "roslib", "rosmsg", "rosnode", "rosparam", "rospy", "rosservice",
@@ -30,7 +30,7 @@ SKIPPED = frozenset({"launch", "test", "tests", "build", "install", "devel", "ta
 
 @dataclass(frozen=True)
 class Script:
-    """A node script: its file, the function that an entry point names, and why it is counted apart, if it is."""
+    """A node script: its file, the function of its entry point, and the reason to count it separately, if any."""
 
     repository: Path
     path: Path
@@ -44,7 +44,7 @@ class Script:
 
     @property
     def package(self) -> Path:
-        """Return the folder of the package that the script is in."""
+        """Return the folder of the script's package."""
         inside = [one for one in self.path.parents if one.is_relative_to(self.repository)]
         return next((one for one in inside if (one / "package.xml").is_file()), self.path.parent)
 
@@ -57,7 +57,7 @@ def scripts(repository: Path) -> list[Script]:
 
 
 def files(repository: Path) -> Iterator[Path]:
-    """Yield the Python files outside of folders for launch files and tests."""
+    """Yield the Python files outside folders for launch files and tests."""
     for path in repository.rglob("*"):
         parts = path.relative_to(repository).parts
         if not path.is_file() or path.is_symlink() or not SKIPPED.isdisjoint(parts[:-1]) or ".git" in parts:
@@ -73,14 +73,14 @@ def _first_line(path: Path) -> bytes:
 
 
 def entry_points(repository: Path) -> Iterator[tuple[Path, str]]:
-    """Yield the files and functions of the console scripts that `setup.py` and `setup.cfg` name."""
+    """Yield file and function of each console script in `setup.py` and `setup.cfg`."""
     for setup in [*repository.rglob("setup.py"), *repository.rglob("setup.cfg")]:
         for module, function in ENTRY.findall(setup.read_text("utf-8", errors="replace")):
             yield setup.parent.joinpath(*module.split(".")).with_suffix(".py"), function
 
 
 def script(repository: Path, path: Path, entry: str | None) -> Script | None:
-    """Return the node script that a file is, None if it is none."""
+    """Return the file as a node script, None if it is not one."""
     text = path.read_text("utf-8", errors="replace")
     if path.name == "setup.py" or path.name.endswith(".launch.py") or not MADE_BY.search(text):
         return None
@@ -111,7 +111,7 @@ def imports(tree: ast.AST) -> Iterator[str]:
 
 
 def _runs(statement: ast.stmt) -> bool:
-    """Tell whether a statement at the top of a file makes a node: the guard of a script, or a call of its own."""
+    """Tell whether a top-level statement may start a node: the guard of a script, or a call."""
     if isinstance(statement, ast.If):
         return re.search(r"__name_", ast.unparse(statement.test)) is not None
     text = "" if isinstance(statement, ast.FunctionDef | ast.ClassDef) else ast.unparse(statement)

@@ -1,4 +1,4 @@
-"""What judging formulas costs per episode, in CPU time: `python benchmarks/formulas.py`."""
+"""Measure the CPU time of judging formulas per episode: `python benchmarks/formulas.py`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CAP = 100.0
 
 
 def episode(text: str, steps: int) -> Judge:
-    """Return a judge of one episode of random values, a new one in each step."""
+    """Return a judge of one episode with a new random value in each step."""
     judge = Judge(("gap",), [formula("benchmark", text, ("gap",))])
     draws = random.Random(steps)
     for step in range(1, steps + 1):
@@ -31,7 +31,7 @@ def episode(text: str, steps: int) -> Judge:
 
 
 def milliseconds(text: str, steps: int, *, rewarding: bool) -> float:
-    """Return the least CPU time of judging an episode, with the rewards of its steps where asked for."""
+    """Return the least CPU time in ms of judging an episode, with step rewards if `rewarding`."""
     least = float("inf")
     for _ in range(ROUNDS):
         judge = episode(text, steps)

@@ -1,10 +1,10 @@
-"""How far the verdict can be believed: false alarms, power, and what the region holds, over many repetitions.
+"""Measure false alarms and power of the verdict, and the contents of the region, over many repetitions.
 
     python benchmarks/gate.py [--repetitions 500] [--worlds track lane …] [--sizes 0 0.2 1]
 
-Eight small worlds and the two examples. For each one, and each way in which a sensor can show the drift, a pool of
-missions is made at every size of the drift; then off-line and on-line recordings are drawn from the pools over and over
-and compared. Beside the gate stand a two-sample Kolmogorov-Smirnov test on total reward, and a threshold of 10 %.
+Eight small worlds and the two examples. For each world, and each way in which a sensor can show the drift, a pool of
+missions is simulated for every size of the drift. Pairs of samples (designed, drifted) are then drawn repeatedly from
+the pools and compared. For reference: a two-sample Kolmogorov-Smirnov test on total reward, and a threshold of 10 %.
 """
 
 from __future__ import annotations
@@ -30,25 +30,25 @@ from pytest_tarl.sensors import Cell
 ALPHA = 0.05
 SIZES = (0.0, 0.1, 0.2, 0.5, 1.0)
 OFFLINE, ONLINE = 200, 40
-POOLED = {True: 3000, False: 1500}  # missions in the pool: as designed, drifting
+POOLED = {True: 3000, False: 1500}  # missions in a pool: as designed (True), drifting
 POOLED_EXAMPLE = {True: 1000, False: 300}
 
 
 @dataclass(frozen=True)
 class Seen:
-    """What one comparison said, and what its rivals said of the same two recordings."""
+    """Results of one comparison and of the reference methods on the same samples."""
 
     degraded: bool
     drift: bool
     kolmogorov: bool
     threshold: bool
-    held: float  # share of the changed cells that were visited on-line and lie in the region
-    others: int  # cells of the region that the drift leaves alone
+    held: float  # share of the visited changed cells that are in the region
+    others: int  # cells in the region that the drift does not change
 
 
 @dataclass(frozen=True)
 class Row:
-    """One world, one way to show its drift, one size of it: all repetitions."""
+    """All repetitions for one world, one way to show its drift, and one size of it."""
 
     world: str
     mode: str
@@ -56,7 +56,7 @@ class Row:
     seen: tuple[Seen, ...]
 
     def share(self, what: str) -> float:
-        """Return how often something was said."""
+        """Return the share of repetitions in which a result was positive."""
         return fmean(getattr(one, what) for one in self.seen)
 
 
@@ -68,7 +68,7 @@ def pools(world: str, mode: Mode, sizes: Sequence[float]) -> dict[float, Pool]:
 
 
 def rows(world: str, mode: Mode, repetitions: int, sizes: Sequence[float] = SIZES) -> list[Row]:
-    """Compare over and over, at every size of the drift."""
+    """Compare repeatedly, at every size of the drift."""
     pool = pools(world, mode, sizes)
     designed = pool[0.0].sample
     found = []
@@ -77,7 +77,7 @@ def rows(world: str, mode: Mode, repetitions: int, sizes: Sequence[float] = SIZE
         for repetition in range(repetitions):
             draws = seeds.generator(repetition, f"{world}/{mode}/{size}")
             order = draws.permutation(designed.episodes)
-            # Without drift both recordings come from one pool, and share no mission.
+            # Without drift both samples come from one pool but share no mission.
             chosen = order[-ONLINE:] if size == 0.0 else draws.permutation(there.sample.episodes)[:ONLINE]
             recordings = drawn(designed, order[:OFFLINE]), drawn(there.sample, chosen)
             judged.append(_judged(*recordings, there.changed, draws))
@@ -126,12 +126,12 @@ def summary(found: Sequence[Row]) -> str:
 
 
 def main() -> None:
-    """Compare in every world, two processes side by side."""
+    """Compare in every world, with two processes in parallel."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--repetitions", type=int, default=500)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--worlds", nargs="+", default=[*WORLDS, *EXAMPLES], choices=[*WORLDS, *EXAMPLES])
-    parser.add_argument("--sizes", nargs="+", type=float, default=SIZES, help="of the drift; 0 is none")
+    parser.add_argument("--sizes", nargs="+", type=float, default=SIZES, help="sizes of the drift; 0 is none")
     arguments = parser.parse_args()
     asked = [
         *product([name for name in arguments.worlds if name in WORLDS], MODES),

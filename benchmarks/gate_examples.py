@@ -1,4 +1,4 @@
-"""The two examples as worlds of the gate: their missions, recorded through pytest at any size of their drift."""
+"""The two examples as worlds for gate.py: their missions, recorded through pytest at any size of the drift."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FOLDER = Path(__file__).resolve().parent.parent / "examples"
 
 @dataclass(frozen=True)
 class Example:
-    """A test of the examples; its drift goes from 1, as designed, down to the value in its marker."""
+    """A test of the examples; its drift goes from 1 (as designed) down to the value in the marker."""
 
     test: str
     mode: Mode  # how its sensors show the drift
@@ -43,7 +43,7 @@ class Recording:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Function, nextitem: pytest.Item | None) -> bool:
-        """Record instead of running the test once."""
+        """Record episodes instead of running the test once."""
         marked = designated(item)
         assert marked is not None
         ((name, full),) = marked.drifts.items()
@@ -56,14 +56,14 @@ class Recording:
 
 
 def recorded(name: str, size: float, episodes: int) -> Pool:
-    """Run missions of an example. Which of its cells the drift changes is not known."""
+    """Run missions of an example. The cells that its drift changes are unknown."""
     example = EXAMPLES[name]
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / name
         shutil.copytree(FOLDER / name, copy, ignore=shutil.ignore_patterns(".tarl", "__pycache__"))
         recording = Recording(size, episodes)
         test = str(copy / example.test)
-        plain = ["-p", "no:cacheprovider", "-p", "no:terminal"]  # without a terminal there is no -q
+        plain = ["-p", "no:cacheprovider", "-p", "no:terminal"]  # without the terminal plugin there is no -q
         pytest.main([*plain, "--rootdir", str(copy), test], [recording])
     return Pool(recording.found[0], frozenset())
 

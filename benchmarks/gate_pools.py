@@ -1,4 +1,4 @@
-"""Pools of episodes to draw from: many missions of one world at one size of a drift, as the comparison sees them."""
+"""Pools of episodes to draw from: many missions of one world at one size of a drift, as statistics."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ MODES: tuple[Mode, ...] = ("hidden", "harmless", "novel")
 
 @dataclass(frozen=True)
 class Pool:
-    """Episodes of one world at one size of its drift; `changed` are the cells in which the drift acts.
+    """Episodes of one world at one size of its drift; `changed` are the cells that the drift changes.
 
-    A cell counts as changed where it acts on at least half of the steps.
+    A cell counts as changed if the drift acts in at least half of the steps there.
     """
 
     sample: Sample
@@ -34,8 +34,8 @@ class Pool:
 def simulated(world: str, mode: Mode, drift: float, episodes: int) -> Pool:
     """Run missions of one of the small worlds.
 
-    The sensor that shows the drift's place is hidden from the comparison, harmless (it reads the same in both worlds)
-    or novel (it reads true only where something drifts).
+    The sensor that shows the drift's place is hidden from the comparison, harmless (the same in both worlds) or novel
+    (true only where something drifts).
     """
     samples, exposed = [], dict[Cell, list[bool]]()
     for index in range(episodes):
@@ -49,7 +49,7 @@ def simulated(world: str, mode: Mode, drift: float, episodes: int) -> Pool:
 
 
 def seen(log: Log, mode: Mode, drift: float) -> list[Cell]:
-    """Return the cell of each step as the comparison is told it."""
+    """Return the cell of each step as the comparison receives it."""
     if mode == "hidden":
         return list(log.bins)
     visible = mode == "harmless" or drift > 0
@@ -57,7 +57,7 @@ def seen(log: Log, mode: Mode, drift: float) -> list[Cell]:
 
 
 def trace(cells: Sequence[Cell], reward: Sequence[float]) -> Trace:
-    """Return a mission without events: its sensor cells and what it earned."""
+    """Return a mission without events: its sensor cells and rewards."""
     distinct = tuple(dict.fromkeys(cells))
     number = {cell: i for i, cell in enumerate(distinct)}
     none = np.empty(0, dtype=np.int32)

@@ -1,7 +1,7 @@
-"""Eight small missions for the gate: what the robot is told, what it earns, and where a drift acts.
+"""Eight small simulated missions for gate.py: sensor bins, rewards, and where a drift acts.
 
-Each is run with a drift of 0 (as designed) up to 1 (in full). A mission tells, step by step, the bins of its sensors,
-its reward, and whether the place or moment is one in which the drift acts, drifting or not.
+The drift goes from 0 (as designed) to 1. A mission yields, step by step, the bins of its sensors, its reward, and
+whether the drift acts at this place or time (if there is a drift).
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ Generator = np.random.Generator
 
 @dataclass
 class Log:
-    """One mission as it went, step by step."""
+    """One mission, step by step."""
 
     bins: list[tuple[int, ...]] = field(default_factory=list)
     reward: list[float] = field(default_factory=list)
     exposed: list[bool] = field(default_factory=list)
 
     def step(self, bins: tuple[int, ...], reward: float, exposed: bool) -> None:
-        """Note one step."""
+        """Add one step."""
         self.bins.append(bins)
         self.reward.append(reward)
         self.exposed.append(exposed)
@@ -34,7 +34,7 @@ Simulation = Callable[[Generator, float], Log]
 
 
 def binned(value: float, low: float, high: float, bins: int) -> int:
-    """Return the bin of a value, -1 and `bins` outside."""
+    """Return the bin of a value; -1 below the range and `bins` above it."""
     return max(-1, min(bins, int((value - low) / (high - low) * bins // 1)))
 
 
@@ -59,7 +59,7 @@ def track(rng: Generator, drift: float) -> Log:
 
 
 def greenhouse(rng: Generator, drift: float) -> Log:
-    """Hold 22 °C over a day by a vent that gives way in the afternoon, when it drifts."""
+    """Hold 22 °C over a day with a vent; the drift weakens the vent in the afternoon by up to 80 %."""
     log, inside = Log(), rng.normal(20.0, 1.0)
     day = rng.normal(18.0, 1.5)
     noise = rng.normal(0.0, 0.25, 96)
@@ -76,7 +76,7 @@ def greenhouse(rng: Generator, drift: float) -> Log:
 
 
 def lane(rng: Generator, drift: float) -> Log:
-    """Keep a lane of 1.5 m to either side over 100 m; between 60 m and 80 m the wind may blow."""
+    """Stay within 1.5 m of a lane's centre for 100 m; the drift is wind between 60 m and 80 m."""
     log, y, heading = Log(), rng.normal(0.0, 0.1), 0.0
     noise, gusts = rng.normal(0.0, 0.05, 100), rng.normal(1.0, 0.4, 100)
     for s in range(100):
@@ -92,7 +92,7 @@ def lane(rng: Generator, drift: float) -> Log:
 
 
 def gripper(rng: Generator, drift: float) -> Log:
-    """Lift twelve boxes by suction; rough cardboard is one kind in four and may hold badly."""
+    """Lift twelve boxes by suction; on one kind in four, rough cardboard, the drift weakens the grip."""
     log = Log()
     for _ in range(12):
         kind, tries = int(rng.integers(4)), 0
@@ -107,7 +107,7 @@ def gripper(rng: Generator, drift: float) -> Log:
 
 
 def climb(rng: Generator, drift: float) -> Log:
-    """Climb to 10 m and stay there; a payload of up to 35 % more weight is there all the time."""
+    """Climb to 10 m and stay there; the drift is a payload of up to 35 % of the weight."""
     log, z, v, integral = Log(), 0.0, 0.0, 0.0
     noise = rng.normal(0.0, 0.3, 120)
     for step in range(120):
@@ -121,7 +121,7 @@ def climb(rng: Generator, drift: float) -> Log:
 
 
 def convoy(rng: Generator, drift: float) -> Log:
-    """Follow a lead car; on a wet road braking is up to 60 % weaker."""
+    """Follow a lead car; the drift, a wet road, weakens braking by up to 60 %."""
     log, gap, closing, lead = Log(), rng.normal(20.0, 2.0), 0.0, 0.0
     for _ in range(120):
         lead = 0.9 * lead + rng.normal(0.0, 0.5)
@@ -139,7 +139,7 @@ def convoy(rng: Generator, drift: float) -> Log:
 
 
 def gatherer(rng: Generator, drift: float) -> Log:
-    """Walk a grid of 6 by 6 to its far corner; in a corner of it the ground may be slippery."""
+    """Walk across a 6 × 6 grid to the far corner; under the drift, the ground in one corner is slippery."""
     log, x, y = Log(), 0, 0
     for _ in range(60):
         cell, slippery = (x, y), x >= 3 and y >= 2
@@ -160,7 +160,7 @@ def _towards(x: int, y: int, rng: Generator) -> tuple[int, int]:
 
 
 def pipe(rng: Generator, drift: float) -> Log:
-    """Crawl through a pipe and clean it; from the fiftieth step on a wheel may slip."""
+    """Crawl through a pipe and clean it; under the drift, a wheel slips from step 50 on."""
     log, x = Log(), 0.0
     for step in range(100):
         late = step >= 50

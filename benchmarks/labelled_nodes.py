@@ -1,8 +1,8 @@
-"""Run labelled real nodes in the in-process ROS, instrumented: do they start, hear, publish, is every step recorded?
+"""Run labelled real nodes, instrumented, in the in-process ROS: do they start, receive, publish and record every step?
 
-Run `python benchmarks/labelled_nodes.py LABELS.json CHECKOUTS`, where CHECKOUTS holds `owner__repository/path` for each
-node of the labels. Nothing is downloaded, nothing is written below CHECKOUTS: each node gets a test in a scratch
-folder, which is run with `--tarl-record`. Nodes that need OpenCV are run where `cv2` can be imported.
+Run `python benchmarks/labelled_nodes.py LABELS.json CHECKOUTS`, where CHECKOUTS contains `owner__repository/path` for
+each labelled node. Nothing is downloaded or written below CHECKOUTS: each node gets a test in a scratch folder, which
+runs with `--tarl-record`. Nodes that need OpenCV run only if `cv2` can be imported.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def test_node(tarl, monkeypatch, tmp_path):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of one node: of `sites` steps on `lists` taint lists some are `missing`; or why it does not run."""
+    """Result of one node: its steps (`sites`) on `lists` taint lists, the `missing` ones, or why it does not run."""
 
     name: str
     api: str
@@ -67,7 +67,7 @@ def run(label: dict[str, Any], checkouts: Path) -> Outcome:
     path = checkouts / label["repo"].replace("/", "__") / label["path"]
     outcome = Outcome(path.name, label["dialect"])
     if not path.is_file():
-        return Outcome(outcome.name, outcome.api, reason="there is no such file")
+        return Outcome(outcome.name, outcome.api, reason="no such file")
     try:
         ast.parse(path.read_bytes())
     except SyntaxError as error:
@@ -79,7 +79,7 @@ def run(label: dict[str, Any], checkouts: Path) -> Outcome:
 
 
 def record(outcome: Outcome, node: Path, folder: Path) -> Outcome:
-    """Record a test of the node in a scratch folder and read what it left."""
+    """Record a test of the node in a scratch folder and read the recording."""
     here = str(Path(__file__).parent)
     (folder / "test_it.py").write_text(TEST.format(here=here, node=str(node), name=node.name))
     command = [sys.executable, "-m", "pytest", "-q", "-s", "-p", "no:cacheprovider", "test_it.py"]
@@ -100,7 +100,7 @@ def record(outcome: Outcome, node: Path, folder: Path) -> Outcome:
 
 
 def read(outcome: Outcome, ran: str, path: Path) -> Outcome:
-    """Read from a fixture which steps were recorded."""
+    """Read from a recording which steps were recorded."""
     from pytest_tarl.learning import fixture as fixtures
     from pytest_tarl.learning.tables import START
 
@@ -124,7 +124,7 @@ def _heard(ran: str) -> str:
 
 
 def _why(output: str) -> str:
-    """Return the sentence under pytest's headline of the failed test."""
+    """Return the sentence below pytest's heading of the failed test."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     headline = next((i for i, line in enumerate(lines) if line.strip("_ ") == "test_node"), -2)
     return re.sub(r"/\S*/", "", lines[headline + 1] if lines else "?")[:220].replace("|", "/")
@@ -134,7 +134,7 @@ def main() -> None:
     """Print a row for each labelled node."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("labels", type=Path, help="the labels, a JSON list with repo, path and dialect")
-    parser.add_argument("checkouts", type=Path, help="folder with owner__repository/path")
+    parser.add_argument("checkouts", type=Path, help="folder that contains owner__repository/path")
     parser.add_argument("--only", default="", help="run the nodes whose file name contains this")
     options = parser.parse_args()
     print("| node | API | runs | what it does, which steps were recorded |\n|---|---|---|---|")

@@ -1,4 +1,4 @@
-"""The worlds in which benchmarks/labelled_nodes.py runs its nodes: each publishes what the node listens to."""
+"""The worlds for the nodes of benchmarks/labelled_nodes.py: each publishes the topics that its node subscribes to."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Robot:
         self.x = self.y = self.yaw = 0.0
 
     def move(self, bus: Any, dt: float) -> None:
-        """Move for a step and tell where it is."""
+        """Move for one step and publish the odometry."""
         command = bus.latest(self._topic)
         if command is not None:
             self.yaw += command.angular.z * dt
@@ -82,7 +82,7 @@ class Robot:
 
 
 def _drive(tarl: Any, steps: int, dt: float, feed: Callable[[int], None]) -> None:
-    """Run the episode: the world, the node, a reward, for each step."""
+    """Run an episode: in each step, the world, the node and a reward."""
     for step in range(steps):
         tarl.observe(step=step)
         feed(step)
@@ -91,7 +91,7 @@ def _drive(tarl: Any, steps: int, dt: float, feed: Callable[[int], None]) -> Non
 
 
 def absolute_move(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None:
-    """Goals all around, typed at the prompt; the heading crosses ±180° both ways."""
+    """Type goals in all directions at the prompt; the heading crosses ±180° both ways."""
     here = (-0.4, 0.3)
     goals = [
         (*here, 170.0),
@@ -110,7 +110,7 @@ def absolute_move(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None
 
 
 def obstacle_detection(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
-    """A wall that comes and goes, and commands from elsewhere."""
+    """Publish scans with an intermittent wall, and commands of another node."""
     scan, twist = message_type("sensor_msgs/msg/LaserScan"), message_type("geometry_msgs/msg/Twist")
     tarl.start(node)
 
@@ -124,7 +124,7 @@ def obstacle_detection(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -
 
 
 def patrol(tarl: Any, node: str, _monkeypatch: Any, folder: Path) -> None:
-    """A client wants a square, and a second server of the same kind a triangle."""
+    """Let a client request a square, and a triangle from a second server of the same kind."""
     kind = 1.0 if tarl.seed % 2 else 2.0
     client = folder / "client.py"
     client.write_text(PATROL_CLIENT.format(kind=kind))
@@ -136,7 +136,7 @@ def patrol(tarl: Any, node: str, _monkeypatch: Any, folder: Path) -> None:
 
 
 def keyboard(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None:
-    """Keys typed at a terminal."""
+    """Type keys at a terminal."""
     master, slave = os.openpty()
     monkeypatch.setenv("TURTLEBOT3_MODEL", "burger")
     with os.fdopen(slave, "r") as terminal:
@@ -153,7 +153,7 @@ def _type(master: int, key: str) -> None:
 
 
 def yolo(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None:
-    """A camera; the network itself is replaced by one that returns the picture."""
+    """Publish camera images; the network is replaced by one that returns its input."""
 
     class Found:
         def __init__(self, frame: Any) -> None:
@@ -172,7 +172,7 @@ def yolo(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None:
 
 
 def qos_nodes(tarl: Any, node: str, _monkeypatch: Any, folder: Path) -> None:
-    """Both node classes of the file, in a small program."""
+    """Run both node classes of the file in a small program."""
     program = folder / "talk.py"
     program.write_text(QOS_TALKER.format(folder=str(Path(node).parent)))
     tarl.start(str(program))
@@ -180,7 +180,7 @@ def qos_nodes(tarl: Any, node: str, _monkeypatch: Any, folder: Path) -> None:
 
 
 def lifecycle_talker(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
-    """Someone leads it through its states."""
+    """Drive the node through its lifecycle states."""
     change = message_type("lifecycle_msgs/srv/ChangeState")
     tarl.start(node)
     orders = {5: 1, 25: 3, 60: 4, 65: 2, 70: 1, 75: 3, 90: 7}
@@ -195,13 +195,13 @@ def lifecycle_talker(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> 
 
 
 def alone(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
-    """Nothing to hear."""
+    """Publish nothing."""
     tarl.start(node)
     _drive(tarl, 100, 0.1, lambda _: None)
 
 
 def wander(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
-    """A wall ahead now and then, for long enough to turn and to drive."""
+    """Publish a wall ahead from time to time, long enough for the node to turn and to drive."""
     scan = message_type("sensor_msgs/LaserScan")
     tarl.start(node)
     _drive(
@@ -213,7 +213,7 @@ def wander(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
 
 
 def line_follower(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None:
-    """A yellow stripe before the camera; windows are not opened."""
+    """Publish images of a yellow stripe; no windows are opened."""
     vision = import_module("cv2")
     for window in ("namedWindow", "imshow", "waitKey"):
         monkeypatch.setattr(vision, window, lambda *_: None)
@@ -224,7 +224,7 @@ def line_follower(tarl: Any, node: str, monkeypatch: Any, _folder: Path) -> None
 
 
 def parameters(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
-    """The parameters that its launch file would set."""
+    """Set the parameters of the launch file."""
     gains = {"P": 1.0, "I": 2.0, "D": 3.0}
     given = {"/global_example": "global", "/utterance": "hello", "~topic_name": "chatter", "/gains": gains}
     tarl.start(node, parameters=given)
@@ -232,7 +232,7 @@ def parameters(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
 
 
 def ball(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
-    """A ball to the left, to the right, far out, and lost."""
+    """Publish a ball to the left, to the right, far away, and out of sight."""
     point = message_type("geometry_msgs/Point")
     tarl.start(node)
 
@@ -244,7 +244,7 @@ def ball(tarl: Any, node: str, _monkeypatch: Any, _folder: Path) -> None:
 
 
 def sonar(tarl: Any, node: str, _monkeypatch: Any, folder: Path) -> None:
-    """Commands from a driver and from the avoidance; the servo board's messages are not in the repository."""
+    """Publish commands of a driver and of the obstacle avoidance; define the servo board's messages."""
     messages = folder / "i2cpwm_board" / "msg"
     messages.mkdir(parents=True)
     (messages / "Servo.msg").write_text("int16 servo\nfloat32 value\n")

@@ -1,8 +1,8 @@
-"""Time and memory at sizes that nobody has yet: do they grow in proportion, and where does it end?
+"""Measure time and memory at very large sizes: do they grow in proportion, and where is the limit?
 
-`python benchmarks/limits.py` runs each case at growing sizes, each in a process of its own, and prints CPU seconds, the
-peak of resident memory, and both per unit. `--share 1` runs up to 10⁶ messages an episode, messages of 100 MB, 10,000
-sites, 10⁵ cells and a recording of 2 GB; smaller shares stop earlier. The exit status is 1 where time or memory per
+`python benchmarks/limits.py` runs each case at increasing sizes, each in its own process, and prints CPU seconds, the
+peak of resident memory, and both per unit. `--share 1` runs up to 10⁶ messages per episode, messages of 100 MB, 10,000
+sites, 10⁵ cells and a recording of 2 GB; smaller shares stop earlier. The exit status is 1 if time or memory per
 unit more than triples from the second size to the last.
 """
 
@@ -31,7 +31,7 @@ from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import SitePlace, TaintList
 from pytest_tarl.ros import Ros, message_type
 
-WORSE = 3.0  # times per unit from the second size to the last
+WORSE = 3.0  # allowed growth of time or memory per unit, from the second size to the last
 NODE = """
 import rospy
 from std_msgs.msg import {kind}
@@ -45,17 +45,17 @@ rospy.spin()
 
 
 def messages(size: int) -> str:
-    """Publish so many messages to a node that answers each."""
+    """Publish `size` messages to a node that answers each."""
     return echo("Float64", [1.5] * size)
 
 
 def megabytes(size: int) -> str:
-    """Publish three messages of so many MB."""
+    """Publish three messages of `size` MB."""
     return echo("UInt8MultiArray", [b"\1" * (size * 1_000_000)] * 3)
 
 
 def echo(kind: str, values: list[object]) -> str:
-    """Run the node that answers with what it gets."""
+    """Run a node that publishes each received message again."""
     made = message_type(f"std_msgs/{kind}")
     ros = Ros()
     with ros.installed():
@@ -71,7 +71,7 @@ def echo(kind: str, values: list[object]) -> str:
 
 
 def events(size: int) -> str:
-    """Record so many events in one episode and make statistics of them."""
+    """Record `size` events in one episode and compute their statistics."""
     recorder = Recorder()
     for number in range(size // 20):
         recorder.latch((number % 50,))
@@ -84,12 +84,12 @@ def events(size: int) -> str:
 
 
 def sites(size: int) -> str:
-    """Compare two worlds in which so many sites were recorded."""
+    """Compare two worlds with `size` recorded sites."""
     return both(episodes=10, cells=20, width=size, steps=200)
 
 
 def cells(size: int) -> str:
-    """Compare two worlds with so many cells."""
+    """Compare two worlds with `size` cells."""
     return both(episodes=10, cells=size, width=5, steps=max(200, size // 5))
 
 
@@ -113,8 +113,8 @@ def both(*, episodes: int, cells: int, width: int, steps: int) -> str:
 
 
 def recording(size: int) -> str:
-    """Save and load a recording of about so many MB, of episodes that are all alike in size."""
-    per_episode = 60_000  # bytes, roughly
+    """Save and load a recording of about `size` MB with episodes of equal size."""
+    per_episode = 60_000  # bytes, approximately
     whole = world(range(max(2, size * 1_000_000 // per_episode)), 400, 20, 1500)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "fixture.npz"
@@ -127,7 +127,7 @@ def recording(size: int) -> str:
 
 
 def world(seeds: range, cells: int, width: int, steps: int) -> Sample:
-    """Record episodes that wander through the cells; some of the sites run at each step."""
+    """Record episodes that wander through the cells; some of the sites run in each step."""
     parts = []
     for seed in seeds:
         draws = np.random.default_rng(seed)
@@ -178,7 +178,7 @@ def main() -> None:
     """Print a row for each size of each case."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("cases", nargs="*", help=f"of {', '.join(CASES)} (default: all)")
-    parser.add_argument("--share", type=float, default=1.0, help="of the largest size (default 1)")
+    parser.add_argument("--share", type=float, default=1.0, help="share of the largest size (default 1)")
     parser.add_argument("--size", type=int, help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.size is not None:

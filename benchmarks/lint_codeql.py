@@ -1,10 +1,10 @@
 """Score the analysis against CodeQL's own data-flow tests: `python benchmarks/lint_codeql.py CHECKOUT`.
 
 CHECKOUT is a checkout of github/codeql (only python/ql/test/library-tests/dataflow is read). In those tests the
-variable SOURCE and a few literals are sources, arguments of SINK and SINK_F are sinks, and comments say which flows
-there are (`flow=`), which of them CodeQL misses (`MISSING`) and which it invents (`SPURIOUS`). Both are told to the
+variable SOURCE and a few literals are sources, arguments of SINK and SINK_F are sinks, and comments state which flows
+exist (`flow=`), which of them CodeQL misses (`MISSING`) and which it invents (`SPURIOUS`). Both are passed to the
 analysis as settings: the variable becomes a call of a configured source, the functions configured sinks. Files are
-scored that CodeQL tests for plain data flow and that need no models of library functions.
+scored if CodeQL tests them for plain data flow and they need no models of library functions.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ COMMENT = re.compile(
     r"(?P<how>MISSING:|SPURIOUS:)|flow=(?P<quote>[\"'])(?P<what>.*?)(?:, l:?(?P<offset>[-+]?\d+))? -> .*?(?P=quote)"
     r"|(?P<bare>\bflow\b(?!=))"
 )
-ANY = 0  # the line of a source that a comment does not tell
+ANY = 0  # line of a source that the comment does not state
 
 Pair = tuple[int, int]  # lines of source and sink
 
 
 @dataclass
 class Expected:
-    """What the comments of one file say: flows that CodeQL finds, that it misses, that it invents."""
+    """Flows according to the comments of one file: found, missed and invented by CodeQL."""
 
     found: set[Pair] = field(default_factory=set)
     missed: set[Pair] = field(default_factory=set)
@@ -55,7 +55,7 @@ class Expected:
 
     @property
     def real(self) -> set[Pair]:
-        """Return the flows that there are."""
+        """Return the real flows."""
         return self.found | self.missed
 
 
@@ -81,9 +81,9 @@ def expected(text: str) -> Expected:
 
 
 def prepared(text: str, wanted: Expected) -> str:
-    """Return the file with its sources as calls, its own definitions left out and its tests called at the end.
+    """Return the file with sources as calls, without its own definitions, and with calls of its tests at the end.
 
-    No line moves.
+    Line numbers do not change.
     """
     tree = ast.parse(text)
     lines = text.split("\n")
@@ -124,7 +124,7 @@ def _names(node: ast.stmt) -> Iterator[str]:
 
 
 def _calls(tree: ast.Module) -> Iterator[str]:
-    """Yield calls of the functions and methods that hold sinks, with their defaults and with anything."""
+    """Yield calls of the functions and methods with sinks, with default and with unknown arguments."""
     for node in tree.body:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and _sinks(node):
             yield f"{node.name}()"
@@ -141,14 +141,14 @@ def _sinks(function: ast.AST) -> bool:
 
 
 def _anything(function: ast.FunctionDef | ast.AsyncFunctionDef, receivers: int) -> str:
-    """Return arguments of which nothing is known, also for parameters that have defaults."""
+    """Return unknown arguments, also for parameters with defaults."""
     return ", ".join(["ANY"] * (len(function.args.args) - receivers))
 
 
 def found(text: str, name: str) -> tuple[set[Pair], set[Pair]]:
-    """Return the explicit flows of a prepared file by lines, and those in which the value itself arrives.
+    """Return the explicit flows of a prepared file by lines, and the subset in which the value itself arrives.
 
-    The others hand over a list or an object that holds the value, which is a flow to a publish call, but not to
+    The others pass a list or an object that contains the value, which is a flow for a publish call, but not for
     CodeQL's sinks.
     """
     module = parse(f"{name}.py", text.encode(), name)
@@ -160,7 +160,7 @@ def found(text: str, name: str) -> tuple[set[Pair], set[Pair]]:
 
 
 def _bare(machine: Linker) -> set[Pair]:
-    """Return the flows whose value is not inside a list, mapping or object of the tests."""
+    """Return the flows whose value is not inside a list, mapping or object."""
     tracer = Tracer(machine)
     reached = [(record.pos[0], tracer.reach(record).data) for record in machine.sources.values()]
     pairs: set[Pair] = set()
@@ -179,19 +179,19 @@ def _bare(machine: Linker) -> set[Pair]:
 
 
 def _argument_of(pos: Pos, call: Pos) -> bool:
-    """Tell whether an expression ends a call: it is the argument, or the last part of it."""
+    """Tell whether an expression is the last argument of a call, or the last part of it."""
     return pos != call and (pos[0], pos[2], pos[3] + 1) == (call[0], call[2], call[3])
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print what was found of each file, then the shares beside CodeQL's."""
+    """Print the flows found in each file, then the shares next to CodeQL's."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("checkout", type=Path, help="checkout of github/codeql")
-    parser.add_argument("--details", action="store_true", help="name every missed and invented flow")
+    parser.add_argument("--details", action="store_true", help="list all missed and invented flows")
     options = parser.parse_args(arguments)
     folder = options.checkout / TESTS
     if not folder.is_dir():
-        sys.exit(f"{folder} is not there: name a checkout of github/codeql.")
+        sys.exit(f"{folder}: no such folder; name a checkout of github/codeql.")
     total: Counter[str] = Counter()
     for query in sorted(folder.rglob(QUERY)):
         if query.parent.name in NEED_MODELS:
@@ -202,7 +202,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def score(path: Path, folder: Path, details: bool, total: Counter[str]) -> None:
-    """Score one file and print what differs."""
+    """Score one file and print the differences."""
     text = path.read_text(encoding="utf-8")
     wanted = expected(text)
     try:
@@ -229,7 +229,7 @@ def score(path: Path, folder: Path, details: bool, total: Counter[str]) -> None:
 
 
 def summary(total: Counter[str]) -> str:
-    """Return the shares, ours beside CodeQL's."""
+    """Return the shares, ours next to CodeQL's."""
     real = total["real"] or 1
     return "\n".join(
         [
@@ -237,8 +237,8 @@ def summary(total: Counter[str]) -> str:
             f"{'':>22}{'found':>14}{'false':>8}",
             f"{'tarl-lint':>22}{total['ours']:>7} ({total['ours'] / real:.1%}){total['our false']:>6}",
             f"{'CodeQL':>22}{total['theirs']:>7} ({total['theirs'] / real:.1%}){total['their false']:>6}",
-            f"{'flows there are':>22}{total['real']:>7}",
-            f"Not counted as false: {total['inside']} sinks that are handed a list or object which holds the value.",
+            f"{'real flows':>22}{total['real']:>7}",
+            f"Not counted as false: {total['inside']} sinks that receive a list or object which contains the value.",
         ]
     )
 

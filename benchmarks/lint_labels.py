@@ -1,10 +1,10 @@
 """Score tarl-lint against real nodes whose flows are known: `python benchmarks/lint_labels.py CHECKOUT LABELS.json`.
 
-CHECKOUT holds the repositories, each in a directory named owner/name, owner__name, owner+name or name.
+CHECKOUT contains the repositories, each in a directory named owner/name, owner__name, owner+name or name.
 A flow is matched by the lines of its subscription and publish calls. Printed per node and in total: flows found,
-of the other kind, missing and surplus; lines of labelled paths found; data steps that are among the labelled or
-optional lines; reports at publish calls without a flow. Python 2 files are left out, and so are flows from or to
-services, actions and transforms, about which the labels say nothing.
+of the other kind, missing and surplus; lines found of labelled paths; data steps that are among the labelled or
+optional lines; reports at publish calls without a flow. Not counted are Python 2 files and flows from or to
+services, actions and transforms, which the labels do not cover.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ SHARES = (("path lines", "path lines found"), ("data steps", "data steps labelle
 
 @dataclass
 class Score:
-    """What was counted, and a line for each thing that is not as labelled."""
+    """Counts, and a line for each difference from the labels."""
 
     counts: Counter[str] = field(default_factory=Counter)
     remarks: list[str] = field(default_factory=list)
@@ -101,14 +101,14 @@ def _lines(lines: set[int]) -> str:
 
 
 def directory(checkout: Path, repo: str) -> Path | None:
-    """Return where a repository stands below the checkout."""
+    """Return the directory of a repository below the checkout, None if there is none."""
     owner, _, name = repo.partition("/")
     names = (f"{owner}/{name}", f"{owner}__{name}", f"{owner}+{name}", name)
     return next((checkout / n for n in names if (checkout / n).is_dir()), None)
 
 
 def read_labels(path: Path) -> list[Mapping[str, Any]]:
-    """Read the labelled nodes. Exits with a sentence when the file is not of this format."""
+    """Read the labelled nodes. Exit with a message if the file does not have this format."""
     try:
         nodes = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
@@ -126,11 +126,11 @@ def read_labels(path: Path) -> list[Mapping[str, Any]]:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print the scores."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("checkout", type=Path, help="directory that holds the repositories")
+    parser.add_argument("checkout", type=Path, help="directory that contains the repositories")
     parser.add_argument("labels", type=Path, help="labels file")
     options = parser.parse_args(arguments)
     if not options.checkout.is_dir():
-        sys.exit(f"{options.checkout} is not a directory: name the one that holds the repositories.")
+        sys.exit(f"{options.checkout} is not a directory: name the one that contains the repositories.")
     total, left_out, analyses = Score(), 0, dict[Path, Analysis]()
     for node in read_labels(options.labels):
         home = directory(options.checkout, node["repo"])

@@ -1,9 +1,9 @@
 """Score the call resolver on PyCG's micro-benchmark: `python benchmarks/lint_pycg.py CHECKOUT`.
 
-CHECKOUT is a checkout of github/vitsalis/PyCG. Its small programs come with the calls that there are. As there, a
-program is *sound* when no call is missing and *complete* when none is invented. PyCG itself is run on the same
-programs in the same way, from the same checkout. Only calls between functions of the programs count, for both:
-builtins and libraries are left out. Functions that nothing calls are started by themselves, as PyCG does.
+CHECKOUT is a checkout of github/vitsalis/PyCG. Its small programs come with their true calls. As in PyCG, a
+program is *sound* if no call is missing and *complete* if none is invented. PyCG itself runs on the same
+programs, from the same checkout. For both tools only calls between functions of the programs count:
+builtins and libraries are excluded. Functions that nothing calls are entry points, as in PyCG.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ Edge = tuple[str, str]  # caller and callee, dotted
 
 
 class Calls(Linker):
-    """Records who calls whom."""
+    """Record caller and callee of every call."""
 
     def __init__(self, modules: Sequence[Module]) -> None:
         super().__init__(modules, Config())
@@ -50,12 +50,12 @@ class Calls(Linker):
         return f"{module}.{inner}" if inner else module
 
     def edges(self) -> set[Edge]:
-        """Return every call from a function of the files to another one."""
+        """Return every call between functions of the files."""
         frames = [f for f in self.frames.values() if f.caller is not None and _own(f.caller)]
         return {(self.name(f.caller), self.name(f)) for f in frames if f.caller is not None}
 
     def start_rest(self) -> None:
-        """Run functions that nothing calls, with arguments of which nothing is known, until there are no more."""
+        """Run functions that nothing calls, with unknown arguments, until none is left."""
         started: set[Obj] = set()
         while True:
             rest = [
@@ -90,12 +90,12 @@ class Calls(Linker):
 
 
 def _own(frame: Frame) -> bool:
-    """Tell whether a frame is a function or module of the files, not what stands for the interpreter."""
+    """Tell whether a frame is a function or module of the files, not one of the interpreter."""
     return not (isinstance(frame.key, tuple) and frame.key[0] == "root")
 
 
 def function_names(module: Module) -> Iterator[tuple[tuple[int, int], str]]:
-    """Yield where each function starts and its dotted name; lambdas are numbered in their scope."""
+    """Yield the start (line, column) and dotted name of each function; lambdas are numbered in their scope."""
     pending: list[tuple[ast.AST, str]] = [(module.tree, "")]
     counts: Counter[str] = Counter()
     while pending:
@@ -129,7 +129,7 @@ def ours(folder: Path) -> set[Edge]:
 
 
 def theirs(folder: Path) -> set[Edge]:
-    """Return the calls that PyCG finds in a program, in a process of its own since it changes the import system."""
+    """Return the calls that PyCG finds in a program, in its own process because it changes the import system."""
     checkout = folder.parents[len(SNIPPETS.parts) + 1]
     command = [sys.executable, "-m", "pycg", "--package", str(folder), str(folder / "main.py")]
     done = subprocess.run(command, cwd=checkout, capture_output=True, text=True, check=False)
@@ -144,15 +144,17 @@ def inner_calls(edges: set[Edge], folder: Path) -> set[Edge]:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Print the shares, ours beside PyCG's."""
+    """Print the shares, ours next to PyCG's."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("checkout", type=Path, help="checkout of github/vitsalis/PyCG")
-    parser.add_argument("--details", action="store_true", help="name every missing and invented call")
+    parser.add_argument("--details", action="store_true", help="list all missing and invented calls")
     options = parser.parse_args(arguments)
     options.checkout = options.checkout.resolve()
     programs = sorted((options.checkout / SNIPPETS).glob("*/*/callgraph.json"))
     if not programs:
-        sys.exit(f"{options.checkout / SNIPPETS} holds no programs: name a checkout of github/vitsalis/PyCG.")
+        sys.exit(
+            f"{options.checkout / SNIPPETS} contains no programs: name a checkout of github/vitsalis/PyCG."
+        )
     print(f"{len(programs)} programs{'':>14}{'sound':>10}{'complete':>10}{'calls found':>13}{'invented':>10}")
     for name, tool in (("tarl-lint", ours), ("PyCG", theirs)):
         total = score(programs, tool, details=options.details)
@@ -161,7 +163,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def score(programs: Sequence[Path], tool: Callable[[Path], set[Edge]], *, details: bool) -> Counter[str]:
-    """Compare the calls that a tool finds in each program with those that there are."""
+    """Compare the calls that a tool finds in each program with the true ones."""
     total: Counter[str] = Counter()
     for path in programs:
         folder = path.parent

@@ -1,13 +1,13 @@
-"""Speed of `tarl-lint` beside `ast.parse` and Semgrep on the same trees, in one run.
+"""Compare the speed of `tarl-lint` with `ast.parse` and Semgrep on the same trees, in one run.
 
     python benchmarks/lint_speed.py [--semgrep PATH/TO/semgrep] [--repetitions 3] TREE [TREE ...]
 
-Of every tree: lines, CPU seconds of `ast.parse` over all its .py files, of tarl-lint without a cache, with a warm
+For every tree: lines, CPU seconds of `ast.parse` over all .py files, of tarl-lint without a cache, with a warm
 one, and of Semgrep with a taint rule from subscriber callbacks to publish; the ratios, and the peak memory of
-tarl-lint, children included. The last tree is copied side by side under other package names and linted once, twice
-and four times as large. CPU time counts all processes; each figure is the least of the repetitions. Trees that
-anyone can have: checkouts of ROS repositories, Debian's `python3-ros*` packages unpacked with `dpkg -x`, wheels from
-PyPI, the standard library. Python's bytecode is written, as where a package is installed.
+tarl-lint, including children. The last tree is copied under other package names and linted once, twice
+and four times as large. CPU time includes all processes; each figure is the least of the repetitions. Suitable
+public trees: checkouts of ROS repositories, Debian's `python3-ros*` packages unpacked with `dpkg -x`, wheels from
+PyPI, the standard library. Python writes bytecode, as for an installed package.
 """
 
 from __future__ import annotations
@@ -56,14 +56,14 @@ for path in sys.stdin.read().split("\\n"):
 
 @dataclass(frozen=True)
 class Cost:
-    """What a command took: CPU seconds and peak memory of its largest process in megabytes."""
+    """Cost of a command: CPU seconds, and peak memory of its largest process in megabytes."""
 
     cpu: float
     memory: float = 0.0
 
 
 def cost(command: Sequence[str], *, given: str = "", directory: Path | None = None) -> Cost:
-    """Run a command to its end and return what it and its children took."""
+    """Run a command and return its cost, including its children."""
     environment = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}
     reader, writer = os.pipe()
     child = os.fork()
@@ -90,7 +90,7 @@ def cost(command: Sequence[str], *, given: str = "", directory: Path | None = No
 def least(
     command: Sequence[str], repetitions: int, *, given: str = "", directory: Path | None = None
 ) -> Cost:
-    """Return the least that a command took of several times."""
+    """Return the least cost of several runs of a command."""
     costs = [cost(command, given=given, directory=directory) for _ in range(repetitions)]
     return Cost(min(c.cpu for c in costs), max(c.memory for c in costs))
 
@@ -101,7 +101,7 @@ def python_files(tree: Path) -> list[Path]:
 
 
 def parsing(tree: Path, repetitions: int) -> Cost:
-    """Return what `ast.parse` over a tree takes, without starting Python and reading the files."""
+    """Return the cost of `ast.parse` over a tree, without starting Python and reading the files."""
     names = "\n".join(str(p) for p in python_files(tree))
     bare, whole = (
         least([sys.executable, "-c", PARSE.replace("PARSES", flag)], repetitions, given=names)
@@ -111,7 +111,7 @@ def parsing(tree: Path, repetitions: int) -> Cost:
 
 
 def linting(tree: Path, repetitions: int, *, cached: bool) -> Cost:
-    """Return what tarl-lint takes, from an empty cache that is thrown away or with a full one."""
+    """Return the cost of tarl-lint, with an empty cache or with a full one (`cached`)."""
     command = [sys.executable, "-m", "tarl_lint", "--exit-zero", "--format", "concise"]
     with tempfile.TemporaryDirectory() as home:
         directory = Path(home)
@@ -123,7 +123,7 @@ def linting(tree: Path, repetitions: int, *, cached: bool) -> Cost:
 
 
 def semgrep(program: str, tree: Path) -> Cost:
-    """Return what Semgrep takes with the taint rule, in one process."""
+    """Return the cost of Semgrep with the taint rule, in one process."""
     with tempfile.TemporaryDirectory() as home:
         rule = Path(home, "rule.yml")
         rule.write_text(RULE)
@@ -150,7 +150,7 @@ def line(name: str, tree: Path, arguments: argparse.Namespace) -> str:
 
 
 def copies(tree: Path, number: int, home: Path) -> Path:
-    """Return a directory with copies of a tree side by side: equal packages under different roots."""
+    """Return a directory with copies of a tree: equal packages under different roots."""
     for copy in range(number):
         shutil.copytree(tree, home / f"copy_{copy}", dirs_exist_ok=True, ignore=_not_python)
     return home
@@ -162,7 +162,7 @@ def _not_python(directory: str, names: list[str]) -> list[str]:
 
 
 def start_up(repetitions: int) -> str:
-    """Return what one clean file takes over a bare start of Python."""
+    """Return the cost of linting one clean file, above a bare start of Python."""
     with tempfile.TemporaryDirectory() as home:
         Path(home, "clean.py").write_text("def double(x):\n    return 2 * x\n")
         bare = least([sys.executable, "-c", "pass"], repetitions * 3)

@@ -1,20 +1,20 @@
-"""Truth of tarl-lint on code that nobody tuned it for: publish calls drawn at random and judged blind.
+"""Measure the accuracy of tarl-lint on unseen code: publish calls drawn at random and judged blind.
 
     python benchmarks/lint_truth.py draw TREES --seed 41 [--each 60] [--without FILE ...] [--judgements FILE]
     python benchmarks/lint_truth.py compare TREES benchmarks/lint_truth/JUDGED.json [--verbose]
 
-TREES is a directory of checkouts, one directory a repository. The population is every call `x.publish(…)` in its
-Python files, found in the syntax tree without the linter; the linter only says which of them have a report. `draw`
+TREES is a directory of checkouts, one directory per repository. The population is every call `x.publish(…)` in its
+Python files, found in the syntax tree without the linter; the linter only shows which of them have a report. `draw`
 takes as many calls with a report as without one and prints them sorted by place, so that the list does not show which
-is which. `--without` names files of earlier draws (or a text with `file.py:line`), whose calls are left out.
+is which. `--without` names files of earlier draws (or a text with `file.py:line`), whose calls are excluded.
 
 Judgements are made from the source alone, before `compare` runs. A judged call names its sources, each with its kind
-(`data` or `control`) and the lines of the path that no right report may lack:
+(`data` or `control`) and the lines of the path that every correct report must contain:
 
     {"seed": 41, "calls": {"repo/dir/node.py:30": {"from": [{"at": "12", "kind": "data", "path": ["20-22", "30"]}]}}}
 
-A place is a line of the file of the call, or `path:line` below the repository. A call with `"skip": "why"` is no
-publish call of ROS; `"uncalled": true` marks one that nothing in its tree calls (counted in a row of its own).
+A place is a line of the call's file, or `path:line` below the repository. A call with `"skip": "why"` is not a
+publish call of ROS; `"uncalled": true` marks one in code that nothing in its tree calls (counted in a separate row).
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Place:
     def read(cls, text: str, beside: str = "") -> Place:
         """Return the place that `text` names: `path:line`, or a line of the file `beside`.
 
-        A path is below the directory of the trees if its first part is the one of `beside`, else below that part.
+        A path is relative to the directory of the trees if its first part equals that of `beside`, else to that part.
         """
         path, _, line = text.rpartition(":")
         home = beside.partition("/")[0]
@@ -64,7 +64,7 @@ class Place:
 
 
 def scripts(trees: Path) -> Iterator[Path]:
-    """Yield every file of Python below the directory, in order of names."""
+    """Yield every Python file below the directory, in order of names."""
     for path in sorted(trees.rglob("*")):
         if path.suffix == ".py" and path.is_file():
             yield path
@@ -133,7 +133,7 @@ class Truth:
     remarks: list[str] = field(default_factory=list)
 
     def compare(self, call: Place, judged: Mapping[str, Any], flows: Sequence[Flow], trees: Path) -> None:
-        """Compare the judgement of one publish call with what was reported for it."""
+        """Compare the judgement of one publish call with its reports."""
         if judged.get("skip"):
             self.counts["left out"] += 1
             return
@@ -198,7 +198,7 @@ def draw(options: argparse.Namespace) -> None:
 
 
 def compare(options: argparse.Namespace) -> None:
-    """Print what was reported against what was judged."""
+    """Compare the reports with the judgements and print the counts."""
     document = json.loads(options.judgements.read_text(encoding="utf-8"))
     flows, truth = reported(options.trees), Truth()
     for name, judged in sorted(document["calls"].items()):
@@ -215,20 +215,20 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     commands = parser.add_subparsers(required=True)
     drawing = commands.add_parser("draw", help="print publish calls to judge")
-    drawing.add_argument("trees", type=Path, help="directory that holds the repositories")
+    drawing.add_argument("trees", type=Path, help="directory that contains the repositories")
     drawing.add_argument("--seed", type=int, required=True)
     drawing.add_argument("--each", type=int, default=60, help="calls with a report, and as many without one")
     drawing.add_argument(
-        "--without", type=Path, nargs="*", default=[], help="texts that name calls to leave out"
+        "--without", type=Path, nargs="*", default=[], help="texts that name calls to exclude"
     )
     drawing.set_defaults(run=draw)
     comparing = commands.add_parser("compare", help="compare the reports with judgements")
-    comparing.add_argument("trees", type=Path, help="directory that holds the repositories")
+    comparing.add_argument("trees", type=Path, help="directory that contains the repositories")
     comparing.add_argument("judgements", type=Path, help="JSON file of judged calls")
     comparing.set_defaults(run=compare)
     options = parser.parse_args(arguments)
     if not options.trees.is_dir():
-        sys.exit(f"{options.trees} is not a directory: name the one that holds the repositories.")
+        sys.exit(f"{options.trees} is not a directory: name the one that contains the repositories.")
     options.run(options)
 
 

@@ -1,9 +1,9 @@
-"""Do the tests catch faults? Sow small ones, chosen by a seed, and run the tests that reach the line.
+"""Mutation testing: insert small faults, chosen by a seed, and run the tests that reach the line.
 
-`make mutants` sows ten in each package of pytest_tarl. Coverage contexts say which tests reach which line, those of
-processes that tests start included. Each fault is sown into a copy of the checkout without any cache; it is caught
-when a test fails or the tests take far longer than they did without it. A fault that no test reaches is not caught.
-Prints the share that is caught with its exact 95 % interval, and the faults that survived.
+`make mutants` inserts ten faults in each package of pytest_tarl. Coverage contexts record which tests reach which line,
+including processes that tests start. Each fault goes into a copy of the checkout without any cache. It is caught
+if a test fails or the tests take far longer than without it. A fault that no test reaches is not caught.
+The script prints the share of caught faults with its exact 95 % interval, and the surviving faults.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ ROOT = Path(__file__).resolve().parent.parent
 EQUIVALENT = Path(__file__).with_name("equivalent_mutants.json")
 ELSEWHERE = {"realros"}  # needs a real ROS: make test-ros1, make test-ros2
 LEFT_OUT = (".git", ".venv*", "__pycache__", ".tarl", ".hypothesis", ".*_cache", "*.egg-info", ".coverage*")
-MOST_TESTS = 60  # that are run for a fault, the quickest first
-PATIENCE = 60.0  # seconds beyond three times what its tests took
+MOST_TESTS = 60  # tests to run per fault, the fastest first
+PATIENCE = 60.0  # seconds allowed beyond three times the duration of the tests without the fault
 SETTINGS = """[run]
 source = {source}
 parallel = true
@@ -43,7 +43,7 @@ Reached = dict[tuple[str, int], set[str]]  # tests by file and line
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a fault: caught, survived, timeout, unreached."""
+    """Result of a fault: caught, survived, timeout or unreached."""
 
     fault: Fault
     word: str
@@ -51,15 +51,15 @@ class Outcome:
 
 
 def main() -> None:
-    """Sow the faults and print what became of them."""
+    """Insert the faults and print the results."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--package", default="pytest_tarl", help="(default pytest_tarl)")
-    parser.add_argument("--only", nargs="*", default=[], metavar="PACKAGE", help="some of its packages")
+    parser.add_argument("--package", default="pytest_tarl", help="package to test (default pytest_tarl)")
+    parser.add_argument("--only", nargs="*", default=[], metavar="PACKAGE", help="only these subpackages")
     parser.add_argument("--each", type=int, default=10, help="faults in each of its packages (default 10)")
     parser.add_argument("--seed", type=int, default=0, help="chooses the faults (default 0)")
-    parser.add_argument("--tests", nargs="*", default=["tests"], help="that are asked (default: all)")
+    parser.add_argument("--tests", nargs="*", default=["tests"], help="tests to run (default: all)")
     parser.add_argument(
-        "--keep", type=Path, metavar="FILE", help="keep which tests reach what, or take it from there"
+        "--keep", type=Path, metavar="FILE", help="file to store the coverage in, or to read it from"
     )
     given = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
@@ -84,7 +84,7 @@ def main() -> None:
 def known(
     keep: Path | None, copy: Path, package: str, tests: Sequence[str]
 ) -> tuple[Reached, Mapping[str, float]]:
-    """Return which tests reach which lines and how long each takes, measured or as kept."""
+    """Return which tests reach which lines and their durations, measured or read from the file."""
     if keep is not None and keep.exists():
         lines, seconds = json.loads(keep.read_text())
         return {(path, line): set(names) for path, line, names in lines}, seconds
@@ -144,7 +144,7 @@ def pytest_runtest_setup(item):
 
 
 def contexts(data: Path, copy: Path) -> Reached:
-    """Read the tests by line from coverage's file; its lines are bits of a blob."""
+    """Read the tests by line from coverage's database, which stores lines as bits of a blob."""
     reached: Reached = {}
     query = (
         "select file.path, context.context, numbits from line_bits "
@@ -164,7 +164,7 @@ def contexts(data: Path, copy: Path) -> Reached:
 
 
 def sample(copy: Path, package: str, only: set[str], each: int, seed: int) -> list[Fault]:
-    """Choose the faults: so many in each package, files weighted by how many can be sown."""
+    """Choose `each` faults per package, files weighted by their number of possible faults."""
     chosen: list[Fault] = []
     folders = sorted(path for path in (copy / package).iterdir() if (path / "__init__.py").exists())
     homes = {path.name: sorted(path.rglob("*.py")) for path in folders if path.name not in ELSEWHERE}
@@ -182,7 +182,7 @@ def reaching(fault: Fault, reached: Reached) -> set[str]:
 
 
 def tried(fault: Fault, copy: Path, tests: Iterable[str], seconds: Mapping[str, float]) -> Outcome:
-    """Sow a fault, run the tests that reach it, and take it out again."""
+    """Insert a fault, run the tests that reach it, and remove it."""
     passing = sorted((test for test in tests if test in seconds), key=lambda test: (seconds[test], test))
     chosen = passing[:MOST_TESTS]
     if not chosen:
@@ -203,7 +203,7 @@ def tried(fault: Fault, copy: Path, tests: Iterable[str], seconds: Mapping[str, 
 
 
 def fails(copy: Path, tests: Sequence[str], limit: float) -> bool:
-    """Tell whether one of the tests fails. Raises TimeoutExpired where they take longer than the limit."""
+    """Tell whether one of the tests fails. Raises TimeoutExpired if they exceed the limit in seconds."""
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--no-header", *tests]
     with subprocess.Popen(
         command,
@@ -223,7 +223,7 @@ def fails(copy: Path, tests: Sequence[str], limit: float) -> bool:
 
 
 def environment(copy: Path) -> dict[str, str]:
-    """Return the environment in which the copy is imported, and nothing is cached."""
+    """Return an environment that imports the copy and caches nothing."""
     return {
         **os.environ,
         "PYTHONPATH": str(copy),
@@ -233,7 +233,7 @@ def environment(copy: Path) -> dict[str, str]:
 
 
 def report(outcomes: Sequence[Outcome]) -> None:
-    """Print the shares by package, all in all, and the survivors."""
+    """Print the shares by package and in total, and the survivors."""
     words = ("caught", "timeout", "survived", "unreached")
     packages = sorted({home(one) for one in outcomes})
     print(f"\n| package | {' | '.join(words)} |\n|---|---|---|---|---|")

@@ -1,10 +1,10 @@
-"""Time that `observe` adds to a control cycle: p50, p99, p99.9 of the same loop with and without it, in one run.
+"""Measure the time that `observe` adds to a control cycle: p50, p99 and p99.9 of a loop with and without it.
 
-Run `python benchmarks/observe.py`. A cycle is what a Figure 1 style node does between a message and its command: the
-callback, the control law, 18 recorded lines; the observer is told two sensors and a reward in each, as on a robot,
-while the log is written and synced. Blocks of both kinds alternate, each in a process of its own. A cycle's time runs
-from the moment at which it was due, so that a thread which keeps the interpreter counts as well; `executing` runs from
-its first line. With `--realtime`, the loop has the scheduler's priority that control loops have (SCHED_FIFO), so that
+Run `python benchmarks/observe.py`. A cycle is the work of a node between a message and its command: the callback and
+the control law, 18 recorded lines. In each cycle the observer receives two sensors and a reward, as on a robot,
+while the log is written and synced. Blocks of both kinds alternate, each in its own process. A cycle's time runs
+from the moment at which it was due, so that delays by other threads count as well; `executing` runs from
+its first line. With `--realtime`, the loop has real-time priority (SCHED_FIFO) as control loops do, so that
 other programs do not count.
 """
 
@@ -34,20 +34,20 @@ SENSORS = (
 LINES = [f"    v{n} = v{n - 1} * 0.5 + {n}" for n in range(1, 19)]
 NODE = "\n".join(["def cycle(v0):", *LINES, "    speed = 5 * v18", "    return speed", ""])
 PERIOD = 0.002  # seconds between two cycles
-WARM = 50  # cycles at the start of a block that do not count
+WARM = 50  # cycles at the start of a block that are not counted
 AT = (50, 99, 99.9)
 
 
 @dataclass
 class Message:
-    """What a sensor's topic carries."""
+    """A message on a sensor's topic."""
 
     x: float = 0.0
     data: bool = False
 
 
 def node(folder: Path, hooks: Any = None) -> Any:
-    """Return the node's cycle, instrumented with the stream's hooks or as it is."""
+    """Return the node's cycle, instrumented with the stream's hooks or plain."""
     path = folder / "node.py"
     path.write_text(NODE)
     columns = {(number, 5): number - 2 for number in range(2, 22)}
@@ -62,9 +62,9 @@ def node(folder: Path, hooks: Any = None) -> Any:
 def main() -> None:
     """Print the percentiles."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--cycles", type=int, default=20_000, help="of each kind (default 20000)")
-    parser.add_argument("--blocks", type=int, default=10, help="that they are run in (default 10)")
-    parser.add_argument("--realtime", action="store_true", help="SCHED_FIFO, where the user may")
+    parser.add_argument("--cycles", type=int, default=20_000, help="cycles of each kind (default 20000)")
+    parser.add_argument("--blocks", type=int, default=10, help="number of blocks (default 10)")
+    parser.add_argument("--realtime", action="store_true", help="use SCHED_FIFO (needs the privilege)")
     parser.add_argument("--block", choices=("bare", "observed"), help=argparse.SUPPRESS)
     given = parser.parse_args()
     cycles = max(1, given.cycles // given.blocks)

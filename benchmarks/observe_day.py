@@ -1,9 +1,9 @@
-"""A day of `observe` at 100 Hz, with a clock that runs as fast as it can: does memory grow, is a second lost?
+"""Run a simulated day of `observe` at 100 Hz as fast as possible: does memory grow, are steps lost?
 
 `python benchmarks/observe_day.py --hours 24` runs the control cycle of observe.py under a simulated clock, one mission
-an hour, and sets the log aside by size. It prints the resident memory of the node's process and of the writer by the
-hour, then reads the log back: each step must be there once, in order, each second must have its steps. The exit status
-is 1 where one is missing, or the median memory of the last quarter is more than --growth MB above the second's.
+per hour, and rotates the log by size. It prints the resident memory of the node's process and of the writer by the
+hour, then reads the log back: each step must occur once, in order, and each second must have its steps. The exit status
+is 1 if one is missing, or if the median memory of the last quarter exceeds that of the second by more than --growth MB.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from pytest_tarl.observing.observer import Observer
 from pytest_tarl.observing.writer import Rotation, unpacked
 
 RATE = 100  # cycles a second
-SAMPLES = 24  # of memory, and missions
+SAMPLES = 24  # number of memory samples and of missions
 ABOUT = {"node": "node.py", "sites": [], "sensors": [one.name for one in SENSORS]}
 
 
 class Clock:
-    """Seconds that pass as the loop says."""
+    """A clock that the loop advances."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -41,11 +41,15 @@ class Clock:
 
 
 def main() -> None:
-    """Run the day and print what came of it."""
+    """Run the day and print the results."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--hours", type=float, default=24.0, help="simulated (default 24)")
-    parser.add_argument("--log-size", type=float, default=50.0, metavar="MB", help="(default 50)")
-    parser.add_argument("--growth", type=float, default=5.0, metavar="MB", help="allowed (default 5)")
+    parser.add_argument("--hours", type=float, default=24.0, help="hours to simulate (default 24)")
+    parser.add_argument(
+        "--log-size", type=float, default=50.0, metavar="MB", help="size at which to rotate (default 50)"
+    )
+    parser.add_argument(
+        "--growth", type=float, default=5.0, metavar="MB", help="allowed growth of memory (default 5)"
+    )
     given = parser.parse_args()
     cycles = max(SAMPLES, round(given.hours * 3600 * RATE / SAMPLES) * SAMPLES)
     with tempfile.TemporaryDirectory() as folder:
@@ -93,7 +97,7 @@ def day(log: Path, cycles: int, rotation: Rotation) -> tuple[list[tuple[float, f
         observer.step(float(number))
         clock.now += 1 / RATE
         while number % 100 == 0 and (observer._outlet._put - observer._outlet._sent) > 1 << 20:
-            sleep(0.005)  # the clock is faster than the disk
+            sleep(0.005)  # wait for the disk, as the simulated clock is faster
     observer.end(passed=True)
     observer.close()
     sizes.append((resident("self"), sizes[-1][1]))

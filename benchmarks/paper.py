@@ -1,11 +1,11 @@
-"""Re-derive the paper's figures over many seeds and print one table.
+"""Reproduce the paper's figures over many seeds and print one table.
 
     python benchmarks/paper.py [--seeds 20] [--workers 2]
 
-For every seed the shuttle's transit is recorded off-line (200 episodes), run in mud (40 episodes), run in the
-off-line world as if it were another one (40 episodes), and repaired; then recorded and run in mud with two lines
-swapped, and with gain and wheels in other units (0.5 instead of 5, the same motion). What is mud is asked from the
-world, not from a sensor. The line follower is recorded, run at dusk and repaired beside it.
+For every seed, the shuttle's transit is recorded as designed (200 episodes), compared in mud (40 episodes), compared
+in the unchanged world (40 episodes), and repaired. It is also recorded and compared in mud with two lines swapped, and
+with gain and wheels in other units (0.5 instead of 5, the same motion). The true extent of the mud comes from the
+world, not from a sensor. The line follower is recorded, compared at dusk and repaired as well.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ RESTORED = 0.95
 
 @dataclass(frozen=True)
 class Variant:
-    """The example as it is, or with some of its text replaced: (file, old, new)."""
+    """An example, unchanged or with replacements in its files: (file, old, new)."""
 
     test: str
     edits: tuple[tuple[str, str, str], ...] = ()
@@ -83,7 +83,7 @@ VARIANTS = {
 
 @dataclass
 class Study:
-    """A pytest plugin that runs one test's episodes in both worlds and writes down what it saw."""
+    """A pytest plugin that runs one test's episodes in both worlds and stores the results."""
 
     seed: int
     variant: Variant
@@ -169,7 +169,7 @@ def _quiet(done: int, total: int, what: str) -> None:
 
 
 def _watched_mud() -> list[bool]:
-    """Have the world note at every step whether the robot stood on the patch when the step began."""
+    """Let the world record in every step whether the robot was on the mud when the step began."""
     world = sys.modules["world"].World
     seen: list[bool] = []
     publish = world.publish
@@ -198,7 +198,7 @@ def _in_mud(rollout: ItemRollout, online: Recorded, drift: str, mud: list[bool])
 
 
 def _guard_hits(order: Order, candidate: Candidate, mud: list[bool]) -> dict[str, float]:
-    """Return on which share of the steps in mud the guard is true, and on which of the others it is false."""
+    """Return the share of steps in mud at which the guard is true, and of the others at which it is false."""
     hits: dict[bool, list[bool]] = {True: [], False: []}
     patched = Mutants(order).source(candidate)
     for seed in seeds.episode_seeds(order.options.seed, "guard", ONLINE):
@@ -211,7 +211,7 @@ def _guard_hits(order: Order, candidate: Candidate, mud: list[bool]) -> dict[str
 
 
 def _peaks(offline: Recorded, online: Recorded, sites: Plan, region: Region) -> dict[str, str]:
-    """Return the code of the site at which the slice difference is largest, per way to learn the utility."""
+    """Return the code of the site with the largest slice difference, for each way to learn the utility."""
     before, after = aligned(offline.sample, online.sample)
     chosen = {*region.cells, *region.novel}
     rows = np.array([i for i, cell in enumerate(before.cells) if cell in chosen], dtype=np.int64)
@@ -240,7 +240,7 @@ def one(name: str, seed: int) -> dict[str, Any]:
         )
         for file, old, new in variant.edits:
             text = (copy / file).read_text()
-            assert old in text, f"{file} no longer holds {old!r}: mend VARIANTS"
+            assert old in text, f"{file} no longer contains {old!r}: update VARIANTS"
             (copy / file).write_text(text.replace(old, new))
         study = Study(seed, variant)
         code = pytest.main(
@@ -251,7 +251,7 @@ def one(name: str, seed: int) -> dict[str, Any]:
 
 
 def table(results: dict[str, list[dict[str, Any]]]) -> str:
-    """Return what the seeds showed, as a Markdown table."""
+    """Return the results over all seeds as a Markdown table."""
     rows = []
     for name, found in results.items():
         if VARIANTS[name].example == "shuttle":
@@ -323,7 +323,7 @@ def _restored(fixed: dict[str, Any]) -> bool:
 
 
 def main() -> None:
-    """Study all variants with all seeds, each in a process of its own."""
+    """Study all variants with all seeds, each in its own process."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--workers", type=int, default=2)

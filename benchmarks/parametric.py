@@ -1,8 +1,8 @@
-"""Do tiles find what the table finds? Region and first culprit of both on the two examples, side by side.
+"""Compare tilings with the table: region and first culprit of both on the two examples.
 
     python benchmarks/parametric.py            # three seeds, about two minutes
 
-The sensor x of the examples is given tilings; the rest of the run is the same.
+Only the tilings of the examples' sensor x differ between the runs.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def main() -> None:
 
 
 def rows(example: str, test: str, seed: int) -> None:
-    """Run an example with each number of tilings and print what was found."""
+    """Run an example with each number of tilings and print the results."""
     table: set[str] = set()
     for tilings in TILINGS:
         found = run(example, test, seed, tilings)

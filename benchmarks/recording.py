@@ -1,8 +1,8 @@
-"""What recording costs, side by side with its peers in one run.
+"""Measure the cost of recording, next to its peers in one run.
 
-`python benchmarks/recording.py` prints the tables. Each program is executed bare, with an empty hook that could not do
-less, as the plugin instruments it, under coverage.py's C tracer and under slipcover (which never takes its probes out:
-it would stop counting), in turns, and the best turn of each counts. Times are CPU times of the process.
+`python benchmarks/recording.py` prints the tables. Each program runs bare, with an empty hook (the least possible
+overhead), as the plugin instruments it, under coverage.py's C tracer and under slipcover (which keeps its probes:
+without them it would stop counting), alternately; the best run of each counts. Times are CPU times of the process.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ from pytest_tarl.instrumentation.nodecode import NodeCode
 from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.learning.statistics import sample
 
-os.environ["COVERAGE_CORE"] = "ctrace"  # what newer Pythons would replace by sys.monitoring
+os.environ["COVERAGE_CORE"] = "ctrace"  # newer Pythons would use sys.monitoring
 TURNS = 60
-ROUNDS = 2_000  # some ten thousand events: an episode
+ROUNDS = 2_000  # about ten thousand events, as in an episode
 STEPS = 200
-DISCS = 340  # which makes a step of some 200 µs
+DISCS = 340  # a step then takes about 200 µs
 RUNS = 12
-STARTS = 41  # of pytest, with the plugin and without
+STARTS = 41  # starts of pytest, with and without the plugin
 
 STRAIGHT = """
 def work(rounds):
@@ -87,7 +87,7 @@ LOADING = ("for _ in range(rounds)", "for i in range(rounds)", "node.step(")
 
 
 def sites_of(tree: ast.Module) -> dict[Offset, int]:
-    """Return every statement inside the functions, but for the loops that only drive the program."""
+    """Return every statement inside functions, except the loops that only drive the program."""
     sites: dict[Offset, int] = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.FunctionDef) and node.name != "__init__":
@@ -122,7 +122,7 @@ def seconds(work: Callable[[int], None]) -> float:
 
 
 def measured(source: str) -> tuple[dict[str, float], int]:
-    """Return the best seconds of a program by the way it is run, and the events of a run."""
+    """Return the best seconds of a program for each way to run it, and the number of events per run."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "program.py"
         file.write_text(source)
@@ -137,7 +137,7 @@ def measured(source: str) -> tuple[dict[str, float], int]:
 
 
 def bare(source: str, file: Path) -> float:
-    """Time a program as it is."""
+    """Time an uninstrumented program."""
     return seconds(prepared(compile(source, str(file), "exec"), {}))
 
 
@@ -187,7 +187,7 @@ def control_step() -> tuple[float, float]:
 
 
 def called(control: Callable[[Any, float], float]) -> float:
-    """Return microseconds of a call of the controller; beside a step of the world they would drown in its noise."""
+    """Return microseconds per call of the controller alone, as the noise of world steps would hide them."""
     node = SimpleNamespace(kp=0.4)
     start = time.process_time()
     for i in range(STEPS):
@@ -196,7 +196,7 @@ def called(control: Callable[[Any, float], float]) -> float:
 
 
 def stepped(control: Callable[[Any, float], float]) -> float:
-    """Return microseconds per step of a world of discs in a box; the controller is asked in each."""
+    """Return microseconds per step of a world of discs in a box, with one call of the controller in each."""
     world = pymunk.Space()
     world.gravity = (0.0, -9.8)
     world.add(pymunk.Segment(world.static_body, (0, 0), (40, 0), 0.5))
@@ -213,7 +213,7 @@ def stepped(control: Callable[[Any, float], float]) -> float:
 
 
 def finishing() -> tuple[float, float]:
-    """Return million events a second from the buffer to a trace, and from the buffer to statistics."""
+    """Return million events per second from the buffer to a trace, and from the buffer to statistics."""
     best = [float("inf")] * 2
     for _ in range(10):
         recorder = Recorder()
@@ -232,7 +232,7 @@ def finishing() -> tuple[float, float]:
 
 
 def importing(source: str, sites: int) -> tuple[float, float, float]:
-    """Return milliseconds to get the code of a module with so many sites: cold, cached, and Python's own cached."""
+    """Return milliseconds to load the code of a module with `sites` sites: cold, cached, and Python's own cache."""
     sys.dont_write_bytecode = False
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "node.py"
@@ -255,9 +255,9 @@ def importing(source: str, sites: int) -> tuple[float, float, float]:
 
 
 def starting() -> tuple[float, float]:
-    """Return CPU milliseconds of a pytest run of one empty test, other plugins left out: without ours, and with it.
+    """Return CPU milliseconds of a pytest run of one empty test without other plugins: without ours, and with it.
 
-    Medians of runs in turn: single ones differ by more than the plugin costs.
+    Both are medians of alternating runs, because single runs differ by more than the cost of the plugin.
     """
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "test_it.py").write_text("def test_it(): pass\n")
@@ -287,7 +287,9 @@ def main() -> None:
     global TURNS, RUNS, STARTS
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument(
-        "--quick", action="store_true", help="one turn of everything: figures that mean nothing"
+        "--quick",
+        action="store_true",
+        help="one run of everything, to test the script; the figures mean nothing",
     )
     if parser.parse_args().quick:
         TURNS, RUNS, STARTS = 1, 1, 1

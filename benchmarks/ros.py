@@ -1,7 +1,7 @@
-"""Episodes per second, 100 control steps each, of a small rospy and a small rclpy node: embedded and on a real ROS.
+"""Measure episodes per second (100 control steps each) of small rospy and rclpy nodes, in-process and on a real ROS.
 
 Run `python benchmarks/ros.py`, with the Python of `.venv-ros1` or `.venv-ros2` (`make setup-ros1 setup-ros2`) for the
-real ones. Every episode must take the same path to the last bit, on the real ROS that of the embedded one.
+real ones. Every episode must take the same path to the last bit, also on the real ROS.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ except ExternalShutdownException:
 
 
 def episode(program: Callable[[], None], odometry_type: type[Any], ros: Ros) -> list[float]:
-    """Drive a node for `STEPS` steps; return where the robot was after each."""
+    """Drive a node for `STEPS` steps; return the robot's position after each."""
     odometry = odometry_type()
     position, path = 0.0, []
     with ros.installed():
@@ -92,7 +92,7 @@ def episode(program: Callable[[], None], odometry_type: type[Any], ros: Ros) -> 
 
 
 def real(library: str) -> Callable[[], Ros] | None:
-    """Return what makes an episode's real ROS, None where it is not installed."""
+    """Return a factory of the real ROS for an episode, None if it is not installed."""
     if PathFinder.find_spec(library) is None:
         return None
     if library == "rospy":
@@ -111,7 +111,7 @@ def measured(
     path: list[float],
     seconds: float,
 ) -> tuple[float, float, bool]:
-    """Return episodes per CPU second and per second of wall time, and whether each took this path."""
+    """Return episodes per CPU second and per second of wall time, and whether all took this path."""
     same, count, cpu, wall = True, 0, process_time(), perf_counter()
     while process_time() - cpu < seconds:
         same &= episode(program, odometry, make()) == path
@@ -120,9 +120,9 @@ def measured(
 
 
 def main() -> None:
-    """Print a row for each client library and each kind of ROS that is here."""
+    """Print a row for each client library and each installed kind of ROS."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seconds", type=float, default=3.0, help="CPU seconds to measure each row")
+    parser.add_argument("--seconds", type=float, default=3.0, help="CPU seconds to spend on each row")
     seconds = parser.parse_args().seconds
     print(f"{'':<16}{'episodes/CPU s':>16}{'episodes/s':>12}{'CPU µs a step':>15}   path")
     for name, source, odometry in (
@@ -139,7 +139,7 @@ def main() -> None:
             if make is None:
                 print(f"real {name:<11}{'not installed here':>16}")
                 continue
-            episode(program, odometry, make())  # its connections are made once
+            episode(program, odometry, make())  # warm-up: connections are made once
             cpu, wall, same = measured(program, odometry, make, path, seconds)
             told = "that of the embedded ROS, to the last bit" if same else "ANOTHER"
             print(f"{kind + ' ' + name:<16}{cpu:>16.1f}{wall:>12.1f}{1e6 / cpu / STEPS:>15.1f}   {told}")

@@ -1,12 +1,12 @@
-"""How often a world is told from itself, through files and command line: record, then compare with new seeds.
+"""Measure how often a world appears to differ from itself: record, then compare with new seeds, by command line.
 
     python benchmarks/same_world.py [--comparisons 10] [--worlds shuttle …] [--committed] [--workers 2]
 
 Thirty worlds: the tasks of benchmarks/drift, the examples, one task of benchmarks/drift_judging, and those of
 benchmarks/same_worlds. No two of them draw the same episodes. Each comparison is a
-`pytest --tarl-record` and a `pytest --tarl-online` with seeds of their own; its result is read from the JSON that the
-second one writes. With `--committed` a world is recorded once and compared again and again, as in CI. Results are
-appended to a file (--found), and comparisons that it holds are not run again, so a run can be interrupted and resumed.
+`pytest --tarl-record` and a `pytest --tarl-online` with their own seeds; its result is read from the JSON that the
+second one writes. With `--committed` a world is recorded once and compared repeatedly, as in CI. Results are
+appended to a file (--found), and comparisons in it are not repeated, so a run can be interrupted and resumed.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ import pytest
 HERE = Path(__file__).resolve().parent
 EXAMPLES = HERE.parent / "examples"
 FOUND = HERE.parent / ".tarl-same-world.jsonl"
-BATCH = 10  # comparisons of a process
-ONLINE_SEEDS = 1_000_000  # added to the number of a comparison: seeds that no recording has
+BATCH = 10  # comparisons per process
+ONLINE_SEEDS = 1_000_000  # added to the number of a comparison, for seeds that no recording has
 SPARED = shutil.ignore_patterns(".tarl", "__pycache__", "answer.json")
 
 
@@ -64,18 +64,18 @@ def worlds() -> dict[str, World]:
 
 
 class Undrifted:
-    """A pytest plugin that takes the drifts out of the markers, so that the on-line world is the designed one."""
+    """A pytest plugin that removes the drifts from markers, so that a comparison runs the designed world."""
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
-        """Forget the drifts of a test before its scenarios are made."""
+        """Remove the drifts of a test before its scenarios are generated."""
         marker = metafunc.definition.get_closest_marker("tarl")
         if marker is not None and isinstance(marker.kwargs, dict):
             marker.kwargs.pop("drifts", None)
 
 
 def compare_here(world: World, numbers: Sequence[int], committed: bool) -> Iterator[dict[str, Any]]:
-    """Record and compare in this process, yield what each comparison concluded."""
+    """Record and compare in this process; yield the result of each comparison."""
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch) / world.folder.name
         shutil.copytree(world.folder, folder, ignore=SPARED)
@@ -85,7 +85,7 @@ def compare_here(world: World, numbers: Sequence[int], committed: bool) -> Itera
                 try:
                     ran(world, "--tarl-record", f"--tarl-seed={0 if committed else number}")
                     (_,) = (folder / ".tarl" / "utility").glob("*.npz")
-                except ValueError:  # so many episodes failed that nothing was recorded
+                except ValueError:  # too many episodes failed, so nothing was recorded
                     print(f"{world.test}: seed {number} was not recorded.", file=sys.stderr)
                     continue
             ran(world, "--tarl-online", f"--tarl-seed={ONLINE_SEEDS + number}")
@@ -94,7 +94,7 @@ def compare_here(world: World, numbers: Sequence[int], committed: bool) -> Itera
 
 
 def ran(world: World, *flags: str) -> None:
-    """Run pytest. Raises RuntimeError where it came to no verdict."""
+    """Run pytest. Raises RuntimeError if it does not reach a verdict."""
     quiet = ("-q", "-p", "no:cacheprovider", "-c", os.devnull, "--rootdir", ".")
     with Path(os.devnull).open("w") as nowhere, redirect_stdout(nowhere):
         status = pytest.main(["-W", "ignore", *quiet, world.test, *flags], [Undrifted()])
@@ -105,7 +105,7 @@ def ran(world: World, *flags: str) -> None:
 def batches(
     chosen: Iterable[str], asked: int, committed: bool, done: set[tuple[str, bool, int]]
 ) -> Iterator[tuple[str, list[int]]]:
-    """Yield what is yet to be compared, all worlds a little before any of them whole."""
+    """Yield batches of missing comparisons, in turns over all worlds."""
     names = list(chosen)
     for first in range(0, asked, BATCH):
         for name in names:
@@ -116,7 +116,7 @@ def batches(
 
 
 def compared(name: str, numbers: Sequence[int], committed: bool) -> list[dict[str, Any]]:
-    """Run a batch in a process of its own; what it found before it died counts."""
+    """Run a batch in its own process; if it crashes, keep the results so far."""
     command = [sys.executable, __file__, "--worlds", name, "--numbers", *map(str, numbers)]
     ended = subprocess.run(
         [*command, *(["--committed"] if committed else [])],
@@ -131,12 +131,12 @@ def compared(name: str, numbers: Sequence[int], committed: bool) -> list[dict[st
 
 
 def read(path: Path) -> list[dict[str, Any]]:
-    """Return what was found until now."""
+    """Return the results so far."""
     return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
 
 
 def table(found: Sequence[dict[str, Any]], committed: bool) -> Iterator[str]:
-    """Yield a Markdown table: how often each world was called another one."""
+    """Yield a Markdown table: how often each world appeared to differ from itself."""
     yield "| world | comparisons | drifted | degraded | smallest p_drift |\n|---|---|---|---|---|"
     chosen = [one for one in found if one["committed"] == committed]
     for name in [*dict.fromkeys(one["world"] for one in chosen), "all"]:
@@ -146,15 +146,15 @@ def table(found: Sequence[dict[str, Any]], committed: bool) -> Iterator[str]:
 
 
 def main() -> None:
-    """Compare what was not compared yet, and print the table."""
+    """Run the missing comparisons and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
-    parser.add_argument("--comparisons", type=int, default=10, help="of each world")
+    parser.add_argument("--comparisons", type=int, default=10, help="comparisons per world")
     parser.add_argument(
         "--worlds", nargs="+", default=list(worlds()), choices=list(worlds()), metavar="WORLD"
     )
     parser.add_argument("--committed", action="store_true", help="record each world once")
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--found", type=Path, default=FOUND, help="file that what was found is added to")
+    parser.add_argument("--found", type=Path, default=FOUND, help="file to which results are appended")
     parser.add_argument("--numbers", nargs="+", type=int, help=argparse.SUPPRESS)
     asked = parser.parse_args()
     if asked.numbers:

@@ -1,9 +1,9 @@
-"""How often the drift test tells episodes of one world apart: random splits of one long recording.
+"""Measure false alarms of the drift test by random splits of one long recording.
 
     python benchmarks/same_world_resampled.py shuttle [--episodes 4000] [--splits 2500] [--seed 0]
 
 `same_world.py` records anew for each comparison, which costs seconds. Here `pytest --tarl-record` runs a world once,
-with many episodes; each split draws 200 of them as designed world and 40 as deployed world and costs 50 ms. Where the
+with many episodes; each split draws 200 of them as designed world and 40 as deployed world and costs 50 ms. If the
 recording is many times longer than a split, the share of splits with p below a level estimates the true rate of false
 alarms at that level.
 """
@@ -32,14 +32,14 @@ LEVELS = (0.01, 0.05, 0.1, 0.25, 0.5)
 
 
 class Lengthened(Undrifted):
-    """A pytest plugin that records as many episodes as asked for."""
+    """A pytest plugin that records the requested number of episodes."""
 
     def __init__(self, episodes: int) -> None:
         self.episodes = episodes
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
-        """Change the marker before the scenarios are made."""
+        """Change the marker before the scenarios are generated."""
         super().pytest_generate_tests(metafunc)
         marker = metafunc.definition.get_closest_marker("tarl")
         if marker is not None and isinstance(marker.kwargs, dict):
@@ -64,7 +64,7 @@ def recorded(world: World, episodes: int) -> Fixture:
 
 
 def chosen(sample: Sample, episodes: Ints) -> Sample:
-    """Return a sample of some episodes, in ascending order."""
+    """Return the sample of these episodes (indices in ascending order)."""
     place = np.full(sample.episodes, -1)
     place[episodes] = np.arange(len(episodes))
     rows = place[sample.chain.episode] >= 0
@@ -82,7 +82,7 @@ def chosen(sample: Sample, episodes: Ints) -> Sample:
 
 
 def p_values(fixture: Fixture, splits: int, seed: int) -> list[float]:
-    """Return p_drift of every split."""
+    """Return p_drift of every split, `splits` values."""
     generator = np.random.default_rng(seed)
     found = []
     for _ in range(splits):

@@ -1,4 +1,4 @@
-"""Small faults in a file of source: where they can be sown, and the text with one of them."""
+"""Small faults in a source file: possible places, and the text with one of them inserted."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ _TEXT: dict[type[ast.cmpop] | type[ast.operator] | type[ast.boolop], str] = {
     ast.And: "and",
     ast.Or: "or",
 }
-_UNSEEN = (ast.Import, ast.ImportFrom, ast.Assert, ast.Raise)  # messages are not worth a test each
+_UNSEEN = (ast.Import, ast.ImportFrom, ast.Assert, ast.Raise)  # not every message needs a test
 
 
 @dataclass(frozen=True, order=True)
 class Fault:
-    """A piece of a file, by its offsets in bytes, that other text takes the place of."""
+    """A replacement of a piece of a file, given by its byte offsets."""
 
     path: str
     line: int
@@ -59,11 +59,11 @@ class Fault:
     kind: str
     was: str
     now: str
-    lines: tuple[int, ...] = ()  # of the statement, up to its body: where tests may be seen to pass
+    lines: tuple[int, ...] = ()  # lines of the statement up to its body, to find tests in the coverage data
 
     @property
     def name(self) -> str:
-        """Name it so that it is found again after edits elsewhere in the file."""
+        """Return a name that is stable under edits elsewhere in the file."""
         return f"{self.path}: {self.kind}: {' '.join(self.was.split())} → {' '.join(self.now.split())}"
 
     def sown(self, text: bytes) -> bytes:
@@ -72,7 +72,7 @@ class Fault:
 
 
 def faults(path: Path, name: str) -> list[Fault]:
-    """Return every fault that can be sown into a file and still compiles."""
+    """Return every fault of a file that still compiles."""
     data = path.read_bytes()
     found = sorted(set(_Finder(data, name).module(ast.parse(data))))
     return [one for one in found if one.was != one.now and _compiles(one.sown(data))]
@@ -87,7 +87,7 @@ def _compiles(data: bytes) -> bool:
 
 
 class _Finder:
-    """One walk over a module."""
+    """Collect the faults of a module in one walk."""
 
     def __init__(self, data: bytes, name: str) -> None:
         self._data = data
@@ -97,7 +97,7 @@ class _Finder:
             self._lines.append(self._lines[-1] + len(line) + 1)
 
     def module(self, tree: ast.Module) -> Iterator[Fault]:
-        """Yield the faults of all functions; what runs at import is mostly declarations."""
+        """Yield the faults of all functions; module-level code is mostly declarations."""
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not node.name.startswith(
                 "__repr"
@@ -167,7 +167,7 @@ class _Finder:
         now: str,
         kind: str,
     ) -> Iterator[Fault]:
-        """Yield the fault at the operator between two operands, parentheses and line breaks around it left alone."""
+        """Yield the fault at the operator between two operands, keeping parentheses and line breaks."""
         start, end = self._offsets(left)[1], self._offsets(right)[0]
         gap, was = self._data[start:end].decode(), _TEXT[operator]
         if gap.count(was) == 1 and "#" not in gap:

@@ -1,10 +1,10 @@
-"""What statistics and utility cost: from the buffer to counts, from counts to q, and how it grows.
+"""Measure the cost of statistics and utility: from buffer to counts, from counts to q, and its growth.
 
     python benchmarks/statistics_cost.py            # about a minute
     python benchmarks/statistics_cost.py --workers  # also records with one and two worker processes
 
-Not called statistics.py: beside other scripts it would stand in for the module of that name.
-Times are CPU time of this process, minimum of several; the speed-up by workers is wall time.
+Not called statistics.py, because that would shadow the standard module for scripts in this folder.
+Times are CPU times of this process, the least of several; the speed-up by workers is wall time.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def main() -> None:
 
 
 def throughput(events: int = 1_000_000) -> Iterator[str]:
-    """Measure from a recorder's buffer to the statistics of one episode."""
+    """Measure the throughput from a recorder's buffer to the statistics of one episode."""
     steps = events // SITES
     recorder = recorded(steps)
     whole = least(lambda: sample(recorder().finish(), 0, True, [range(SITES)]))
@@ -75,7 +75,7 @@ def throughput(events: int = 1_000_000) -> Iterator[str]:
 
 
 def recorded(steps: int) -> Callable[[], Recorder]:
-    """Return what makes a recorder with `steps` steps of events in its buffer."""
+    """Return a factory of recorders with `steps` steps of events in their buffer."""
     draws = np.random.default_rng(0)
     cells = np.abs(np.cumsum(draws.integers(-1, 2, steps))) % 48
     rewards = draws.normal(size=steps).tolist()
@@ -161,7 +161,7 @@ def walk(episodes: int, steps: int, cells: int, sites: int) -> Sample:
 
 
 def episode(seed: int, steps: int, cells: int, sites: int) -> Trace:
-    """Return an episode in which every step passes through all sites, in a cell near the last one."""
+    """Return an episode in which every step visits all sites, in a cell near the previous one."""
     draws = np.random.default_rng(seed)
     cell = (draws.integers(cells) + np.cumsum(draws.integers(-1, 2, steps))) % cells
     names, place = np.unique(cell, return_inverse=True)
@@ -181,8 +181,8 @@ def episode(seed: int, steps: int, cells: int, sites: int) -> Trace:
 def speed_up() -> Iterator[str]:
     """Record the examples in one process and with two workers.
 
-    The ratio of the wall times is the one that counts, where two cores are free. What no load changes is the CPU time
-    of the run itself and that of its workers: with as many cores as workers it takes the first and its share of the
+    With two free cores, the ratio of wall times is the speed-up. Independent of other load is the CPU time
+    of the main process and of its workers: with one core per worker, a run takes the first plus its share of the
     second.
     """
     for example, test, episodes in RECORDINGS:
@@ -195,7 +195,7 @@ def speed_up() -> Iterator[str]:
 
 
 def recorded_example(example: str, test: str, episodes: int, workers: int) -> tuple[float, float, float]:
-    """Return CPU seconds of a recording, of its workers, and wall seconds; what pytest needs to start is left out."""
+    """Return CPU seconds of a recording, of its workers, and wall seconds, all without pytest's start."""
     source = Path(__file__).resolve().parent.parent / "examples" / example
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder, example)

@@ -1,6 +1,6 @@
-"""A pytest plugin: write down what became of each test, and record every statement of a package meanwhile.
+"""A pytest plugin that stores the outcome of each test while it records every statement of a package.
 
-`third_party_suites.py` names the package's folder in SUITE_RECORDED (empty: run it as it is) and the result in
+`third_party_suites.py` passes the package's folder in SUITE_RECORDED (empty: do not record) and the result's path in
 SUITE_RESULT.
 """
 
@@ -22,7 +22,7 @@ import pytest
 from pytest_tarl.instrumentation.importhook import NodeImports
 from pytest_tarl.instrumentation.recorder import Recorder
 
-EVERY = 0.2  # CPU seconds between two clearings of the events
+EVERY = 0.2  # CPU seconds after which recorded events are dropped, to bound memory
 OPEN = ExitStack()
 FOUND: dict[str, list[str]] = {}
 COUNTS = {"sites": 0, "events": 0, "files": 0}
@@ -43,7 +43,7 @@ def every_site(file: Path, first: int) -> dict[tuple[int, int], int]:
 
 
 def begin() -> None:
-    """Begin to record, where this is asked for, and have Hypothesis try the same examples each time."""
+    """Start recording if requested, and make Hypothesis deterministic."""
     if folder := os.environ["SUITE_RECORDED"]:
         _record(Path(folder))
     try:
@@ -82,14 +82,14 @@ def _record(package: Path) -> None:
 
 
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:
-    """Note the outcome of a phase of a test."""
+    """Store the outcome of a phase of a test."""
     name = re.sub(r"0x[0-9a-f]+", "0x", report.nodeid)
     word = f"{report.when} {report.outcome}" + (" (expected)" if hasattr(report, "wasxfail") else "")
     FOUND.setdefault(name, []).append(word)
 
 
 def pytest_collectreport(report: pytest.CollectReport) -> None:
-    """Note what could not be collected."""
+    """Store failures of collection."""
     if not report.passed:
         FOUND.setdefault(report.nodeid, []).append(f"collection {report.outcome}")
 

@@ -1,9 +1,9 @@
-"""Suites of other projects, as they are and with every statement of the project recorded: the same, test by test?
+"""Run test suites of other projects plain and with every statement recorded, and compare the outcomes test by test.
 
-`python benchmarks/third_party_suites.py toolz attrs` downloads their sdists (pinned, with digests), installs them in an
-environment that is thrown away, runs each suite twice and prints the tests whose outcome differs. Where some do, the
-plain suite runs up to three times more: an outcome that it has by itself, now and then, was not made by recording. The
-exit status is 1 where recording changed an outcome.
+`python benchmarks/third_party_suites.py toolz attrs` downloads their sdists (pinned, with digests), installs them in a
+temporary environment, runs each suite twice and prints the tests whose outcome differs. If some do, the
+plain suite runs up to three times more: an outcome that also occurs there is not due to recording. The
+exit status is 1 if recording changed an outcome.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ TOOLS = ("pytest==8.4.2", "hypothesis==6.135.0")
 
 @dataclass(frozen=True)
 class Suite:
-    """A release: its sdist's digest, the folder of its package, what its tests need, and how they are run."""
+    """A release: digest of its sdist, folder of its package, requirements of its tests, and how to run them."""
 
     version: str
     sha256: str
@@ -43,7 +43,7 @@ SUITES = {
     "toolz": Suite(
         "1.0.0", "2c86e3d9a04798ac556793bced838816296a2f085017664e4995cb40a1047a02", "toolz", ("toolz", "tlz")
     ),
-    "sortedcontainers": Suite(  # its sdist holds no tests, but examples in every docstring
+    "sortedcontainers": Suite(  # its sdist contains no tests, but examples in every docstring
         "2.4.0",
         "25caa5a06cc30b6b83d11423433f65d1f9d76c4c6a0c90e3379eaa43b9bfdb88",
         "sortedcontainers",
@@ -64,7 +64,7 @@ SUITES = {
         "2f8490dbdbd419366cef1516032ab06d07ccb5839ef54905e842a472692d4204",
         "transitions",
         needs=("six==1.17.0", "dill==0.4.0", "mock==5.2.0"),
-        options=("-o", "addopts=", "--ignore=tests/test_codestyle.py"),  # of its sources, by other tools
+        options=("-o", "addopts=", "--ignore=tests/test_codestyle.py"),  # checks its sources with other tools
     ),
     "jinja2": Suite(
         "3.1.6",
@@ -105,14 +105,14 @@ Outcomes = dict[str, list[str]]
 
 
 def main() -> None:
-    """Run the suites that are named, or all of them."""
+    """Run the named suites, or all of them."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("suites", nargs="*", help=f"of {', '.join(SUITES)} (default: all)")
-    parser.add_argument("--keep", type=Path, help="a folder for the results, test by test")
+    parser.add_argument("--keep", type=Path, help="folder in which to keep the results of all tests")
     given = parser.parse_args()
     unknown = sorted(set(given.suites) - set(SUITES))
     if unknown:
-        parser.error(f"there is no suite {unknown[0]!r}: name some of {', '.join(SUITES)}")
+        parser.error(f"unknown suite {unknown[0]!r}: choose from {', '.join(SUITES)}")
     print(
         "| suite | tests | passed | files recorded | sites | events | CPU s plain, recorded | changed by recording |"
     )
@@ -127,7 +127,7 @@ def main() -> None:
 
 
 def environment(folder: Path) -> Path:
-    """Make an environment with this checkout in it and return its interpreter."""
+    """Create an environment with this checkout and return its interpreter."""
     venv.create(folder / "venv", with_pip=True)
     python = folder / "venv" / "bin" / "python"
     install(python, "--editable", f"{ROOT}[pytest]", *TOOLS)
@@ -135,14 +135,14 @@ def environment(folder: Path) -> Path:
 
 
 def install(python: Path, *what: str) -> None:
-    """Install distributions. Ends the run with pip's words where it cannot."""
+    """Install distributions. Exit with pip's output on failure."""
     done = subprocess.run([python, "-m", "pip", "install", "-q", *what], capture_output=True, text=True)
     if done.returncode:
         sys.exit(f"pip install {' '.join(what)}:\n{done.stderr[-2000:]}")
 
 
 def sources(name: str, folder: Path, python: Path) -> Path:
-    """Download a suite's sdist, compare its digest and return the folder it unpacks to."""
+    """Download a suite's sdist, check its digest and return the folder of its contents."""
     suite, store = SUITES[name], folder / name
     install(python, f"{name}=={suite.version}", *suite.needs)  # its metadata, and what it needs
     wanted = ("--no-deps", "--no-binary", ":all:", "-d", str(store), f"{name}=={suite.version}")
@@ -150,16 +150,14 @@ def sources(name: str, folder: Path, python: Path) -> Path:
     (archive,) = store.iterdir()
     found = hashlib.sha256(archive.read_bytes()).hexdigest()
     if found != suite.sha256:
-        sys.exit(
-            f"{archive.name}: sha256 {found} is not the pinned {suite.sha256}; look at what was released."
-        )
+        sys.exit(f"{archive.name}: sha256 {found} differs from the pinned {suite.sha256}: check the release.")
     shutil.unpack_archive(archive, store)
     (unpacked,) = (path for path in store.iterdir() if path.is_dir())
     return unpacked
 
 
 def compared(name: str, folder: Path, python: Path, keep: Path | None) -> list[str]:
-    """Print the row of a suite and return the tests that recording changed."""
+    """Print the row of a suite and return the tests whose outcome recording changed."""
     suite, at = SUITES[name], sources(name, folder, python)
     plain, plain_seconds = run(python, suite, at, folder, record=False)
     recorded, recorded_seconds = run(python, suite, at, folder, record=True)
@@ -173,7 +171,7 @@ def compared(name: str, folder: Path, python: Path, keep: Path | None) -> list[s
     passed = sum(outcome == ["setup passed", "call passed", "teardown passed"] for outcome in tests.values())
     if not passed or not recorded["events"]:
         sys.exit(
-            f"{name}: {passed} tests passed and {recorded['events']} events were recorded, which tells nothing."
+            f"{name}: {passed} tests passed and {recorded['events']} events were recorded, which shows nothing."
         )
     note = f"{len(changed)}" + (f" ({len(restless)} differ between plain runs)" if restless else "")
     print(
@@ -188,7 +186,7 @@ def compared(name: str, folder: Path, python: Path, keep: Path | None) -> list[s
 
 
 def different(runs: list[Outcomes], *others: Outcomes) -> list[str]:
-    """Return the tests that have an outcome in `others` which they had in none of the runs."""
+    """Return the tests with an outcome in `others` that they had in none of the runs."""
     names = {name for one in (*runs, *others) for name in one}
     return sorted(
         name
@@ -198,7 +196,7 @@ def different(runs: list[Outcomes], *others: Outcomes) -> list[str]:
 
 
 def run(python: Path, suite: Suite, at: Path, folder: Path, *, record: bool) -> tuple[dict[str, Any], float]:
-    """Run a suite; return what became of its tests and the CPU seconds it took."""
+    """Run a suite; return the outcomes of its tests and the CPU seconds."""
     result = folder / "result.json"
     result.unlink(missing_ok=True)
     package = at / suite.package

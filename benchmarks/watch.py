@@ -1,12 +1,12 @@
-"""`tarl watch`: false alarms over whole lives, missions until a drift is seen, and what it costs.
+"""Measure `tarl watch`: false alarms over long streams, missions until a drift is detected, and cost.
 
     python benchmarks/watch.py alarms [--streams 2000]     # no drift, a fresh fixture for each stream
     python benchmarks/watch.py delays [--streams 20]       # a drift that begins at mission 0, 1,000 and 100,000
     python benchmarks/watch.py speed [--missions 1000000]  # the command on a log, CPU time and memory
 
-Beside it stand what people do by hand: a two-sample Kolmogorov-Smirnov test of the totals of the last 40 missions
-against those off-line, at 5 %, repeated every ten missions; and CUSUM of the totals on both sides (k = 0.5, h = 5),
-standardised by the mean and the deviation of the off-line missions.
+For comparison, two common methods: a two-sample Kolmogorov-Smirnov test of the totals of the last 40 missions
+against the recorded ones, at 5 %, repeated every ten missions; and two-sided CUSUM of the totals (k = 0.5, h = 5),
+standardised by mean and standard deviation of the recorded missions.
 """
 
 from __future__ import annotations
@@ -40,28 +40,28 @@ from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
 ALPHA = 0.05
-LIFE = 1000  # missions of a stream without drift, and at most after one began
+LIFE = 1000  # missions of a stream without drift, and the maximum after a drift began
 SIZES = (0.2, 0.5, 1.0)
 STARTS = (0, 1000, 100_000)
-DISTINCT = 5000  # missions that the log of the speed test is made of
+DISTINCT = 5000  # distinct missions in the log of the speed test
 WINDOW, EVERY = 40, 10
 METHODS = ("watch", "success", "mean", "world", "repeated KS", "CUSUM")
 
 
 @dataclass(frozen=True)
 class Alarms:
-    """With which mission each method raised its first alarm, counted from 1; None where it never did."""
+    """The mission, counted from 1, at which each method raised its first alarm; None if it never did."""
 
     first: dict[str, int | None]
 
     def after(self, method: str, start: int) -> int | None:
-        """Return how many missions after the start of a drift; None where there was none, or one before."""
+        """Return the missions from the start of a drift to the alarm; None without an alarm or with an earlier one."""
         found = self.first[method]
         return found - start if found is not None and found > start else None
 
 
 def watched(monitor: Monitor, missions: Sample, until: bool) -> None:
-    """Let a monitor take missions, portion by portion where the first alarm ends it."""
+    """Pass missions to a monitor; with `until` in portions, up to the first alarm."""
     if not until:
         monitor.take(missions, np.zeros(missions.episodes))
         return
@@ -111,7 +111,7 @@ def _first(raised: np.ndarray[tuple[int], np.dtype[np.int64]]) -> int | None:
 
 
 def repeated(offline: Floats, online: Floats) -> int | None:
-    """Return when the test of the last missions is first significant at 5 %."""
+    """Return the mission at which the test of the last missions is first significant at 5 %."""
     reference = np.sort(offline)
     n, m = len(offline), WINDOW
     critical = 1.3581 * np.sqrt((n + m) / (n * m))
@@ -126,7 +126,7 @@ def repeated(offline: Floats, online: Floats) -> int | None:
 
 
 def cusum(offline: Floats, online: Floats) -> int | None:
-    """Return when the sum of deviations beyond half a standard deviation first passes five of them."""
+    """Return the mission at which a CUSUM with k = 0.5 and h = 5 standard deviations first raises an alarm."""
     deviation = float(offline.std()) or 1.0
     low = high = 0.0
     for number, value in enumerate(((online - offline.mean()) / deviation).tolist(), 1):
@@ -137,7 +137,7 @@ def cusum(offline: Floats, online: Floats) -> int | None:
 
 
 def false_alarms(streams: int, worlds: Sequence[str]) -> None:
-    """Print how often each method raises an alarm where there is nothing."""
+    """Print how often each method raises an alarm without drift."""
     print(
         f"{streams} streams of {LIFE} missions without drift, each with a fresh fixture; share with any alarm"
     )
@@ -169,7 +169,7 @@ def _row(name: str, found: list[Alarms]) -> str:
 
 
 def delays(streams: int, long: int) -> None:
-    """Print how many missions pass until each method notices a drift; `long` streams have the longest quiet life."""
+    """Print the missions until each method detects a drift; `long` streams have the latest start of the drift."""
     print(
         "| drift begins at | size | streams | method | before it | noticed | median missions until | 90 % within |"
     )
@@ -186,7 +186,7 @@ def delays(streams: int, long: int) -> None:
 
 
 def _drifts(world: str, number: int, start: int) -> dict[float, Alarms]:
-    """Return what the methods say of each size of a drift after one and the same quiet life."""
+    """Return the alarms of all methods for each size of a drift, after the same missions without drift."""
     rng = generator(number, f"watch/delays/{world}/{start}")
     designed = pools(world, 0.0).designed
     recorded = fixture(designed, rng, total_range(world))
@@ -223,7 +223,7 @@ def _told(count: float) -> str:
 
 
 def speed(missions: int) -> None:
-    """Print what the command costs on a log of missions of ten steps over 24 places."""
+    """Print the cost of the command on a log of missions with ten steps over 24 places."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         size = _logged(folder, missions)
@@ -241,7 +241,7 @@ def speed(missions: int) -> None:
 
 
 def _loop() -> float:
-    """Return the CPU seconds of a plain loop: how fast the machine is at the moment."""
+    """Return the CPU seconds of a plain loop, a measure of the machine's current speed."""
     begin = process_time()
     total = 0
     for number in range(10_000_000):
@@ -283,25 +283,32 @@ def _logged(folder: Path, missions: int) -> int:
 def _steps(
     cells: list[list[int]], places: np.ndarray[tuple[int], np.dtype[np.int32]], reward: Floats
 ) -> dict[str, object]:
-    """Return the record that an observer writes of a node in which nothing is recorded."""
+    """Return the record that an observer writes for a node without recorded sites."""
     none, nothing = np.empty(0, np.int32), np.empty(0)
     chunk = Chunk(tuple(map(tuple, cells)), none, nothing, none, none, none, places, reward)
     return steps_record(chunk, [], 0)
 
 
 def main() -> None:
-    """Print the tables that were asked for."""
+    """Print the requested tables."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("part", choices=("alarms", "delays", "speed"))
     parser.add_argument(
-        "--streams", type=int, help="in all (alarms, default 2000) or of each world (delays, 20)"
+        "--streams",
+        type=int,
+        help="streams in total (alarms, default 2000) or per world (delays, default 20)",
     )
     parser.add_argument(
-        "--long", type=int, default=2, help="of each world with a quiet life of 100,000 (default 2)"
+        "--long",
+        type=int,
+        default=2,
+        help="streams per world with 100,000 missions before the drift (default 2)",
     )
-    parser.add_argument("--worlds", nargs="+", choices=WATCHED, default=WATCHED, help="of the false alarms")
+    parser.add_argument(
+        "--worlds", nargs="+", choices=WATCHED, default=WATCHED, help="worlds for the false alarms"
+    )
     parser.add_argument("--missions", type=int, default=10**6)
     asked = parser.parse_args()
     if asked.part == "alarms":

@@ -1,4 +1,4 @@
-"""Missions to watch, drawn from pools: a fresh fixture for each stream, then missions as designed or drifting."""
+"""Streams of missions drawn from pools: a new recording for each stream, then designed or drifting missions."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from pytest_tarl.learning.tables import END, Chain, Sample
 from pytest_tarl.seeds import episode_seed, generator
 from pytest_tarl.sensors import Sensor
 
-OFFLINE = 200  # missions of a fixture
-POOLED = {True: 3000, False: 1500}  # missions in a pool: as designed, drifting
+OFFLINE = 200  # missions of a recording
+POOLED = {True: 3000, False: 1500}  # missions in a pool: as designed (True), drifting
 POOLED_EXAMPLE = {True: 1000, False: 300}
 FAILING = 0.03  # share of the designed missions with the smallest totals, which count as failed
 Rows = NDArray[np.int64]
@@ -32,18 +32,18 @@ Generator = np.random.Generator
 
 
 def constant(rng: Generator) -> tuple[list[tuple[int, ...]], list[float]]:
-    """Draw a mission of equal length that costs the same in every step."""
+    """Draw a mission of fixed length with the same cost in every step."""
     return [(int(rng.integers(4)),) for _ in range(10)], [-0.1] * 10
 
 
 def heavy(rng: Generator) -> tuple[list[tuple[int, ...]], list[float]]:
-    """Draw a mission whose rewards have no variance to speak of."""
+    """Draw a mission whose rewards are heavy-tailed, with infinite variance."""
     steps = int(rng.integers(1, 6))
     return [(int(one),) for one in rng.integers(3, size=steps)], (rng.pareto(1.1, steps) - 1.0).tolist()
 
 
 def rare(rng: Generator) -> tuple[list[tuple[int, ...]], list[float]]:
-    """Draw a mission of one step that loses much once in fifty times."""
+    """Draw a mission of one step; one in fifty loses much."""
     return [(0,)], [-100.0 if rng.random() < 0.02 else 1.0]
 
 
@@ -52,13 +52,13 @@ SYNTHETIC: dict[str, Callable[[Generator], tuple[list[tuple[int, ...]], list[flo
     "heavy": heavy,
     "rare": rare,
 }
-UNBOUNDED = ("heavy",)  # whose totals no range holds
+UNBOUNDED = ("heavy",)  # worlds whose totals have no range
 WATCHED = (*WORLDS, *EXAMPLES, *SYNTHETIC)
 
 
 @dataclass(frozen=True)
 class Pools:
-    """Missions of one world, as designed and at some size of its drift, over one table of cells."""
+    """Missions of one world, as designed and at one size of its drift, with a common table of cells."""
 
     designed: Sample
     drifting: Sample
@@ -79,7 +79,7 @@ def _pool(world: str, size: float) -> Sample:
     if world in WORLDS:
         found = simulated(world, "hidden", size, POOLED[size == 0.0]).sample
     elif world in EXAMPLES:
-        with ProcessPoolExecutor(1) as fresh:  # each example has a module `world` of its own
+        with ProcessPoolExecutor(1) as fresh:  # each example has its own module `world`
             found = fresh.submit(recorded, world, size, POOLED_EXAMPLE[size == 0.0]).result().sample
     else:
         draws = (SYNTHETIC[world](generator(n, world)) for n in range(POOLED[True]))
@@ -91,7 +91,7 @@ def _pool(world: str, size: float) -> Sample:
 
 @cache
 def total_range(world: str) -> Range | None:
-    """Return what a marker would declare of a mission's total, with or without drift; None where nothing holds."""
+    """Return a range of a mission's total, with or without drift, as a marker would declare it; None without one."""
     if world in UNBOUNDED:
         return None
     totals = [_pool(world, size).total for size in ((0.0, 1.0) if world not in SYNTHETIC else (0.0,))]
@@ -100,9 +100,9 @@ def total_range(world: str) -> Range | None:
 
 
 def fixture(pool: Sample, rng: Generator, declared: Range | None = None) -> Fixture:
-    """Return a fixture of missions that are drawn with replacement, with the cells that they visit.
+    """Return a recording of missions drawn with replacement, with the cells that they visit.
 
-    It states what `--tarl-record` states of such missions: bounds of success and, within a declared range, of the mean.
+    It contains the bounds of `--tarl-record`: on success and, with a declared range, on the mean.
     """
     chosen = gathered(pool, rng.integers(pool.episodes, size=OFFLINE))
     seen = np.unique(chosen.chain.cell)
@@ -115,12 +115,12 @@ def fixture(pool: Sample, rng: Generator, declared: Range | None = None) -> Fixt
 
 
 def stream(pool: Sample, cells: tuple[tuple[int, ...], ...], count: int, rng: Generator) -> Sample:
-    """Return so many missions, drawn with replacement, over these cells and one more for all others."""
+    """Return `count` missions drawn with replacement, over these cells plus one for all others."""
     return _over(gathered(pool, rng.integers(pool.episodes, size=count)), pool, cells)
 
 
 def gathered(pool: Sample, rows: Rows) -> Sample:
-    """Return the missions in these rows, in their order, each as often as it is named."""
+    """Return the missions in these rows, in this order, with repetitions."""
     ends = np.searchsorted(pool.chain.episode, np.arange(pool.episodes + 1))
     lengths = (ends[1:] - ends[:-1])[rows]
     total = int(lengths.sum())
@@ -139,7 +139,7 @@ def gathered(pool: Sample, rows: Rows) -> Sample:
 
 
 def _over(chosen: Sample, pool: Sample, cells: tuple[tuple[int, ...], ...]) -> Sample:
-    """Return missions with their cells numbered as in `cells`, all others as the one after the last."""
+    """Return missions with cells numbered as in `cells`; all others get the number after the last."""
     number = {cell: row for row, cell in enumerate(cells)}
     place = np.array([*(number.get(cell, len(cells)) for cell in pool.cells), END], np.int64)
     chain = chosen.chain

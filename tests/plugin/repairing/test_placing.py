@@ -249,7 +249,8 @@ def test_a_definition_that_other_code_depends_on_stays(worn: pytest.Pytester) ->
     assert where == "keeper.py:23 GAIN"
     assert "* GAIN * missing" in lines
     assert (
-        "`GAIN` is changed at its use: changed where it is defined, at keeper.py:4, it does not bring" in told
+        "`GAIN` is changed at its use, because a change of its definition at keeper.py:4 does not restore"
+        in told
     )
 
 
@@ -263,7 +264,7 @@ def test_other_users_are_named_and_their_tests_run(worn: pytest.Pytester) -> Non
     worn.runpytest(*RECORD).assert_outcomes(passed=2, deselected=2)
     done = worn.runpytest(*REPAIR)
     told = " ".join(done.stdout.str().split())
-    assert "GAIN at settings.py:1 is used by tool.py" in told
+    assert "GAIN at settings.py:1 is also used by tool.py" in told
     (patch,) = worn.path.glob(".tarl/patches/test-tank-*.patch")
     assert "# other test: test_again.py::test_fills_again: " in patch.read_text()
 
