@@ -4,13 +4,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from pytest_tarl import faults
     from pytest_tarl.drifts import Drift
     from pytest_tarl.episode import Tarl
     from pytest_tarl.formulas.signals import Signal
     from pytest_tarl.searching.ask_tell import Constant, Optimiser
     from pytest_tarl.sensors import Sensor
 
-__all__ = ["Constant", "Drift", "Optimiser", "Sensor", "Signal", "Tarl"]
+__all__ = ["Constant", "Drift", "Optimiser", "Sensor", "Signal", "Tarl", "faults"]
 
 _HOMES = {
     "Constant": "pytest_tarl.searching.ask_tell",
@@ -31,4 +32,6 @@ def __getattr__(name: str) -> Any:
         if sentence is not None:
             raise ImportError(sentence)
         return getattr(import_module(_HOMES[name]), name)
+    if name == "faults":
+        return import_module("pytest_tarl.faults")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -13,9 +13,10 @@ from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
 
-from pytest_tarl.drifts import Drift, combined, drawn
+from pytest_tarl.drifts import Drift, combined, drawn, drawn_point
 from pytest_tarl.errors import SettingsError
 from pytest_tarl.files import slug
+from pytest_tarl.spaces import Fault, Point, Space
 
 AS_WRITTEN = "none"  # the drift name that records the world as its author wrote it
 _HEADER = "header.npy"
@@ -51,21 +52,45 @@ def adopting(design: tuple[str, ...], name: str | None, drifts: Mapping[str, Dri
     return (*former, name)
 
 
-def value(drifts: Mapping[str, Drift], design: tuple[str, ...], scenario: str | None, seed: int) -> Any:
+def value(
+    drifts: Mapping[str, Drift],
+    design: tuple[str, ...],
+    scenario: str | None,
+    seed: int,
+    point: Point | None = None,
+) -> Any:
     """Return the value of `tarl_drift` in a seed's episode: the design, changed by the scenario; None without either.
 
-    Raise SettingsError if the marker no longer declares a drift of the design.
+    The design holds the nominal values of all spaces. A scenario that is a space has the values of `point`, or of one
+    that the episode draws. Raise SettingsError if the marker no longer declares a drift of the design.
     """
     gone = next((name for name in design if name not in drifts), None)
+    nominal = [one.world(one.nominal) for one in spaces(drifts).values()]
     if scenario == AS_WRITTEN and scenario not in drifts:
-        return None
+        return combined(nominal) if nominal else None
     if gone is not None:
         raise SettingsError(
             f"The recording has the drift {gone!r} as part of the design, but the marker no longer declares it: "
             f"declare it again, or record the world without it by `--tarl-record --tarl-drift {AS_WRITTEN}`."
         )
     names = [name for name in (*design, scenario) if name is not None]
-    return combined([drawn(drifts[name], name, seed) for name in names]) if names else None
+    values = [*nominal, *(drawn(drifts[name], name, seed, point) for name in names)]
+    return combined(values) if values else None
+
+
+def spaces(drifts: Mapping[str, Drift]) -> Mapping[str, Space]:
+    """Return the drifts that are spaces, by name."""
+    return {name: one.value for name, one in drifts.items() if isinstance(one.value, Space)}
+
+
+def faults(
+    drifts: Mapping[str, Drift], scenario: str | None, seed: int, point: Point | None = None
+) -> Mapping[str, tuple[Fault, float]]:
+    """Return the faults of a seed's episode and their sizes, by direction; none in the design."""
+    space = spaces(drifts).get(scenario or "")
+    if space is None or scenario is None:
+        return {}
+    return space.active(drawn_point(space, scenario, seed) if point is None else point)
 
 
 def replaced(drifts: Mapping[str, Drift], design: tuple[str, ...], scenario: str | None) -> str:

@@ -1,22 +1,16 @@
-"""Values of drift scenarios: a plain value, a range from which each episode draws, or a dictionary of them."""
+"""Values of drift scenarios: a plain value, a range or options from which each episode draws, a dictionary, a space."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite
 from typing import Any
 
-from pytest_tarl import seeds
+from pytest_tarl import seeds, spaces
 from pytest_tarl.errors import SettingsError
+from pytest_tarl.spaces import Choice, Fault, Point, Space, Span
 
-
-@dataclass(frozen=True, slots=True)
-class Span:
-    """A closed range of numbers, from which each episode draws uniformly."""
-
-    low: float
-    high: float
+_FIRST = object()  # the default of Drift.choice: its first option is nominal
 
 
 @dataclass(frozen=True)
@@ -30,14 +24,38 @@ class Drift:
     permanent: bool = False
 
     @classmethod
-    def range(cls, low: float, high: float, *, permanent: bool = False) -> Drift:
-        """Return a drift whose size varies between episodes. Raise SettingsError for an invalid range."""
-        numbers = all(isinstance(end, int | float) and not isinstance(end, bool) for end in (low, high))
-        if not numbers or not isfinite(low) or not isfinite(high) or not low < high:
+    def range(
+        cls, low: float, high: float, *, nominal: float | None = None, permanent: bool = False
+    ) -> Drift:
+        """Return a drift whose size varies between episodes; a range of a space needs its nominal value.
+
+        Raise SettingsError for an invalid range.
+        """
+        return cls(spaces.span(f"Drift.range({low!r}, {high!r})", low, high, nominal), permanent)
+
+    @classmethod
+    def choice(cls, *options: Any, nominal: Any = _FIRST, permanent: bool = False) -> Drift:
+        """Return a drift that is one of the options in each episode; the first one is nominal unless stated.
+
+        Raise SettingsError for fewer than two options, or a nominal value that is none of them.
+        """
+        usual = options[0] if options and nominal is _FIRST else nominal
+        return cls(spaces.choice(options, usual), permanent)
+
+    @classmethod
+    def space(cls, **directions: Drift | Fault) -> Drift:
+        """Return a drift that may change in several directions, each a range with a nominal value, a choice or a fault.
+
+        Raise SettingsError for another direction, or a range without a nominal value.
+        """
+        parts = {name: one.value if isinstance(one, Drift) else one for name, one in directions.items()}
+        lasting = [name for name, one in directions.items() if isinstance(one, Drift) and one.permanent]
+        if lasting:
             raise SettingsError(
-                f"Drift.range({low!r}, {high!r}): give two finite numbers, the smaller one first."
+                f"Drift.space: {lasting[0]!r} is permanent, but a space has no single world to keep: remove "
+                "permanent=True, or declare the changed value as a drift of its own."
             )
-        return cls(Span(float(low), float(high)), permanent)
+        return cls(spaces.space(parts))
 
     @property
     def spans(self) -> Mapping[str, Span]:
@@ -50,7 +68,16 @@ def drift(where: str, name: str, value: Any) -> Drift:
     whole = value if isinstance(value, Drift) else Drift(value)
     if isinstance(whole.value, Drift):
         raise SettingsError(f"{where}: the drift {name!r} is a Drift inside a Drift: remove one of them.")
+    if isinstance(whole.value, Space) and whole.permanent:
+        raise SettingsError(
+            f"{where}: the drift {name!r} is a space, which cannot be permanent: declare the changed value as a drift "
+            "of its own."
+        )
     parts = list(_parts(whole.value))
+    if any(isinstance(inner.value, Space) for _, inner in parts):
+        raise SettingsError(
+            f"{where}: the drift {name!r} has a Drift.space inside a dictionary: make the space the whole drift."
+        )
     lasting = [part for part, inner in parts if inner.permanent]
     passing = [part for part, inner in parts if not inner.permanent]
     if lasting and passing and not whole.permanent:
@@ -61,9 +88,19 @@ def drift(where: str, name: str, value: Any) -> Drift:
     return Drift(whole.value, whole.permanent or bool(lasting))
 
 
-def drawn(whole: Drift, name: str, seed: int) -> Any:
-    """Return the value of the scenario `name` in a seed's episode: plain values, one drawn from every range."""
+def drawn(whole: Drift, name: str, seed: int, point: Point | None = None) -> Any:
+    """Return the value of the scenario `name` in a seed's episode: plain values, one drawn from every range.
+
+    A space has the values of `point`, or of a drawn one.
+    """
+    if isinstance(whole.value, Space):
+        return whole.value.world(drawn_point(whole.value, name, seed) if point is None else point)
     return _plain(whole.value, name, seed)
+
+
+def drawn_point(space: Space, name: str, seed: int) -> Point:
+    """Return the point that a seed's episode draws from the space of the scenario `name`."""
+    return {part: _number(extent, _stream(name, part), seed) for part, extent in space.extents.items()}
 
 
 def sizes(whole: Drift, name: str, seed: int) -> Mapping[str, float]:
@@ -89,6 +126,8 @@ def _spans(value: Any, part: str) -> Iterator[tuple[str, Span]]:
         yield from _spans(value.value, part)
     elif isinstance(value, Span):
         yield part, value
+    elif isinstance(value, Space):
+        yield from _spans(value.extents, part)
     elif isinstance(value, Mapping):
         for key, inner in value.items():
             yield from _spans(inner, _stream(part, str(key)))
@@ -99,9 +138,18 @@ def _plain(value: Any, stream: str, seed: int) -> Any:
         return _plain(value.value, stream, seed)
     if isinstance(value, Span):
         return _draw(value, stream, seed)
+    if isinstance(value, Choice):
+        return spaces.value_of(value, _number(value, stream, seed))
     if isinstance(value, Mapping):
         return {key: _plain(inner, _stream(stream, str(key)), seed) for key, inner in value.items()}
     return value
+
+
+def _number(extent: Span | Choice, stream: str, seed: int) -> float:
+    if isinstance(extent, Span):
+        return _draw(extent, stream, seed)
+    count = len(extent.options)
+    return float(min(int(count * seeds.uniform(seed, f"drift {stream}")), count - 1))
 
 
 def _draw(span: Span, stream: str, seed: int) -> float:

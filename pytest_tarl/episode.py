@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from pytest_tarl import seeds
-from pytest_tarl.errors import RecordingError, SettingsError
+from pytest_tarl.errors import RecordingError, SettingsError, TarlError
+from pytest_tarl.faults.installing import NO_FAULTS, Faults
 from pytest_tarl.formulas.declared import NOTHING_REQUIRED, Requirements
 from pytest_tarl.formulas.episode import EpisodeFormulas
 from pytest_tarl.formulas.judging import Judged
@@ -46,6 +47,7 @@ class Tarl:
         replay: Replay | None = None,
         requirements: Requirements = NOTHING_REQUIRED,
         alone: bool = False,
+        faults: Faults = NO_FAULTS,
     ) -> None:
         self.seed = seed
         self.drives_ros = False
@@ -53,6 +55,7 @@ class Tarl:
         self._kind = kind
         self._nodes = tuple(nodes)
         self._replay = replay
+        self._faults = NO_FAULTS if replay is not None else faults  # a bag has the faults of its world
         self._recorder = recorder
         self._imports = imports
         self._rewards = 0
@@ -87,6 +90,7 @@ class Tarl:
             if self._replay is not None:
                 self._replay.begin(self._ros)
             self._origin = self._ros.scheduler.time
+            self._faults.install(self._ros)
         return self._ros
 
     @property
@@ -231,7 +235,7 @@ class Tarl:
         started = self._ros.notes if self._ros is not None else ()
         return (*ended, *missing, *started, *(self._replay.notes if self._replay is not None else ()))
 
-    def problem(self) -> RecordingError | None:
+    def problem(self) -> TarlError | None:
         """Return why the episode is unusable (no reward, silent sensor, silent node), or None if it is usable."""
         if self._replay is not None:
             return self._unplayed(self._replay)
@@ -245,7 +249,9 @@ class Tarl:
                 "The test never called tarl.reward: call it once in each simulation step, for example "
                 "tarl.reward(world.monitor())."
             )
-        problem = self._situation.problem()
+        if self._faults.active:
+            return None  # silence is what the faults do
+        problem = self._situation.problem() or self._unmet()
         if problem is not None:
             return problem
         if self.drives_ros and not self.ros.published:
@@ -254,6 +260,16 @@ class Tarl:
                 "The node published nothing in the whole episode, so nothing can be learned: check that it receives "
                 f"the messages that it waits for (it subscribes to {heard})."
             )
+        return None
+
+    def _unmet(self) -> SettingsError | None:
+        """Return why a declared fault has no topic or node; None if all have."""
+        if self._ros is None:
+            return None
+        try:
+            self._faults.check(self._ros)
+        except SettingsError as problem:
+            return problem
         return None
 
     def _unplayed(self, replay: Replay) -> RecordingError | None:

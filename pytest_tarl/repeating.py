@@ -31,6 +31,7 @@ from pytest_tarl.seeds import episode_seed
 if TYPE_CHECKING:
     from pytest_tarl.bags.replay import Replay
     from pytest_tarl.episode import Tarl
+    from pytest_tarl.faults.installing import Faults
     from pytest_tarl.formulas.judging import Judged
     from pytest_tarl.instrumentation.sites import Positions
     from pytest_tarl.instrumentation.trace import Trace
@@ -116,6 +117,7 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         replay=replay,
         requirements=episode.designation.requirements,
         alone=EPISODE not in item.stash,
+        faults=_faults(episode),
     )
     data = {path: text for path, text in episode.plan.overlay.items() if is_data(path)}
     try:
@@ -131,6 +133,16 @@ def opened(item: pytest.Item) -> Iterator[Tarl]:
         finally:
             tarl.close()
             episode.notes, episode.older = tarl.notes(), imports.older
+
+
+def _faults(episode: Episode) -> Faults:
+    """Return the faults of the episode's drift, and those that its test declares."""
+    from pytest_tarl import design
+    from pytest_tarl.faults.installing import Faults
+
+    drifts, plan = episode.designation.drifts, episode.plan
+    declared = {name: one for space in design.spaces(drifts).values() for name, one in space.faults.items()}
+    return Faults(declared, design.faults(drifts, plan.drift, plan.seed, plan.point), plan.seed)
 
 
 def _replay(episode: Episode) -> Replay | None:
@@ -157,7 +169,7 @@ def drift_value(item: pytest.Item) -> Any:
     episode = _episode(item)
     path = design.fixture_path(item.config.rootpath, without_drift(item))
     drifts, plan = episode.designation.drifts, episode.plan
-    return design.value(drifts, design.adopted(path) if drifts else (), plan.drift, plan.seed)
+    return design.value(drifts, design.adopted(path) if drifts else (), plan.drift, plan.seed, plan.point)
 
 
 def keep_error(item: pytest.Item, error: BaseException, report: pytest.TestReport) -> None:

@@ -19,7 +19,8 @@ KEPT = 6  # begun episodes per worker kept while others are requested
 class EpisodePlan:
     """One run of the designated test. `overlay` replaces the text of files; `record` instruments the nodes.
 
-    With a `bag`, its recorded mission replaces the test's world.
+    With a `bag`, its recorded mission replaces the test's world. A `point` is one of the space `drift`; without it,
+    the episode draws one.
     """
 
     seed: int
@@ -27,6 +28,7 @@ class EpisodePlan:
     overlay: Mapping[Path, str] = field(default_factory=dict)
     record: bool = False
     bag: Path | None = None
+    point: Mapping[str, float] | None = None
 
 
 @dataclass(frozen=True)

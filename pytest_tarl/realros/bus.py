@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
-from pytest_tarl.errors import RecordingError
+from pytest_tarl.errors import RecordingError, UnsupportedApiError
 from pytest_tarl.realros.lockstep import WireScheduler
-from pytest_tarl.ros.bus import Bus, Topic
+from pytest_tarl.ros.bus import Bus, Channel, Topic
 from pytest_tarl.ros.episode import Ros
 from pytest_tarl.ros.hosttime import virtual_host_time
 from pytest_tarl.ros.launched import Given
@@ -43,6 +43,12 @@ class RealBus(Bus):
             self._scheduler.later(lambda: self._publish(place, message, latch))
             return
         self._run(self._publish, place, message, latch)
+
+    def interpose(self, topic: str, channel: Channel) -> None:  # noqa: ARG002
+        """Refuse: messages of an installed ROS do not pass through this process alone."""
+        raise UnsupportedApiError(
+            f"The fault of {topic} needs the in-process ROS: remove --tarl-ros, or the fault from the marker."
+        )
 
     def disconnect(self, process: Program) -> None:
         """Do nothing: an ended process receives no messages."""

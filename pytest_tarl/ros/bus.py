@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any, Protocol
 
 from pytest_tarl.errors import RecordingError, UnsupportedApiError
+from pytest_tarl.ros.clock import nanoseconds, seconds
 from pytest_tarl.ros.messages.snapshot import snapshot, stamp_if_unset, type_name
 from pytest_tarl.ros.messages.values import FieldError
 from pytest_tarl.ros.names import absolute
@@ -15,6 +16,9 @@ from pytest_tarl.ros.scheduler import Program, Scheduler, running_task
 from pytest_tarl.ros.services import Reply, ServiceDirectory
 
 Listener = Callable[[Any], None]
+Channel = Callable[
+    [Any, float], Iterable[tuple[float, Any]]
+]  # (message, time in s) → delays in s, and messages
 
 
 class Subscription(Protocol):
@@ -50,6 +54,8 @@ class Topic:
         self.listeners: list[Listener] = []
         self.latest: Any = None
         self.kept: dict[Any, Any] = {}
+        self.channels: list[Channel] = []  # the faults that messages pass through
+        self.carried = False  # whether anything was ever published
 
 
 class Bus:
@@ -84,6 +90,10 @@ class Bus:
         except FieldError as error:
             raise RecordingError(f"The message published on {place.name} is not valid: {error}.") from error
         stamp_if_unset(message, self._scheduler.time)
+        place.carried = True
+        if place.channels:
+            self._pass(place, message, lambda one: self._deliver(place, one, False))
+            return
         if latch:
             place.kept[None] = snapshot(message)
         if running_task() is not None:  # called within a node's publish: the node continues first
@@ -152,6 +162,16 @@ class Bus:
         """Publish a copy of a node's message: to the world at once, to other nodes when this one waits."""
         message = snapshot(message)
         self.published[place.name] += 1
+        place.carried = True
+        if place.channels:
+            self._pass(place, message, lambda one: self._emit(publication, place, one, keep))
+        else:
+            self._emit(publication, place, message, keep)
+        if running_task() is None:
+            self._run(lambda: None)
+
+    def _emit(self, publication: Publication, place: Topic, message: Any, keep: int) -> None:
+        """Let the world hear a node's message, and other nodes when the running one waits."""
         place.latest = message
         if keep:
             place.kept[publication] = message
@@ -159,8 +179,28 @@ class Bus:
             self._tell(listener, message)
         if place.subscriptions or self._observers:
             self._scheduler.later(lambda: self._deliver(place, message, False, publication))
-        if running_task() is None:
-            self._run(lambda: None)
+
+    def interpose(self, topic: str, channel: Channel) -> None:
+        """Let all messages on a topic pass through a channel, after those that it passes through already."""
+        self.topic(topic).channels.append(channel)
+
+    def _pass(self, place: Topic, message: Any, arrive: Callable[[Any], None]) -> None:
+        """Call `arrive` with what comes out of a topic's channels: now, or when its delay is over."""
+        now = self._scheduler.time
+        arrivals: list[tuple[float, Any]] = [(0.0, message)]
+        for channel in place.channels:
+            arrivals = [
+                (delay + more, changed)
+                for delay, one in arrivals
+                for more, changed in channel(one, seconds(now) + delay)
+            ]
+        for delay, one in arrivals:
+            if delay > 0.0:
+                self._scheduler.at(now + nanoseconds(delay), partial(arrive, one))
+            elif running_task() is not None:
+                self._scheduler.later(partial(arrive, one))
+            else:
+                self._run(arrive, one)
 
     def _tell(self, listener: Listener, message: Any) -> None:
         try:

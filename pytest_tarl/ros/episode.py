@@ -96,6 +96,25 @@ class Ros(Network):
         with command_line(process.argv):
             self._run(process.run, run)
 
+    def interrupt(self, name: str, at: float, outage: float) -> None:
+        """Kill the node started as `name` at the moment `at`, and start it anew `outage` seconds later, both in s."""
+
+        def kill() -> None:
+            running = next((one for one in self.processes if one.name == name and not one.ended), None)
+            if running is None:
+                return
+            running.kill()
+            self.scheduler.at(self.scheduler.time + nanoseconds(outage), lambda: revive(running))
+
+        def revive(old: Process) -> None:
+            process = Process(self, name, old.argv[1:])
+            process.launched = old.launched
+            self.processes.append(process)
+            with command_line(process.argv):
+                process.run(old.program)
+
+        self.scheduler.at(nanoseconds(at), kill)
+
     def step(self, dt: float) -> None:
         """Advance virtual time by `dt` seconds and run everything due, until every node waits again.
 

@@ -65,6 +65,7 @@ class Process:
         self.argv = tuple(argv)
         self.tasks: list[Task] = []
         self.main: Task | None = None
+        self.program: Callable[[], None] = lambda: None
         self.ending = False
         self.ended = False
         self._closing = False
@@ -98,6 +99,7 @@ class Process:
 
     def run(self, program: Callable[[], None]) -> None:
         """Start the main program."""
+        self.program = program
         self.scheduler.spawn(self, self._run_main, program)
 
     def _run_main(self, program: Callable[[], None]) -> None:
@@ -138,6 +140,15 @@ class Process:
                 break
             for task in tuple(self.tasks):
                 self.scheduler.wake(task)
+        for _ in range(_ROUNDS):
+            for task in tuple(self.tasks):
+                self.scheduler.kill(task)
+        self.ended = True
+        self.bus.disconnect(self)
+
+    def kill(self) -> None:
+        """End the process at once, as SIGKILL does: no hook of it runs. Outside of tasks."""
+        self._closing = self.ending = True
         for _ in range(_ROUNDS):
             for task in tuple(self.tasks):
                 self.scheduler.kill(task)

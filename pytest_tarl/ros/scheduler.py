@@ -119,6 +119,7 @@ class Scheduler:
         self.time = 0
         self.failure: BaseException | None = None
         self._sleeping: list[tuple[int, int, Task, int]] = []
+        self._alarms: list[tuple[int, int, Callable[[], None]]] = []
         self._ready: deque[Callable[[], None]] = deque()
         self._sequence = 0
         self._running: Task | None = None
@@ -167,6 +168,11 @@ class Scheduler:
         """Call a function outside of tasks, as soon as the running task waits."""
         self._ready.append(job)
 
+    def at(self, instant: int, job: Callable[[], None]) -> None:
+        """Call a function outside of tasks at an instant (ns), before the tasks that wake then."""
+        self._sequence += 1
+        heappush(self._alarms, (instant, self._sequence, job))
+
     def settle(self) -> None:
         """Run until no task is ready at the current instant."""
         ready = self._ready
@@ -174,7 +180,18 @@ class Scheduler:
             ready.popleft()()
 
     def advance(self, until: int) -> None:
-        """Move the clock to `until` (ns); run tasks that fall due, in order of their instants."""
+        """Move the clock to `until` (ns); run tasks and alarms that fall due, in order of their instants."""
+        while self._alarms and self._alarms[0][0] <= until and self.failure is None:
+            instant, _, job = self._alarms[0]
+            self._advance(instant - 1)
+            if self._alarms[0][2] is job:  # no earlier one was set meanwhile
+                heappop(self._alarms)
+                self.time = max(self.time, instant)
+                job()
+        self._advance(until)
+
+    def _advance(self, until: int) -> None:
+        """Move the clock to `until`, at which no alarm is due before the last instant."""
         if self._ready:
             self.settle()
         sleeping = self._sleeping
@@ -190,7 +207,7 @@ class Scheduler:
             if self._ready:
                 self.settle()
         if self.failure is None:
-            self.time = until
+            self.time = max(self.time, until)
 
     def kill(self, task: Task) -> None:
         """Kill a task at the place where it waits."""

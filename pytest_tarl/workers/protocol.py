@@ -44,7 +44,8 @@ def plan_message(plan: EpisodePlan) -> bytes:
     """Encode a plan."""
     overlay = {str(path): text for path, text in plan.overlay.items()}
     head = {"seed": str(plan.seed), "drift": plan.drift, "overlay": overlay, "record": plan.record}
-    return _joined({**head, "bag": str(plan.bag or "")}, {})
+    point = None if plan.point is None else dict(plan.point)
+    return _joined({**head, "bag": str(plan.bag or ""), "point": point}, {})
 
 
 def planned(message: bytes) -> EpisodePlan:
@@ -52,7 +53,7 @@ def planned(message: bytes) -> EpisodePlan:
     head, _ = _parted(message)
     overlay = {Path(path): text for path, text in head["overlay"].items()}
     bag = Path(head["bag"]) if head["bag"] else None
-    return EpisodePlan(int(head["seed"]), head["drift"], overlay, head["record"], bag)
+    return EpisodePlan(int(head["seed"]), head["drift"], overlay, head["record"], bag, head["point"])
 
 
 def run_message(run: EpisodeRun) -> bytes:

@@ -1,0 +1,32 @@
+"""A frozen value, as of a driver that repeats its last reading while the sensor is gone."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.faults.topic import Arrivals, Channel, TopicFault, of_topic, up_to
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+def freeze(topic: str, most: float, *, at: float = 0.0) -> TopicFault:
+    """Return a fault that repeats the topic's last message for up to `most` seconds, from the moment `at` on.
+
+    Raise SettingsError for an invalid moment.
+    """
+    if isinstance(at, bool) or not isinstance(at, int | float) or not 0 <= at < float("inf"):
+        raise SettingsError(f"faults.freeze: at must be a moment in seconds, 0 or later, got {at!r}.")
+
+    def begin(size: float, _draws: np.random.Generator) -> Channel:
+        last: list[Any] = []
+
+        def held(message: Any, now: float) -> Arrivals:
+            if not last or not at <= now < at + size:
+                last[:] = [message]
+            return [(0.0, last[0])]
+
+        return held
+
+    return of_topic("freeze", topic, up_to("freeze", most), begin)

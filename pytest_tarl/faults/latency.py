@@ -1,0 +1,19 @@
+"""A constant delay, as of slow processing or a long network path; stamps stay as they were sent."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pytest_tarl.faults.topic import Channel, TopicFault, of_topic, up_to
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+def latency(topic: str, most: float) -> TopicFault:
+    """Return a fault that delays each message by up to `most` seconds."""
+
+    def begin(size: float, _draws: np.random.Generator) -> Channel:
+        return lambda message, _: [(size, message)]
+
+    return of_topic("latency", topic, up_to("latency", most), begin)

@@ -1,0 +1,16 @@
+"""Rounding, as of an encoder with fewer counts or a converter with fewer bits."""
+
+from __future__ import annotations
+
+from pytest_tarl.faults.topic import TopicFault, of_field, up_to
+
+
+def quantisation(topic: str, field: str, most: float) -> TopicFault:
+    """Return a fault that rounds a field to multiples of a step up to `most`; values that are not finite stay."""
+
+    def rounded(x: float, step: float) -> float:
+        return x if x - x != 0.0 else round(x / step) * step
+
+    return of_field(
+        "quantisation", topic, field, up_to("quantisation", most), lambda size, _: lambda x: rounded(x, size)
+    )

@@ -1,0 +1,48 @@
+"""A node that dies and comes back, as one that crashes and is respawned by its launch file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.faults.topic import up_to
+from pytest_tarl.spaces import Span
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+@dataclass(frozen=True)
+class NodeRestart:
+    """The end of a node's process at the moment `at`, in s, and its start anew after an outage, its size in s."""
+
+    node: str
+    at: float
+    extent: Span
+
+    def install(self, ros: Any, name: str, size: float, draws: np.random.Generator) -> None:  # noqa: ARG002
+        """Plan the end and the new start of the node."""
+        ros.interrupt(self.node, self.at, size)
+
+    def check(self, ros: Any, name: str) -> None:
+        """Raise SettingsError if no node of that name was started."""
+        started = sorted({process.name for process in ros.processes})
+        if self.node not in started:
+            raise SettingsError(
+                f"faults.restart of {name!r}: no node was started as {self.node!r}; the nodes are "
+                f"{', '.join(started) or 'none'}. Correct the name in the marker: it is the script's, without .py, or "
+                "the name given to tarl.start."
+            )
+
+
+def restart(node: str, most: float, *, at: float) -> NodeRestart:
+    """Return a fault that ends a node at the moment `at` and starts it again after up to `most` seconds.
+
+    The new process has lost what the old one knew. Raise SettingsError for an invalid name or moment.
+    """
+    if not isinstance(node, str) or not node:
+        raise SettingsError(f"faults.restart: name the node that tarl.start starts, got {node!r}.")
+    if isinstance(at, bool) or not isinstance(at, int | float) or not 0 < at < float("inf"):
+        raise SettingsError(f"faults.restart: at must be a moment in seconds, after 0, got {at!r}.")
+    return NodeRestart(node, float(at), up_to("restart", most))

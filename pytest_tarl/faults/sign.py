@@ -1,0 +1,10 @@
+"""A wrong sign, as of a motor or an encoder with swapped wires, or of another convention for an axis."""
+
+from __future__ import annotations
+
+from pytest_tarl.faults.topic import OFF_ON, TopicFault, of_field
+
+
+def sign(topic: str, field: str) -> TopicFault:
+    """Return a fault that negates a field, or does not."""
+    return of_field("sign", topic, field, OFF_ON, lambda _size, _draws: lambda x: -x)

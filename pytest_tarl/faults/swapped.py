@@ -1,0 +1,29 @@
+"""Two swapped axes, as of a sensor that was mounted turned, or of another frame convention."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from typing import TYPE_CHECKING, Any
+
+from pytest_tarl.faults.fields import store
+from pytest_tarl.faults.topic import OFF_ON, Arrivals, Channel, TopicFault
+from pytest_tarl.sensors import field_value
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+def swapped(topic: str, first: str, second: str) -> TopicFault:
+    """Return a fault that exchanges the values of two fields, or does not."""
+
+    def exchange(message: Any, _now: float) -> Arrivals:
+        copy = deepcopy(message)
+        one, other = field_value(message, first), field_value(message, second)
+        store(copy, first, other)
+        store(copy, second, one)
+        return [(0.0, copy)]
+
+    def begin(_size: float, _draws: np.random.Generator) -> Channel:
+        return exchange
+
+    return TopicFault("swapped", topic, OFF_ON, begin, f"{first}, {second}")

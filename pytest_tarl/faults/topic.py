@@ -1,0 +1,104 @@
+"""What all faults of a topic have in common: a channel through which its messages pass."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.faults.fields import altered, no_such_field
+from pytest_tarl.spaces import Choice, Span, span
+
+if TYPE_CHECKING:
+    import numpy as np
+
+Arrivals = Iterable[tuple[float, Any]]  # delays in s, and messages
+Channel = Callable[[Any, float], Arrivals]  # (message, virtual time in s) → what arrives of it, in this order
+OFF_ON = Choice((False, True))
+
+
+@dataclass(frozen=True)
+class TopicFault:
+    """A fault of all messages on one topic; `begin` makes an episode's channel from its size and random numbers."""
+
+    kind: str
+    topic: str
+    extent: Span | Choice
+    begin: Callable[[float, np.random.Generator], Channel]
+    field: str = ""
+
+    def install(self, ros: Any, name: str, size: float, draws: np.random.Generator) -> None:
+        """Let the topic's messages pass through the fault. Raise SettingsError at a message without its field."""
+        channel = self.begin(size, draws)
+
+        def passed(message: Any, now: float) -> Arrivals:
+            try:
+                return channel(message, now)
+            except (AttributeError, IndexError, KeyError, TypeError) as problem:
+                raise no_such_field(name, self.kind, self.topic, self.field, message) from problem
+
+        ros.bus.interpose(self.topic, passed)
+
+    def check(self, ros: Any, name: str) -> None:
+        """Raise SettingsError if an episode had no message on the topic."""
+        carried = sorted(place.name for place in ros.bus.topics() if place.carried)
+        if ros.bus.topic(self.topic).carried:
+            return
+        raise SettingsError(
+            f"faults.{self.kind} of {name!r}: no message was published on {self.topic}; the topics with messages are "
+            f"{', '.join(carried) or 'none'}. Correct the topic in the marker."
+        )
+
+
+def of_field(
+    kind: str,
+    topic: str,
+    field: str,
+    extent: Span | Choice,
+    change: Callable[[float, np.random.Generator], Callable[[float], float]],
+) -> TopicFault:
+    """Return a fault that changes each number of a field apart. Raise SettingsError for an invalid topic or field."""
+    _text(kind, "topic", topic)
+    _text(kind, "field", field)
+
+    def begin(size: float, draws: np.random.Generator) -> Channel:
+        changed = change(size, draws)
+        return lambda message, _: [(0.0, altered(message, field, changed))]
+
+    return TopicFault(kind, topic, extent, begin, field)
+
+
+def of_topic(
+    kind: str, topic: str, extent: Span | Choice, begin: Callable[[float, np.random.Generator], Channel]
+) -> TopicFault:
+    """Return a fault of whole messages. Raise SettingsError for an invalid topic."""
+    _text(kind, "topic", topic)
+    return TopicFault(kind, topic, extent, begin)
+
+
+def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
+    """Return the sizes of a fault, of which `none` means no fault. Raise SettingsError if it is not among them."""
+    found = span(f"faults.{kind}(…, {low!r}, {high!r})", low, high, None)
+    if not found.low <= none <= found.high:
+        raise SettingsError(
+            f"faults.{kind}(…, {low!r}, {high!r}): the sizes must include {none:g}, the nominal one, which is no fault."
+        )
+    return Span(found.low, found.high, none)
+
+
+def up_to(kind: str, most: Any, limit: float | None = None) -> Span:
+    """Return the sizes from 0, no fault, to `most`. Raise SettingsError unless it is positive, up to `limit`."""
+    given = isinstance(most, int | float) and not isinstance(most, bool)
+    if not given or not 0 < most < float("inf") or (limit is not None and most > limit):
+        upper = "" if limit is None else f", at most {limit:g}"
+        raise SettingsError(f"faults.{kind}: the largest size must be a number above 0{upper}, got {most!r}.")
+    return Span(0.0, float(most), 0.0)
+
+
+def _text(kind: str, what: str, value: Any) -> None:
+    if not isinstance(value, str) or not value:
+        raise SettingsError(
+            f'faults.{kind}: give the {what} as text, for example "{"/odom" if what == "topic" else "data"}", got '
+            f"{value!r}."
+        )

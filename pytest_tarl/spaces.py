@@ -1,0 +1,140 @@
+"""Spaces of drifts: the directions in which a world may change, each with a nominal value.
+
+A point of a space holds one number per direction, by name: the value of a range, or the index of an option.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import TYPE_CHECKING, Any, Protocol
+
+from pytest_tarl.errors import SettingsError
+
+if TYPE_CHECKING:
+    import numpy as np
+
+Point = Mapping[str, float]
+DIRECTIONS = "Drift.range(…, nominal=…), Drift.choice(…), or a fault such as faults.bias(…)"
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A closed range of numbers, from which each episode draws uniformly; in a space, with its nominal number."""
+
+    low: float
+    high: float
+    nominal: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A few options, from which each episode draws one; `usual` is the index of the nominal one."""
+
+    options: tuple[Any, ...]
+    usual: int = 0
+
+
+class Fault(Protocol):
+    """A fault of the nodes' messages or processes, of a size that `extent` bounds; at its nominal size it is none."""
+
+    @property
+    def extent(self) -> Span | Choice:
+        """Return the possible sizes."""
+
+    def install(self, ros: Any, name: str, size: float, draws: np.random.Generator) -> None:
+        """Make an episode's ROS behave so. `name` is the direction's, for messages."""
+
+    def check(self, ros: Any, name: str) -> None:
+        """Raise SettingsError after an episode in which what the fault is about never occurred."""
+
+
+@dataclass(frozen=True, slots=True)
+class Space:
+    """All combinations of the directions' values; directions without a fault are parts of the test's world."""
+
+    directions: Mapping[str, Span | Choice]
+    faults: Mapping[str, Fault]
+
+    @property
+    def extents(self) -> Mapping[str, Span | Choice]:
+        """Return the possible values of all directions, in the order of their declaration."""
+        return {**self.directions, **{name: fault.extent for name, fault in self.faults.items()}}
+
+    @property
+    def nominal(self) -> Point:
+        """Return the nominal point."""
+        return {name: nominal(extent) for name, extent in self.extents.items()}
+
+    def world(self, point: Point) -> dict[str, Any]:
+        """Return the values that the test's world gets at a point: the dictionary `tarl_drift`."""
+        return {name: value_of(extent, point[name]) for name, extent in self.directions.items()}
+
+    def active(self, point: Point) -> Mapping[str, tuple[Fault, float]]:
+        """Return the faults that are not nominal at a point, with their sizes."""
+        return {
+            name: (fault, point[name])
+            for name, fault in self.faults.items()
+            if point[name] != nominal(fault.extent)
+        }
+
+
+def nominal(extent: Span | Choice) -> float:
+    """Return the nominal number of a direction of a space, the index of the nominal option for a choice."""
+    if isinstance(extent, Choice):
+        return float(extent.usual)
+    return extent.low if extent.nominal is None else extent.nominal
+
+
+def value_of(extent: Span | Choice, number: float) -> Any:
+    """Return the value for which a number of a point stands."""
+    return extent.options[int(number)] if isinstance(extent, Choice) else number
+
+
+def span(what: str, low: Any, high: Any, nominal: Any) -> Span:
+    """Return a checked range; `what` names it in messages. Raise SettingsError for an invalid one."""
+    if not _number(low) or not _number(high) or not low < high:
+        raise SettingsError(f"{what}: give two finite numbers, the smaller one first.")
+    if nominal is None:
+        return Span(float(low), float(high))
+    if not _number(nominal) or not low <= nominal <= high:
+        raise SettingsError(
+            f"{what}: the nominal value must be a number from {low:g} to {high:g}, got {nominal!r}."
+        )
+    return Span(float(low), float(high), float(nominal))
+
+
+def choice(options: tuple[Any, ...], usual: Any) -> Choice:
+    """Return checked options; the first one equal to `usual` is nominal. Raise SettingsError for invalid ones."""
+    if len(options) < 2:
+        raise SettingsError(f"Drift.choice needs at least two options, got {len(options)}.")
+    found = [index for index, option in enumerate(options) if option is usual or option == usual]
+    if not found:
+        raise SettingsError(f"Drift.choice: the nominal value {usual!r} is none of {options!r}.")
+    return Choice(options, found[0])
+
+
+def space(parts: Mapping[str, Any]) -> Space:
+    """Return a space of checked directions: ranges, choices and faults. Raise SettingsError for others."""
+    if not parts:
+        raise SettingsError(f"Drift.space() has no direction: name at least one, each {DIRECTIONS}.")
+    directions: dict[str, Span | Choice] = {}
+    faults: dict[str, Fault] = {}
+    for name, part in parts.items():
+        if isinstance(part, Span) and part.nominal is None:
+            raise SettingsError(
+                f"Drift.space: {name!r} has no nominal value, which recordings use: write "
+                f"Drift.range({part.low:g}, {part.high:g}, nominal=…)."
+            )
+        if isinstance(part, Span | Choice):
+            directions[name] = part
+        elif hasattr(part, "install") and hasattr(part, "extent"):
+            faults[name] = part
+        else:
+            raise SettingsError(f"Drift.space: {name!r} must be {DIRECTIONS}, got {part!r}.")
+    return Space(directions, faults)
+
+
+def _number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)

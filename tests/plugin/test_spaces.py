@@ -1,0 +1,143 @@
+"""Spaces of drifts: directions with nominal values, drawn from on-line, nominal otherwise."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pytest_tarl import Drift, faults
+from pytest_tarl.design import faults as active_faults
+from pytest_tarl.design import value
+from pytest_tarl.drifts import drawn, drift, sizes
+from pytest_tarl.errors import SettingsError
+from pytest_tarl.rollout import EpisodePlan
+from pytest_tarl.spaces import Space
+from pytest_tarl.workers.protocol import plan_message, planned
+from tests.plugin.tank import ONLINE, RECORD, changed
+
+ODOM = faults.bias("/odom", "pose.pose.position.x", 0.0, 0.5)
+WORLD = drift(
+    "t",
+    "world",
+    Drift.space(mud=Drift.range(0.05, 1.0, nominal=1.0), camera=Drift.choice("up", "down"), odom=ODOM),
+)
+seeds = st.integers(0, 2**63 - 1)
+
+
+@given(seeds)
+def test_an_episode_draws_every_direction_and_the_world_gets_those_of_its_own(seed: int) -> None:
+    found = drawn(WORLD, "world", seed)
+    assert found.keys() == {"mud", "camera"}
+    assert 0.05 <= found["mud"] <= 1.0
+    assert found["camera"] in ("up", "down")
+    ((name, (fault, size)),) = active_faults({"world": WORLD}, "world", seed).items()
+    assert (name, fault) == ("odom", ODOM)
+    assert 0.0 < size <= 0.5
+    assert sizes(WORLD, "world", seed) == {"mud": found["mud"], "odom": size}
+
+
+def test_directions_are_drawn_apart_and_options_alike() -> None:
+    alone = drift("t", "world", Drift.space(mud=Drift.range(0.05, 1.0, nominal=1.0)))
+    assert [drawn(alone, "world", seed)["mud"] for seed in range(9)] == [
+        drawn(WORLD, "world", seed)["mud"] for seed in range(9)
+    ]
+    downs = sum(drawn(WORLD, "world", seed)["camera"] == "down" for seed in range(2000))
+    assert 900 < downs < 1100
+
+
+def test_without_a_scenario_and_beside_others_the_values_are_nominal() -> None:
+    drifts = {"world": WORLD, "dusk": drift("t", "dusk", {"light": 0.3}), "rain": drift("t", "rain", 0.2)}
+    assert value(drifts, (), None, 1) == {"mud": 1.0, "camera": "up"}
+    assert value(drifts, (), "dusk", 1) == {"mud": 1.0, "camera": "up", "light": 0.3}
+    assert value(drifts, (), "rain", 1) == 0.2
+    assert active_faults(drifts, None, 1) == active_faults(drifts, "dusk", 1) == {}
+
+
+def test_a_point_replaces_the_draw_and_travels_to_workers() -> None:
+    point = {"mud": 0.3, "camera": 1.0, "odom": 0.0}
+    assert value({"world": WORLD}, (), "world", 1, point) == {"mud": 0.3, "camera": "down"}
+    assert active_faults({"world": WORLD}, "world", 1, point) == {}
+    plan = EpisodePlan(5, "world", point=point)
+    assert planned(plan_message(plan)) == plan
+    assert planned(plan_message(EpisodePlan(5))).point is None
+
+
+def test_the_nominal_option_is_the_first_unless_stated() -> None:
+    assert Drift.choice(1, 2, 3).value.usual == 0
+    assert Drift.choice(1, 2, 3, nominal=2).value.usual == 1
+    assert Drift.choice(None, 2).value.usual == 0
+    assert drawn(drift("t", "camera", Drift.choice("up", "down")), "camera", 3) in ("up", "down")
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (lambda: Drift.space(), "has no direction"),
+        (lambda: Drift.space(mud=Drift.range(0, 1)), "'mud' has no nominal value"),
+        (lambda: Drift.range(0, 1, nominal=2), "nominal value must be a number from 0 to 1, got 2"),
+        (lambda: Drift.range(0, 1, nominal=float("nan")), "nominal value must be"),
+        (lambda: Drift.choice("up"), "at least two options, got 1"),
+        (lambda: Drift.choice(), "at least two options, got 0"),
+        (lambda: Drift.choice("up", "down", nominal="left"), "'left' is none of"),
+        (lambda: Drift.space(mud=0.15), "'mud' must be"),
+        (lambda: Drift.space(mud=Drift.range(0, 1, nominal=1, permanent=True)), "'mud' is permanent"),
+        (lambda: drift("t", "world", Drift(WORLD.value, permanent=True)), "cannot be permanent"),
+        (lambda: drift("t", "world", {"a": Drift(WORLD.value)}), "inside a dictionary"),
+    ],
+)
+def test_what_is_no_space_is_told(make: Any, told: str) -> None:
+    with pytest.raises(SettingsError, match=told):
+        make()
+
+
+@given(st.dictionaries(st.text(min_size=1), st.tuples(st.floats(0, 1), st.floats(0, 1)), min_size=1))
+def test_nominal_points_lie_in_their_space(parts: dict[str, tuple[float, float]]) -> None:
+    ranges = {
+        name: Drift.range(0.0, high + 1.0, nominal=share * high) for name, (share, high) in parts.items()
+    }
+    space = Drift.space(**ranges).value
+    assert isinstance(space, Space)
+    for name, extent in space.extents.items():
+        assert extent.low <= space.nominal[name] <= extent.high  # type: ignore[union-attr]
+    assert space.world(space.nominal) == dict(space.nominal)
+
+
+@pytest.fixture
+def spaced(tank: pytest.Pytester) -> pytest.Pytester:
+    """A tank whose pump may be clogged, and whose gauge may be wrong."""
+    changed(tank, "test_tank", "import Sensor", "import Drift, Sensor, faults")
+    changed(
+        tank,
+        "test_tank",
+        '{"clogged": 0.25}',
+        '{"world": Drift.space(pump=Drift.range(0.1, 1.0, nominal=1.0),'
+        ' gauge=faults.bias("/level", "data", -0.5, 0.5))}',
+    )
+    changed(tank, "test_tank", "1.0 if tarl_drift is None else tarl_drift", 'tarl_drift["pump"]')
+    return tank
+
+
+def test_a_space_is_recorded_as_nominal_and_compared_as_drawn(spaced: pytest.Pytester) -> None:
+    changed(spaced, "test_tank", "    tarl.start", '    print("PUMP", pump == 1.0)\n    tarl.start')
+    plain = spaced.runpytest("-s")
+    plain.assert_outcomes(passed=2)
+    plain.stdout.fnmatch_lines(["*PUMP True*"])
+    recorded = spaced.runpytest(*RECORD, "-s")
+    recorded.assert_outcomes(passed=1, deselected=1)
+    assert "PUMP False" not in recorded.stdout.str()
+    done = spaced.runpytest(*ONLINE, "-s")
+    assert "PUMP True" not in done.stdout.str()
+    done.stdout.fnmatch_lines(["*degraded*"])
+
+
+def test_a_misspelt_topic_or_field_of_a_fault_is_told(spaced: pytest.Pytester) -> None:
+    changed(spaced, "test_tank", 'faults.bias("/level"', 'faults.bias("/levle"')
+    told = " ".join(spaced.runpytest(*RECORD).stdout.str().split())
+    assert "no message was published on /levle; the topics with messages are /level, /valve" in told
+    changed(spaced, "test_tank", 'faults.bias("/levle", "data"', 'faults.bias("/level", "deta"')
+    spaced.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
+    told = " ".join(spaced.runpytest(*ONLINE).stdout.str().split())
+    assert "faults.bias of 'gauge': a message on /level (Float64) has no number 'deta'" in told
