@@ -9,12 +9,14 @@ unit more than triples from the second size to the last.
 from __future__ import annotations
 
 import argparse
+import copy
 import json
 import resource
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from time import process_time
 
@@ -25,12 +27,14 @@ from pytest_tarl.errors import TarlError
 from pytest_tarl.instrumentation.recorder import Recorder
 from pytest_tarl.learning.drift import compare
 from pytest_tarl.learning.fixture import Fixture, load, save
+from pytest_tarl.learning.footprint import Footprint
 from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.statistics import sample
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import SitePlace, TaintList
 from pytest_tarl.ros import Ros, message_type
 
+EPISODE = 12_800  # bytes of the file for an episode of the case recording
 WORSE = 3.0  # allowed growth of time or memory per unit, from the second size to the last
 NODE = """
 import rospy
@@ -113,17 +117,34 @@ def both(*, episodes: int, cells: int, width: int, steps: int) -> str:
 
 
 def recording(size: int) -> str:
-    """Save and load a recording of about `size` MB with episodes of equal size."""
-    per_episode = 60_000  # bytes, approximately
-    whole = world(range(max(2, size * 1_000_000 // per_episode)), 400, 20, 1500)
+    """Save and load a recording of about `size` MB; episodes after the 500th repeat earlier ones with other seeds."""
+    count = max(2, size * 1_000_000 // EPISODE)
+    distinct = [world(range(seed, seed + 1), 400, 20, 1500) for seed in range(min(count, 500))]
+    told: list[str] = []
+    footprint = Footprint(count, told.append)
+    parts = []
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "fixture.npz"
         try:
+            for seed in range(count):
+                parts.append(copied(distinct[seed % len(distinct)], seed))
+                footprint.add(parts[-1])
+                if told:
+                    return f"warned: {told[0]}"
+            whole = merge(parts)
+            del parts, distinct
             save(fixture(whole, 20), path)
+            episodes = whole.episodes
+            del whole
             load(path)
         except TarlError as problem:
             return f"refused: {problem}"
-        return f"{path.stat().st_size / 1e6:.1f} MB of {whole.episodes:,} episodes"
+        return f"{path.stat().st_size / 1e6:.1f} MB of {episodes:,} episodes"
+
+
+def copied(one: Sample, seed: int) -> Sample:
+    """Return an episode under another seed, in memory of its own."""
+    return replace(copy.deepcopy(one), seeds=(seed,))
 
 
 def world(seeds: range, cells: int, width: int, steps: int) -> Sample:

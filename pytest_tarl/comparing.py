@@ -17,6 +17,7 @@ from pytest_tarl.learning import judgements, localize, parts
 from pytest_tarl.learning.bounds import Range
 from pytest_tarl.learning.drift import Difference, compare, paper_region
 from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.footprint import Footprint
 from pytest_tarl.learning.marginal import lent
 from pytest_tarl.learning.merging import aligned, merge
 from pytest_tarl.learning.packing import represented
@@ -28,7 +29,7 @@ from pytest_tarl.learning.tiles import tiled, tiled_batch
 from pytest_tarl.logged import read_log
 from pytest_tarl.model import Comparison, ListComparison, Region, Sizes, TaintList
 from pytest_tarl.options import Options
-from pytest_tarl.recording import Progress, Recorded, mean_flows, run_episodes, sarsa_tables
+from pytest_tarl.recording import Progress, Recorded, Tell, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import Cell, Sensor
@@ -55,6 +56,7 @@ def run_online(
     drift: str | None,
     progress: Progress,
     changeable: Collection[str] | None = None,
+    tell: Tell | None = None,
 ) -> Online:
     """Run the episodes of one scenario, or read the missions of a log, and compare them with the recording.
 
@@ -65,7 +67,8 @@ def run_online(
     side = _side(rollout, fixture, designation, options, plan)
     count = len(side.seeds)
     watch = _Watch(fixture.sample, designation, options, planned(count, side.looks))
-    recorded = run_episodes(side.rollout, side.seeds, drift, members, progress, learner, watch)
+    footprint = Footprint(count, tell) if tell else None
+    recorded = run_episodes(side.rollout, side.seeds, drift, members, progress, learner, watch, footprint)
     difference = concluded(watch.seen, options.alpha)
     offline, online = aligned(fixture.sample, represented(recorded.sample))
     learned = sarsa_tables(recorded, mean_flows(fixture.sample))

@@ -17,6 +17,11 @@ def advice_on(problem: OSError) -> str:
     """Return advice for a file that cannot be written."""
     if problem.errno in FULL:
         return "the disk or your quota is full: free some space and run the command again."
+    if problem.errno == errno.EFBIG:
+        return (
+            "the file is larger than its limit: raise the limit, for example with `ulimit -f unlimited`, and run the "
+            "command again."
+        )
     if problem.errno in DIFFERENT:
         return "make the folder writable, or work in a copy."
     return (

@@ -1,17 +1,60 @@
-"""Query the free memory, on systems that report it."""
+"""Query the memory that this process may still use, on systems that report it."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 _MEMINFO = Path("/proc/meminfo")  # Linux
+_OWN_GROUPS = Path("/proc/self/cgroup")
+_GROUPS = Path("/sys/fs/cgroup")
+_FILES = {  # limit, usage and the statistic of cached files that the kernel may drop, by version of control groups
+    1: ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+    2: ("memory.max", "memory.current", "inactive_file"),
+}
 
 
 def available() -> int | None:
-    """Return the bytes available without swapping; None if the system does not report it."""
+    """Return the bytes available without swapping; None if the system does not report it.
+
+    In a container, that is what its limit leaves, if this is less than the machine has.
+    """
+    found = [one for one in (_of_machine(), *_of_groups()) if one is not None]
+    return max(0, min(found)) if found else None
+
+
+def _of_machine() -> int | None:
     try:
         found = re.search(r"^MemAvailable:\s+(\d+) kB$", _MEMINFO.read_text(), re.MULTILINE)
     except OSError:
         return None
     return None if found is None else int(found[1]) * 1024
+
+
+def _of_groups() -> Iterator[int | None]:
+    """Yield what each control group of this process leaves it, the innermost first."""
+    try:
+        lines = _OWN_GROUPS.read_text().splitlines()
+    except OSError:
+        return
+    for line in lines:
+        _, _, rest = line.partition(":")
+        controllers, _, path = rest.partition(":")
+        if controllers and "memory" not in controllers.split(","):
+            continue
+        version, base = (1, _GROUPS / "memory") if controllers else (2, _GROUPS)
+        own = base / path.lstrip("/")
+        for folder in (own, *own.parents):
+            if folder.is_relative_to(base):  # a container may see its own group as the root
+                yield _left(folder, *_FILES[version])
+
+
+def _left(folder: Path, limit: str, usage: str, droppable: str) -> int | None:
+    """Return the bytes that a group's limit leaves; None without a limit."""
+    try:
+        most, used = int((folder / limit).read_text()), int((folder / usage).read_text())
+        found = re.search(rf"^{droppable} (\d+)$", (folder / "memory.stat").read_text(), re.MULTILINE)
+    except (OSError, ValueError):  # "max" is no limit
+        return None
+    return most - used + (int(found[1]) if found else 0)

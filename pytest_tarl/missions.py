@@ -218,7 +218,15 @@ class Mission:
     def _online(self, rollout: Rollout, sites: Plan, analysis: Analysis, fixture: Fixture) -> Compared:
         changeable = {str(step.site) for step in analysis.sites if analysis.operands(step.site)}
         online = run_online(
-            rollout, fixture, self.designation, self.options, sites, self.drift, self.progress, changeable
+            rollout,
+            fixture,
+            self.designation,
+            self.options,
+            sites,
+            self.drift,
+            self.progress,
+            changeable,
+            self.tell,
         )
         comparison = online.comparison
         episodes = {"offline": fixture.sample.episodes, "online": online.recorded.sample.episodes}

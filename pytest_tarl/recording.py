@@ -17,6 +17,7 @@ from pytest_tarl.instrumentation.sites import Plan
 from pytest_tarl.instrumentation.trace import Trace
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.fixture import Fixture
+from pytest_tarl.learning.footprint import Footprint
 from pytest_tarl.learning.judgements import accounts, judgements, never_judged
 from pytest_tarl.learning.merging import merge
 from pytest_tarl.learning.sarsa import LEARNERS, Learner
@@ -99,7 +100,8 @@ def record(
     settling = Settling(designation, options.episodes or designation.episodes)
     seeds = episode_seeds(options.seed, "offline", settling.most)
     learner = options.learner or "sarsa"
-    recorded = run_episodes(rollout, seeds, drift, plan.members, progress, learner, settling)
+    footprint = Footprint(settling.asked, tell)
+    recorded = run_episodes(rollout, seeds, drift, plan.members, progress, learner, settling, footprint)
     again = rollout(EpisodePlan(seeds[0], drift, record=True))
     notes = [
         *broken,
@@ -157,12 +159,14 @@ def run_episodes(
     progress: Progress,
     learner: str = "sarsa",
     enough: Callable[[Sequence[Sample]], bool] | None = None,
+    footprint: Footprint | None = None,
 ) -> Recorded:
     """Run one instrumented episode per seed, until `enough` returns true.
 
     Raises:
-        RecordingError: the test itself is broken, or the node never waits.
+        RecordingError: the test itself is broken, the node never waits, or memory does not suffice for the episodes.
     """
+    footprint = footprint or Footprint(len(seeds))
     learners = tuple(LEARNERS[learner](len(chosen)) for chosen in members)
     first: Trace | None = None
     samples: list[Sample] = []
@@ -176,6 +180,7 @@ def run_episodes(
         first = first or run.trace
         counted = sample(run.trace, seed, run.passed, members)
         samples.append(replace(counted, judgements=judgements(run.judged)))
+        footprint.add(samples[-1])
         for one, chosen in zip(learners, members, strict=True):
             for sequence in event_sequences(run.trace, chosen):
                 one.learn(sequence, run.trace.cells)
@@ -186,6 +191,7 @@ def run_episodes(
             break
     if first is None:
         raise RecordingError("There is nothing to learn from: 0 episodes were requested.")
+    notes |= dict.fromkeys([footprint.warning] if footprint.warning else [])
     return Recorded(first, merge(samples), learners, topics, tuple(failures), learner, tuple(notes))
 
 

@@ -19,6 +19,9 @@ from tests.plugin.tank import ONLINE, RECORD, changed, fixture_file
 
 ADVICE = {
     errno.ENOSPC: "the disk or your quota is full: free some space and run the command again.",
+    errno.EDQUOT: "the disk or your quota is full: free some space and run the command again.",
+    errno.EFBIG: "the file is larger than its limit: raise the limit, for example with `ulimit -f unlimited`, and run "
+    "the command again.",
     errno.EROFS: "make the folder writable, or work in a copy.",
     errno.EIO: "another kind of file is in its place, or the disk fails: check the path and run the command again.",
 }
@@ -135,6 +138,35 @@ def test_a_disk_that_fills_up_while_recording_leaves_the_old_fixture(
     told.assert_outcomes(failed=1, deselected=1)
     told.stdout.fnmatch_lines([f"*cannot be written*: {ADVICE[errno.ENOSPC]}"])
     assert fixture_file(recorded).read_bytes() == before
+    assert [path.name for path in fixture_file(recorded).parent.iterdir()] == [fixture_file(recorded).name]
+
+
+def test_under_a_real_limit_on_the_size_of_files(
+    recorded: pytest.Pytester, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    resource = pytest.importorskip("resource")  # not on Windows
+    before = fixture_file(recorded).read_bytes()
+    junit = tmp_path_factory.mktemp("outside") / "junit.xml"
+
+    def run(*options: str) -> subprocess.CompletedProcess[str]:
+        """Run pytest where no file can become larger than half a recording."""
+        return subprocess.run(
+            [sys.executable, "-B", "-m", "pytest", "-p", "no:cacheprovider", *options],
+            cwd=recorded.path,
+            capture_output=True,
+            text=True,
+            check=False,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, [len(before) // 2] * 2),
+        )
+
+    told = run(*RECORD)
+    assert told.returncode == 1, told.stdout + told.stderr
+    assert f"cannot be written (File too large): {ADVICE[errno.EFBIG]}" in " ".join(told.stdout.split())
+    assert fixture_file(recorded).read_bytes() == before
+    told = run(*ONLINE, "--tarl-drift=clogged", f"--junitxml={junit}")
+    assert told.returncode == 1, told.stdout + told.stderr
+    assert "test_fills[clogged]: degraded" in told.stdout
+    assert told.stdout.count(ADVICE[errno.EFBIG]) == 1
     assert [path.name for path in fixture_file(recorded).parent.iterdir()] == [fixture_file(recorded).name]
 
 
