@@ -27,6 +27,7 @@ from pytest_tarl.learning.tables import Floats, Sample
 from pytest_tarl.model import Guarantee
 from pytest_tarl.modules_of_tests import Digests
 from pytest_tarl.options import Options
+from pytest_tarl.report.guarantees import percent
 from pytest_tarl.rollout import EpisodePlan, EpisodeRun, Rollout, in_order
 from pytest_tarl.seeds import episode_seeds
 from pytest_tarl.sensors import stored
@@ -265,6 +266,6 @@ def _previous(path: Path) -> tuple[Sample | None, tuple[str, ...]]:
 def _summary(new: Sample, old: Sample | None) -> str:
     before = f"{old.total.mean():.3g} → " if old is not None else ""
     return (
-        f"recorded ATR {before}{new.total.mean():.3g}, success {new.passed.mean():.1%}, "
+        f"recorded ATR {before}{new.total.mean():.3g}, success {percent(new.passed.mean())}, "
         f"{new.episodes} episodes, {len(new.cells)} cells"
     )

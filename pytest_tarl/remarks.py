@@ -16,6 +16,7 @@ from pytest_tarl.learning.permutation import permuted_loss
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import SitePlace, Verdict
 from pytest_tarl.options import Options
+from pytest_tarl.report.guarantees import percent
 from pytest_tarl.searching.accept import PASS_RATE_LOSS
 from pytest_tarl.sensors import Sensor
 
@@ -88,8 +89,8 @@ def failing(offline: Sample, online: Sample, verdict: Verdict, options: Options)
         return ()
     return (
         (
-            f"missions succeed in {after.mean():.0%} of the deployed episodes and in {before.mean():.0%} of the "
-            "recorded ones, but no loss of reward was found: a mission that ends early may earn more than one that "
+            f"missions succeed in {percent(after.mean())} of the deployed episodes and in {percent(before.mean())} of "
+            "the recorded ones, but no loss of reward was found: a mission that ends early may earn more than one that "
             "continues. Add a negative reward for a failed mission."
         ),
     )

@@ -12,6 +12,7 @@ from pytest_tarl.learning.bounds import Range, evidence_above
 from pytest_tarl.learning.guarantees import stated, varies
 from pytest_tarl.learning.tables import Sample
 from pytest_tarl.model import Guarantee
+from pytest_tarl.report.guarantees import percent
 
 ENOUGH_FAILURES = 5  # failures after which a recording stops if min_success can no longer be reached
 MOST = 20_000  # most episodes for reaching a confidence
@@ -49,7 +50,9 @@ class Settling:
             )
             ran = f"the first {self.episodes} episodes" if stopped else f"{self.episodes} episodes"
             share = self.passed / self.episodes
-            told = f"{failed} of {ran} failed (success {share:.1%}, min_success {least:.1%}{stopped})"
+            told = (
+                f"{failed} of {ran} failed (success {percent(share)}, min_success {percent(least)}{stopped})"
+            )
             return told if failed > self._bearable else ""
         sure = f"{self.designation.confidence:.5g}"
         if self._refuted:

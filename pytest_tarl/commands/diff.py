@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.permutation import permuted_loss
 from pytest_tarl.model import SitePlace
+from pytest_tarl.report.guarantees import percent
 from pytest_tarl.seeds import generator
 
 
@@ -73,7 +74,7 @@ def lines(first: Fixture, second: Fixture, found: FixtureDiff) -> Iterator[str]:
     yield f"{first.test} → {second.test}" if first.test != second.test else first.test
     yield f"  episodes   {a.episodes} → {b.episodes}"
     yield f"  reward     {a.total.mean():.4g} → {b.total.mean():.4g} per episode (less: p = {found.p_loss:.2g})"
-    yield f"  success    {found.success[0]:.1%} → {found.success[1]:.1%}"
+    yield f"  success    {percent(found.success[0])} → {percent(found.success[1])}"
     if found.same_sensors:
         yield f"  cells      {found.cells[1]} in both, {found.cells[0]} gone, {found.cells[2]} new"
     else:

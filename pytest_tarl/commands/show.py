@@ -10,7 +10,7 @@ from pytest_tarl.learning.fixture import Fixture
 from pytest_tarl.learning.judgements import accounts
 from pytest_tarl.learning.tables import START, Floats, ListSample
 from pytest_tarl.model import TaintList
-from pytest_tarl.report.guarantees import sentences
+from pytest_tarl.report.guarantees import percent, sentences
 from pytest_tarl.sensors import Sensor
 
 CODE = 60  # most characters of a line of code
@@ -26,7 +26,7 @@ def lines(fixture: Fixture, size: int, sizes: Sequence[int], *, every: bool = Fa
     yield f"{fixture.test}, seed {fixture.seed}"
     if fixture.design:
         yield f"  design     with the drift {' and '.join(fixture.design)}, permanent"
-    yield f"  episodes   {sample.episodes}, {int(sample.steps.sum())} steps, success {sample.passed.mean():.1%}"
+    yield f"  episodes   {sample.episodes}, {int(sample.steps.sum())} steps, success {percent(sample.passed.mean())}"
     lists = "list" if len(sizes) == 1 else "lists"
     yield f"  size       {_kilobytes(size)}, of which {_kilobytes(sum(sizes))} for {len(sizes)} taint {lists}"
     least, most = sample.total.min(), sample.total.max()

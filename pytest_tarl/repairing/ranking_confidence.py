@@ -8,6 +8,7 @@ from pytest_tarl.model import OperandEffect
 from pytest_tarl.repairing.accepting import Accepted
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.report import words
+from pytest_tarl.report.guarantees import percent
 from pytest_tarl.searching.race import CONFIDENCE
 from pytest_tarl.searching.ranking import Ranking
 
@@ -48,7 +49,8 @@ def _raced(ranking: Ranking, places: Sequence[str], effects: Mapping[str, Sequen
     if found.by is None:
         return told
     low, high = found.by
-    span = f"{words.signed(low)} to {words.signed(high)} an episode, about {CONFIDENCE:.0%}, {found.seeds} common seeds"
+    by = f"{words.signed(low)} to {words.signed(high)} an episode"
+    span = f"{by}, about {percent(CONFIDENCE)}, {found.seeds} common seeds"
     if found.ahead:
         more = "one line gains" if found.ahead == 1 else f"{found.ahead} lines gain"
         return f"{told}; {more} more than it in the drifted world ({span})"

@@ -22,6 +22,7 @@ from pytest_tarl.model import (
     Repair,
     Slice,
 )
+from pytest_tarl.report.guarantees import percent
 from pytest_tarl.report.regions import Vocabulary
 
 SIGNIFICANT = 0.05  # p-value above which a loss is not reported
@@ -85,7 +86,7 @@ def average(totals: Sequence[float]) -> str:
     if len(totals) < 2:
         return f"{amount(fmean(totals)) if totals else 'n/a'} per episode, {len(totals)} episodes"
     found = mean_of(totals, (1.0 + CONFIDENCE) / 2)
-    interval = f"about {CONFIDENCE:.0%} confidence {amount(found.low)} to {amount(found.high)}"
+    interval = f"about {percent(CONFIDENCE)} confidence {amount(found.low)} to {amount(found.high)}"
     return f"{amount(fmean(totals))} an episode, {interval}, {len(totals)} episodes"
 
 
@@ -156,7 +157,7 @@ def loss_words(comparison: Comparison) -> str:
 
 def _sure(interval: LossInterval) -> str:
     """Format the confidence of an interval; it is approximate without a declared range of totals."""
-    return f"{'' if interval.exact else 'about '}{100 * interval.confidence:.3g}% confidence"
+    return f"{'' if interval.exact else 'about '}{percent(interval.confidence)} confidence"
 
 
 def deviations(effect: float) -> str:
@@ -249,7 +250,7 @@ def repair_words(repair: Repair) -> str:
 
 def partial_words(partial: Partial, comparison: Comparison) -> str:
     """Describe the gain of a partial repair and its effect on the designed world."""
-    sure = f"about {100 * partial.confidence:.3g}% confidence"
+    sure = f"about {percent(partial.confidence)} confidence"
     gained = f"{signed(partial.gain)} per episode, at least {signed(partial.low)} ({sure})"
     return (
         f"{gained}, of {amount(partial.lost)} lost; {designed_world(comparison)} "

@@ -127,4 +127,4 @@ def test_missions_that_fail_early_and_earn_more_for_it_are_told(tank: pytest.Pyt
     tank.runpytest(*RECORD).assert_outcomes(passed=1, deselected=1)
     told = tank.runpytest(*ONLINE)
     told.assert_outcomes(passed=1, deselected=1)
-    assert "missions succeed in 0% of the deployed episodes" in " ".join(told.stdout.str().split())
+    assert "missions succeed in 0 % of the deployed episodes" in " ".join(told.stdout.str().split())
