@@ -94,6 +94,8 @@ def _count_flows(result: Result) -> str:
     files = result.statistics.files
     accepted = _accepted(result, sum(f.status == "accepted" and f.flow is not None for f in result.findings))
     new = "new " if result.baseline else ""
+    if not flows and not result.has_endpoints and not result.baseline:
+        return f"No flow: nothing in {many(files, 'file')} subscribes or publishes."
     if not flows:
         what = "flow" if result.baseline else "flow from a subscription to a publish call"
         only = f"{result.kinds[0]} " if len(result.kinds) == 1 else ""

@@ -16,6 +16,7 @@ from tarl_lint.baseline import Accepted, Baseline
 from tarl_lint.errors import AnalysisBug, UsageError
 from tarl_lint.fingerprints import Fingerprint, of_finding
 from tarl_lint.model import CODES, OFF_BY_DEFAULT, RULES, Cut, Finding, Kind
+from tarl_lint.prefilter.by_words import concerned
 from tarl_lint.read import discover, installed, module_names, source
 from tarl_lint.read.discover import Notes, SourceFile
 from tarl_lint.read.layout import Layout
@@ -50,6 +51,7 @@ class Result:
     `found` are the findings in the form of a baseline, `vanished` and `kept` the further entries of the baseline.
     `unmatched` are messages about settings without effect. `followed` are the analysed installed packages, `ended`
     the classes outside the files at which flows ended. `texts` maps paths to the texts of the files.
+    Without `has_endpoints`, no file contains a word that subscribes or publishes.
     `left_out` counts findings disabled by `per-file-ignores`, `off_by_default` those of rules that are off by default.
     Without `names_errors`, text reports count unreadable files without listing them. Only flows of the `kinds` were
     requested, and hazards if `reports_hazards`. New findings with codes in `failing` fail the run.
@@ -67,6 +69,7 @@ class Result:
     ended: tuple[str, ...] = ()
     texts: Mapping[str, str] = field(default_factory=dict)
     statistics: Statistics = field(default_factory=Statistics)
+    has_endpoints: bool = True
     baseline: Path | None = None
     names_errors: bool = True
     left_out: int = 0
@@ -137,6 +140,7 @@ def run(
         ended=module_names.unfollowed(report.ended),
         texts={**texts, **beside},
         statistics=Statistics(len(texts), lines, discovery.notes, report.cut),
+        has_endpoints=bool(report.findings) or not texts or concerned(scripts, config),
         baseline=config.baseline if accepted.entries else None,
         names_errors=config.enabled(UNREADABLE),
         left_out=len(heard) - len(reported),

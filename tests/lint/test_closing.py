@@ -59,6 +59,34 @@ def test_what_was_not_asked_for_is_not_said_to_be_absent(said, arguments, words)
     assert said(*arguments) == words
 
 
+@pytest.mark.parametrize(
+    ("files", "words"),
+    [
+        ({"tool.py": "print(2)\n"}, "No flow: nothing in 1 file subscribes or publishes."),
+        (
+            {"a.py": "# publish later\n", "b.py": '"""A Subscriber."""\n'},
+            "No flow: nothing in 2 files subscribes or publishes.",
+        ),
+        (
+            {"node.py": "import rospy\nrospy.Subscriber('/in', Bool, print)\n"},
+            "No flow from a subscription to a publish call in 1 file.",
+        ),
+    ],
+)
+def test_files_without_a_subscription_or_publisher_are_named_as_such(in_directory, capsys, files, words):
+    in_directory(files)
+    for _ in range(2):  # the second run reads the cache
+        main(["--format", "concise"])
+        assert words in capsys.readouterr().out.splitlines()
+
+
+def test_a_configured_source_counts_as_a_subscription(in_directory, capsys):
+    settings = "[tool.tarl-lint]\nsources = ['driver.read']\n"
+    in_directory({"tool.py": "import driver\nprint(driver.read())\n", "pyproject.toml": settings})
+    main(["--format", "concise"])
+    assert "No flow from a subscription to a publish call in 1 file." in capsys.readouterr().out
+
+
 def test_what_comments_silence_is_counted(said):
     assert said(comment="  # tarl: ignore") == ["1 flow in 1 file: 1 implicit.", "Silenced: 1 by comments."]
 
