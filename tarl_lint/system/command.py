@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -45,14 +46,12 @@ class Request:
 
     @cached_property
     def root(self) -> Path:
-        """Return the folder of the workspace. Raises UsageError for a launch file that does not exist."""
+        """Return the folder of the workspace: the path given, else that of the launch file, else the current one."""
         if self.paths:
             return self.paths[0]
-        if self.launch in ("", ALL):
-            return Path()
         path = Path(self.launch)
-        if not path.is_file():
-            raise UsageError(f"{self.launch}: no such launch file. Name a file, or write --launch all.")
+        if self.launch in ("", ALL) or not path.is_file():
+            return Path()
         return workspace_root(path.resolve()) or path.resolve().parent
 
 
@@ -122,7 +121,7 @@ def systems(asked: Request, config: Config, tell: Tell = silent) -> tuple[System
 
 def _launches(asked: Request, workspace: Workspace) -> Iterator[Launch]:
     if asked.launch not in ("", ALL):
-        yield read_launch(Path(asked.launch).resolve(), workspace, dict(asked.arguments))
+        yield read_launch(_launch_file(asked.launch, workspace), workspace, dict(asked.arguments))
         return
     files = [file for package in workspace.packages for file in package.launch_files]
     if asked.launch == ALL and not files:
@@ -142,6 +141,34 @@ def _launches(asked: Request, workspace: Workspace) -> Iterator[Launch]:
     if not nodes:
         raise UsageError(f"{shown(workspace.root)}: no package at or below it has a Python node.")
     yield Launch(workspace.root, tuple(nodes))
+
+
+def _launch_file(named: str, workspace: Workspace) -> Path:
+    """Return a launch file by its path, by its name in the workspace, or as `package/name`.
+
+    Raises UsageError if there is none, or if several packages have it.
+    """
+    if Path(named).is_file():
+        return Path(named).resolve()
+    known = {
+        (package.name, file.name): file for package in workspace.packages for file in package.launch_files
+    }
+    package, _, name = named.rpartition("/")
+    found = [
+        file for (owner, file_name), file in known.items() if file_name == name and package in ("", owner)
+    ]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        owners = ", ".join(sorted(f"{owner}/{one}" for owner, one in known if one == name))
+        raise UsageError(f"{named} is a launch file of several packages: name one of {owners}.")
+    names = sorted({file_name for _, file_name in known})
+    close = difflib.get_close_matches(name, names, n=1)
+    meant = f" Did you mean {close[0]}?" if close else ""
+    raise UsageError(
+        f"{named}: no such file, and no launch file of the workspace {shown(workspace.root)} has this name.{meant} "
+        "`tarl workspace` lists them; --launch all reads each one."
+    )
 
 
 def rendered(form: str, found: Sequence[System], asked: Request, view: View) -> Iterator[Line]:

@@ -234,7 +234,7 @@ def _overlap(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
     [
         (
             ["--launch", "none.launch"],
-            "none.launch: no such launch file. Name a file, or write --launch all.",
+            "none.launch: no such file, and no launch file of the workspace",
         ),
         (
             ["--launch", "all", "robot:=a"],
@@ -253,6 +253,25 @@ def test_mistakes_are_told_in_sentences(workspace, capsys, arguments, message):
     code, _, err = run(capsys, *arguments)
     assert code == 2
     assert message in err
+
+
+def test_a_launch_file_is_found_by_its_name_in_the_workspace(capsys, monkeypatch, tmp_path):
+    monkeypatch.chdir(EXAMPLE)
+    by_path = run(capsys, "--launch", "scout_navigation/launch/bringup.launch.py")
+    assert by_path[0] == 0
+    assert run(capsys, "--launch", "bringup.launch.py") == by_path
+    assert run(capsys, "--launch", "scout_navigation/bringup.launch.py") == by_path
+    code, _, err = run(capsys, "--launch", "scout_perception/bringup.launch.py")
+    assert code == 2
+    assert "Did you mean bringup.launch.py?" in err
+    for package in ("one", "two"):
+        (tmp_path / package / "launch").mkdir(parents=True)
+        (tmp_path / package / "package.xml").write_text(f"<package><name>{package}</name></package>")
+        (tmp_path / package / "launch/a.launch").write_text("<launch/>")
+    monkeypatch.chdir(tmp_path)
+    code, _, err = run(capsys, "--launch", "a.launch")
+    assert code == 2
+    assert "a.launch is a launch file of several packages: name one of one/a.launch, two/a.launch." in err
 
 
 def test_every_format_is_offered():
