@@ -1,4 +1,4 @@
-"""Analyse a text as if it were a file."""
+"""Helpers that analyse texts as files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nodes put together from parts: how state is kept, how callback, message and publisher are made, what runs."""
+"""Nodes composed of parts: kinds of state, callbacks, messages, publishers and main programs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from textwrap import indent
 from typing import Final
 
-# What `__init__` does, what the callback does with VALUE, how it is read back, and a read of state that is not fed.
+# Code of `__init__`, code of the callback with VALUE, its read access, and a read of state without data.
 STATES: Final[Mapping[str, tuple[str, str, str, str]]] = {
     "attribute": ("self.x = 0.0\nself.y = 1.0", "self.x = VALUE", "value = self.x", "clean = self.y"),
     "attribute of attribute": (
@@ -329,7 +329,7 @@ CALLBACKS: Final[Mapping[str, str]] = {
     "base class": "super().__init__()",
 }
 
-# How `value` is published, and how `clean` is.
+# Code that publishes `value`, and code that publishes `clean`.
 MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "scalar": ("OUT.publish(value)", "OUT.publish(clean)"),
     "constructor": ("OUT.publish(Float64(data=value))", "OUT.publish(Float64(data=clean))"),
@@ -383,7 +383,7 @@ MESSAGES: Final[Mapping[str, tuple[str, str]]] = {
     "star": ("OUT.publish(*[value])", "OUT.publish(*[clean])"),
 }
 
-# How a publisher is made, and where it is found.
+# Code that creates a publisher, and the expression for it.
 PUBLISHERS: Final[Mapping[str, tuple[str, str]]] = {
     "attribute": ('self.pub = rospy.Publisher("out", Float64, queue_size=1)', "self.pub"),
     "dict": ('self.pubs = {"o": rospy.Publisher("out", Float64, queue_size=1)}', 'self.pubs["o"]'),
@@ -593,7 +593,7 @@ AXES: Final = (STATES, CALLBACKS, MESSAGES, PUBLISHERS, RUNNERS)
 
 
 def node(state: str, callback: str, message: str, publisher: str, runner: str) -> str:
-    """Return the text of a node with these parts."""
+    """Return the text of a node composed of these parts."""
     start, store, read, clean = STATES[state]
     make, name = PUBLISHERS[publisher]
     send, send_clean = (text.replace("OUT", name) for text in MESSAGES[message])

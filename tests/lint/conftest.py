@@ -1,4 +1,4 @@
-"""Flows made by hand, for tests of what comes after the analysis."""
+"""Hand-made flows, for tests of the stages after the analysis."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ if __name__ == "__main__":
 
 @dataclass
 class Example:
-    """A node's text and the flow in it, each part of which a test may replace."""
+    """A node's text and its flow; a test can replace each part."""
 
     text: str = NODE
     path: str = "node.py"
@@ -96,7 +96,7 @@ def example() -> Example:
 
 @pytest.fixture
 def in_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[dict[str, str]], Path]:
-    """Write files below a fresh working directory and return it."""
+    """Write files below a new working directory and return it."""
 
     def write(files: dict[str, str]) -> Path:
         for name, text in files.items():

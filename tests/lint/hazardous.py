@@ -1,4 +1,4 @@
-"""Find the hazards of one rule in texts."""
+"""Helpers that find the hazards of one rule in texts."""
 
 from textwrap import dedent
 
@@ -18,5 +18,5 @@ def lines(code: str, *texts: str) -> list[int]:
 
 
 def inside(text: str, body: str, depth: int) -> str:
-    """Put a body into a text, indented."""
+    """Insert an indented body into a text."""
     return text.format(body="\n".join(" " * depth + line for line in dedent(body).strip().split("\n")))

@@ -1,4 +1,4 @@
-"""A run with everything in it, for tests of its reports."""
+"""A run with every kind of finding, for tests of reports."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +13,7 @@ from tarl_lint.suppress import Suppression
 
 
 def everything(example, *, baseline: Path | None = Path("tarl-flows.json")) -> Result:
-    """Return a run with two new flows into one call, an accepted one, a hazard and a file of Python 2."""
+    """Return a run with two new flows into one call, an accepted flow, a hazard and a Python 2 file."""
     accepted = replace(example.finding("implicit", "joy"), status="accepted")
     hazard = Finding("TARL203", example.span("pos = data.pose"), "scan [raw] reaches nothing, 100 % lost.")
     return Result(

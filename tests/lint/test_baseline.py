@@ -21,7 +21,7 @@ def changed(flow, source=None, sink=None, **parts):
     )
 
 
-def test_lines_steps_and_files_do_not_enter_the_fingerprint(example):
+def test_fingerprints_ignore_lines_steps_and_files(example):
     flow = example.flow()
     span = replace(flow.source.span, line=90, path="moved.py")
     moved = changed(flow, {"span": span, "id": "other"}, {"span": span, "id": "other"}, steps=())
@@ -39,12 +39,12 @@ def test_lines_steps_and_files_do_not_enter_the_fingerprint(example):
         ({}, {}, {"kind": "implicit"}),
     ],
 )
-def test_topic_callback_class_place_and_kind_do(example, source, sink, parts):
+def test_fingerprints_depend_on_topic_callback_class_place_and_kind(example, source, sink, parts):
     flow = example.flow()
     assert fingerprint(changed(flow, source, sink, **parts), "p").digest() != fingerprint(flow, "p").digest()
 
 
-def test_the_package_is_the_ros_one_else_the_python_one_else_the_script(example):
+def test_the_package_is_the_ros_package_else_the_python_package_else_the_script(example):
     flow = example.flow()
     assert fingerprint(flow, "shuttle").package == "shuttle"
     assert fingerprint(changed(flow, {"module": "robot.nodes.follow"}), "").package == "robot.nodes"
@@ -56,7 +56,7 @@ def test_a_method_that_subscribes_belongs_to_its_class(example):
     assert fingerprint(changed(example.flow(), {"qualname": "main"}), "").owner == ""
 
 
-def test_as_many_flows_as_accepted_are_accepted_and_more_report_the_whole_group(example):
+def test_more_flows_than_accepted_report_the_whole_group(example):
     finding = replace(example.finding(), fingerprint="a")
     assert [f.status for f in subtract([finding, finding], {"a": 2})] == ["accepted", "accepted"]
     assert [f.status for f in subtract([finding], {"a": 2})] == ["accepted"]
@@ -71,7 +71,7 @@ def test_an_implicit_flow_that_becomes_explicit_is_new(example):
     assert [f.status for f in subtract([implicit, explicit], accepted)] == ["accepted", "new"]
 
 
-def test_flows_that_are_gone_vanish_and_those_of_unseen_files_are_kept(entry):
+def test_vanished_flows_are_dropped_and_those_of_unseen_files_kept(entry):
     twice = replace(entry, count=2)
     other = replace(entry, fingerprint=replace(entry.fingerprint, source="scan"), files=("unread.py",))
     found = Counter([entry.fingerprint.digest()])
@@ -80,7 +80,7 @@ def test_flows_that_are_gone_vanish_and_those_of_unseen_files_are_kept(entry):
     assert kept == (other,)
 
 
-def test_what_is_written_is_read_back_whatever_the_names(entry, tmp_path):
+def test_baselines_survive_writing_and_reading_with_any_names(entry, tmp_path):
     odd = replace(
         entry,
         fingerprint=replace(entry.fingerprint, source='größe "x" → y', package=""),
@@ -92,7 +92,7 @@ def test_what_is_written_is_read_back_whatever_the_names(entry, tmp_path):
     assert {e.count for e in baseline.entries} == {1, 2}
 
 
-def test_the_file_has_one_flow_a_line_in_words_and_the_same_bytes_in_any_order(entry):
+def test_the_file_has_one_flow_per_line_and_does_not_depend_on_order(entry):
     other = replace(entry, fingerprint=replace(entry.fingerprint, source="scan"))
     text = dumps(merged([entry, other], ()))
     assert text == dumps(merged([other, entry], ()))
@@ -118,7 +118,7 @@ def test_the_file_has_one_flow_a_line_in_words_and_the_same_bytes_in_any_order(e
         ('{"format": 1, "tool": "tarl-lint", "flows": 3}', "damaged"),
     ],
 )
-def test_a_damaged_or_foreign_file_is_named_and_not_used(tmp_path, text, complaint):
+def test_a_damaged_or_foreign_file_is_refused_by_name(tmp_path, text, complaint):
     path = tmp_path / "flows.json"
     path.write_text(text)
     with pytest.raises(BaselineError, match=rf"flows\.json.*{complaint}"):
@@ -128,7 +128,7 @@ def test_a_damaged_or_foreign_file_is_named_and_not_used(tmp_path, text, complai
 @pytest.mark.parametrize(
     "part", [{"count": 0}, {"count": "1"}, {"kind": "other"}, {"sink": 3}, {"files": [1]}]
 )
-def test_an_entry_with_an_impossible_value_is_damage(entry, tmp_path, part):
+def test_an_entry_with_an_invalid_value_is_refused(entry, tmp_path, part):
     document = json.loads(dumps(Baseline((entry,))))
     document["flows"][0] |= part
     path = tmp_path / "flows.json"
@@ -137,7 +137,7 @@ def test_an_entry_with_an_impossible_value_is_damage(entry, tmp_path, part):
         load(path)
 
 
-def test_a_place_that_cannot_be_written_is_named_and_nothing_is_left_behind(entry, tmp_path):
+def test_a_failed_write_names_the_file_and_leaves_nothing_behind(entry, tmp_path):
     (tmp_path / "taken").mkdir()
     with pytest.raises(BaselineError, match="cannot be written"):
         save(tmp_path / "taken", Baseline((entry,)))
@@ -146,7 +146,7 @@ def test_a_place_that_cannot_be_written_is_named_and_nothing_is_left_behind(entr
     assert [p.name for p in tmp_path.iterdir()] == ["taken"]
 
 
-def test_hazards_stand_below_the_flows_and_are_read_back(entry, tmp_path):
+def test_hazards_are_written_after_the_flows_and_read_back(entry, tmp_path):
     hazard = Accepted(OfHazard("shuttle", "TARL202", "odom → cmd", "travel"), 2, ("node.py",))
     save(tmp_path / "flows.json", merged([hazard, entry], ()))
     assert load(tmp_path / "flows.json").entries == (entry, hazard)
@@ -157,7 +157,7 @@ def test_hazards_stand_below_the_flows_and_are_read_back(entry, tmp_path):
     ) in (tmp_path / "flows.json").read_text("utf-8")
 
 
-def test_a_damaged_hazard_is_damage(tmp_path):
+def test_a_damaged_hazard_is_refused(tmp_path):
     path = tmp_path / "flows.json"
     for hazards in ("3", "[{}]", '[{"rule": "TARL202"}]', "[3]"):
         path.write_text(f'{{"format": 1, "tool": "tarl-lint", "flows": [], "hazards": {hazards}}}')

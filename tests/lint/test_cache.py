@@ -1,4 +1,4 @@
-"""Results of earlier runs: used when nothing changed, never wrong, never in the way."""
+"""The cache: used if nothing changed, never wrong, and never a reason to fail."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def node(example, in_directory) -> Path:
 
 @pytest.fixture
 def analysed(monkeypatch) -> list[str]:
-    """The files that were analysed rather than remembered."""
+    """Return the files that were analysed, not found in the cache."""
     seen: list[str] = []
     perform = groups.perform
 
@@ -43,20 +43,20 @@ def entries() -> list[Path]:
     return sorted(PLACE.glob("*.json"))
 
 
-def test_a_second_run_analyses_nothing_and_says_the_same(node, capsys, analysed):
+def test_a_second_run_analyses_nothing_and_gives_the_same_result(node, capsys, analysed):
     first = lint(capsys, "--format", "json")
     assert analysed == ["node.py"]
     assert lint(capsys, "--format", "json") == first
     assert analysed == ["node.py"]
 
 
-def test_what_is_kept_lies_where_git_does_not_look(node, capsys):
+def test_the_cache_is_ignored_by_git(node, capsys):
     lint(capsys)
     assert len(entries()) == 1
     assert (PLACE / ".gitignore").read_text() == "*\n"
 
 
-def test_an_edit_is_seen(node, capsys, analysed):
+def test_an_edited_file_is_analysed_again(node, capsys, analysed):
     lint(capsys)
     node.write_text(node.read_text().replace("vel = 5 * delta", "vel = 5"))
     assert "No flow from a subscription" in lint(capsys)
@@ -66,7 +66,7 @@ def test_an_edit_is_seen(node, capsys, analysed):
 @pytest.mark.parametrize(
     "settings", ['sanitizers = ["robot.clamp"]', 'select = ["TARL1"]', 'sources = ["robot.listen"]']
 )
-def test_other_settings_are_other_results(node, capsys, analysed, settings):
+def test_changed_settings_invalidate_the_cache(node, capsys, analysed, settings):
     Path("pyproject.toml").write_text("[tool.tarl-lint]\n")
     lint(capsys)
     Path("pyproject.toml").write_text(f"[tool.tarl-lint]\n{settings}\n")
@@ -74,7 +74,7 @@ def test_other_settings_are_other_results(node, capsys, analysed, settings):
     assert analysed == ["node.py", "node.py"]
 
 
-def test_another_version_starts_afresh(node, capsys, analysed, monkeypatch):
+def test_another_version_ignores_the_cache(node, capsys, analysed, monkeypatch):
     lint(capsys)
     monkeypatch.setattr(cache, "__version__", "0.0.0")
     lint(capsys)
@@ -99,7 +99,7 @@ def test_without_cache_nothing_is_read_or_written(node, capsys, analysed):
         lambda data: data.partition(b"\n")[0] + b"\n[]",
     ],
 )
-def test_a_damaged_file_is_as_good_as_none(node, capsys, analysed, damage):
+def test_a_damaged_file_is_ignored(node, capsys, analysed, damage):
     first = lint(capsys)
     (file,) = entries()
     file.write_bytes(damage(file.read_bytes()))
@@ -109,7 +109,7 @@ def test_a_damaged_file_is_as_good_as_none(node, capsys, analysed, damage):
     assert len(analysed) == 2
 
 
-def test_a_whole_file_of_another_shape_is_as_good_as_none(node, capsys, analysed):
+def test_a_file_of_another_structure_is_ignored(node, capsys, analysed):
     first = lint(capsys)
     (file,) = entries()
     for value in ([], {}, 3, [{}, []], [[], {}], None):
@@ -118,14 +118,14 @@ def test_a_whole_file_of_another_shape_is_as_good_as_none(node, capsys, analysed
         assert lint(capsys) == first
 
 
-def test_a_place_that_cannot_be_written_is_no_trouble(node, capsys, analysed):
+def test_an_unwritable_cache_does_not_fail_the_run(node, capsys, analysed):
     Path(".tarl").write_text("in the way\n")
     first = lint(capsys)
     assert lint(capsys) == first
     assert analysed == ["node.py", "node.py"]
 
 
-def test_two_processes_on_a_cold_cache_say_the_same_and_leave_it_whole(example, node, capsys, analysed):
+def test_two_processes_on_a_cold_cache_agree_and_leave_it_intact(example, node, capsys, analysed):
     for number in range(20):
         (node.parent / f"node{number}.py").write_text(example.text.replace("odom", f"odom{number}"))
     command = [sys.executable, "-m", "tarl_lint", "--exit-zero", "--format", "json"]

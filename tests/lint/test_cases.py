@@ -1,4 +1,4 @@
-"""Every marked file in tests/cases gives the flows that its comments say, and no others.
+"""Every marked file in tests/cases has the flows in its comments, and no others.
 
 `# source a` stands at a subscription (or the call that supplies its callback), `# sink a ~b` at a publish call that
 a reaches explicitly and b implicitly, `# clean` at one that nothing reaches. In files with `# step a ~b` these
@@ -16,11 +16,11 @@ from tarl_lint.api import analyse
 CASES = Path(__file__).parent.parent / "cases"
 MARK = re.compile(r"# (source|sink|clean)((?: ~?\w+)*)")
 STEP = re.compile(r"# step((?: ~?\w+)+)")
-PLAIN = frozenset(["callbacks.py"])  # has no clean line
+PLAIN = frozenset(["callbacks.py"])  # files without a clean line
 
 
 def units(directory: Path) -> Iterator[Path]:
-    """Yield what is analysed together: a file alone, or all below a directory that holds a package or workspace."""
+    """Yield the units of analysis: a single file, or all files below a package or workspace directory."""
     for path in sorted(directory.iterdir()):
         if path.suffix == ".py":
             yield path

@@ -87,7 +87,7 @@ def test_accepted_flows_pass_until_the_baseline_is_left_out(node, capsys):
     assert lint(capsys, "--write-baseline")[1] == "tarl-flows.json: 0 flows accepted (0 new, 1 removed).\n"
 
 
-def test_unreadable_files_are_said_when_the_baseline_is_written(node, capsys):
+def test_unreadable_files_are_reported_when_the_baseline_is_written(node, capsys):
     lint(capsys, "--write-baseline")
     node.write_text("def f(:\n")
     out = lint(capsys, "--write-baseline")[1]
@@ -126,7 +126,7 @@ def test_unreadable_files_are_said_when_the_baseline_is_written(node, capsys):
         (["--exclude", "src\\gen"], "--exclude: 'src\\\\gen' has backslashes: patterns are written as in"),
     ],
 )
-def test_what_cannot_be_used_is_one_sentence_and_exit_code_2(node, capsys, arguments, sentence):
+def test_unusable_input_gives_one_sentence_and_exit_code_2(node, capsys, arguments, sentence):
     (node.parent / "empty").mkdir()
     (node.parent / "bad.toml").write_text("selcet = []\n")
     code, out, err = lint(capsys, *arguments)
@@ -135,7 +135,7 @@ def test_what_cannot_be_used_is_one_sentence_and_exit_code_2(node, capsys, argum
     assert err.count("\n") == 1
 
 
-def test_version_and_help_are_there(capsys):
+def test_version_and_help_are_printed(capsys):
     for option, expected in (("--version", f"tarl-lint {__version__}\n"), ("--help", "usage: tarl-lint")):
         with pytest.raises(SystemExit) as stop:
             main([option])
@@ -143,7 +143,7 @@ def test_version_and_help_are_there(capsys):
         assert capsys.readouterr().out.startswith(expected)
 
 
-def test_settings_are_shown_as_they_would_be_written(node, capsys):
+def test_settings_are_shown_in_the_syntax_of_the_settings_file(node, capsys):
     (node.parent / "pyproject.toml").write_text('[tool.tarl-lint]\nexclude = ["vendor/"]\n')
     code, out, _ = lint(capsys, "--show-settings", "--fail-on", "implicit")
     assert code == 0
@@ -154,14 +154,14 @@ def test_settings_are_shown_as_they_would_be_written(node, capsys):
     assert "select = [] # default" in lines
 
 
-def test_a_bug_of_ours_is_one_sentence(node, capsys, monkeypatch):
+def test_an_internal_error_gives_one_sentence(node, capsys, monkeypatch):
     monkeypatch.setattr("tarl_lint.engine.examine", lambda modules, config, isolate: 1 / 0)
     code, out, err = lint(capsys)
     assert (code, out) == (2, "")
     assert "tarl-lint has a bug and could not finish (ZeroDivisionError" in err
 
 
-def test_interruption_is_one_line(node, capsys, monkeypatch):
+def test_an_interruption_gives_one_line(node, capsys, monkeypatch):
     def interrupt(chosen, config, tell):
         raise KeyboardInterrupt
 
@@ -169,7 +169,7 @@ def test_interruption_is_one_line(node, capsys, monkeypatch):
     assert lint(capsys) == (130, "", "tarl-lint: interrupted.\n")
 
 
-def test_colours_are_for_terminals_that_want_them():
+def test_colours_are_used_only_on_capable_terminals():
     class Terminal:
         def isatty(self):
             return True
@@ -193,7 +193,7 @@ def run(node: Path, *arguments: str, **environment: str) -> subprocess.Completed
     )  # fmt: skip
 
 
-def test_forced_colours_change_nothing_but_colours(node):
+def test_forced_colours_do_not_change_the_text(node):
     import re
 
     coloured = run(node, FORCE_COLOR="1", NO_COLOR="", TERM="xterm-256color").stdout
@@ -201,7 +201,7 @@ def test_forced_colours_change_nothing_but_colours(node):
     assert re.sub(rb"\x1b\[[0-9;]*m", b"", coloured) == run(node, NO_COLOR="1").stdout
 
 
-def test_a_terminal_that_only_knows_ascii_is_no_problem(node):
+def test_an_ascii_terminal_gets_replacement_signs(node):
     node.rename(node.parent / "nöde.py")
     done = run(node, PYTHONIOENCODING="ascii", NO_COLOR="1")
     assert done.returncode == 1
@@ -209,7 +209,7 @@ def test_a_terminal_that_only_knows_ascii_is_no_problem(node):
     assert done.stderr == b""
 
 
-def test_a_reader_that_goes_away_is_no_error(node):
+def test_a_closed_pipe_is_not_an_error(node):
     node.write_text(node.read_text() + "# filler\n" * 10)
     command = f"{sys.executable} -m tarl_lint --format json --exit-zero; echo code $? >&2"
     done = subprocess.run(
@@ -229,7 +229,7 @@ def test_ctrl_c_ends_a_real_run_with_one_line(node):
     assert (done.returncode, done.stdout, done.stderr) == (130, b"", b"tarl-lint: interrupted.\n")
 
 
-def test_the_installed_command_is_there(node):
+def test_the_installed_command_runs(node):
     command = Path(sys.executable).parent / "tarl-lint"
     done = subprocess.run([str(command), "--version"], capture_output=True, check=False, text=True)
     assert done.stdout == f"tarl-lint {__version__}\n"
@@ -264,7 +264,7 @@ def test_rules_can_be_ignored_in_some_files(node, capsys):
         ("node.py:TARL9", "--per-file-ignores names 'TARL9', which is not a rule"),
     ],
 )
-def test_per_file_ignores_that_cannot_be_meant_are_refused(node, capsys, value, sentence):
+def test_invalid_per_file_ignores_are_refused(node, capsys, value, sentence):
     code, _, err = lint(capsys, "--per-file-ignores", value)
     assert code == 2
     assert err.startswith(f"tarl-lint: {sentence}")
@@ -291,7 +291,7 @@ def test_statistics_count_what_each_topic_reaches(node, capsys):
     assert "Publish calls reached, by subscribed topic:\n1  odom\n" in out
 
 
-def test_progress_is_told_on_terminals_only(node, capsys, monkeypatch):
+def test_progress_is_shown_on_terminals_only(node, capsys, monkeypatch):
     told = []
     monkeypatch.setattr("tarl_lint.run.progress.Progress.tell", lambda self, text: told.append(text))
     lint(capsys)

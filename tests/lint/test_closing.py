@@ -1,4 +1,4 @@
-"""The last words of a report: true whatever was selected, silenced or is not there."""
+"""The closing lines of a report are true for any selection, silenced findings and missing files."""
 
 from textwrap import dedent
 
@@ -20,7 +20,7 @@ BOTH = """
 
 @pytest.fixture
 def said(in_directory, capsys):
-    """Return what a run prints at its end."""
+    """Return the closing lines of a run."""
 
     def run(*arguments: str, comment: str = "") -> list[str]:
         in_directory({"node.py": dedent(BOTH).format(comment=comment)})
@@ -55,7 +55,7 @@ def said(in_directory, capsys):
         ),
     ],
 )
-def test_what_was_not_asked_for_is_not_said_to_be_absent(said, arguments, words):
+def test_rules_that_did_not_run_are_not_reported_as_clean(said, arguments, words):
     assert said(*arguments) == words
 
 
@@ -87,7 +87,7 @@ def test_a_configured_source_counts_as_a_subscription(in_directory, capsys):
     assert "No flow from a subscription to a publish call in 1 file." in capsys.readouterr().out
 
 
-def test_what_comments_silence_is_counted(said):
+def test_silenced_findings_are_counted(said):
     assert said(comment="  # tarl: ignore") == ["1 flow in 1 file: 1 implicit.", "Silenced: 1 by comments."]
 
 
@@ -103,7 +103,7 @@ def test_what_comments_silence_is_counted(said):
         ("ignore[TARL999]", ["--select", "TARL2"], True),
     ],
 )
-def test_a_comment_is_only_called_useless_where_all_that_it_speaks_of_was_looked_for(
+def test_a_comment_is_unused_only_if_all_rules_that_it_names_ran(
     in_directory, capsys, comment, arguments, noted
 ):
     in_directory({"node.py": dedent(BOTH).format(comment=f"  # tarl: {comment}")})
@@ -111,7 +111,7 @@ def test_a_comment_is_only_called_useless_where_all_that_it_speaks_of_was_looked
     assert (" note: " in capsys.readouterr().out) is noted
 
 
-def test_a_comment_that_names_no_rule_is_told_apart(in_directory, capsys):
+def test_a_comment_with_an_unknown_rule_has_its_own_message(in_directory, capsys):
     in_directory({"node.py": dedent(BOTH).format(comment="  # tarl: ignore[TARL1O1]")})
     main(["--format", "concise"])
     note = "node.py:8:28 note: there is no rule TARL1O1: correct or remove this comment.\n"
@@ -120,7 +120,7 @@ def test_a_comment_that_names_no_rule_is_told_apart(in_directory, capsys):
     assert "::There is no rule TARL1O1: correct or remove this comment" in capsys.readouterr().out
 
 
-def test_concise_names_what_has_vanished(in_directory, capsys):
+def test_concise_format_names_vanished_findings(in_directory, capsys):
     root = in_directory({"node.py": dedent(BOTH).format(comment="")})
     main(["--write-baseline"])
     (root / "node.py").write_text("")
@@ -131,7 +131,7 @@ def test_concise_names_what_has_vanished(in_directory, capsys):
     assert "\n\n" not in out
 
 
-def test_settings_are_shown_though_the_baseline_they_name_is_missing(in_directory, capsys):
+def test_settings_are_shown_even_if_their_baseline_is_missing(in_directory, capsys):
     in_directory({"pyproject.toml": '[tool.tarl-lint]\nbaseline = "flows.json"\n', "node.py": ""})
     assert main(["--show-settings"]) == 0
     assert 'baseline = "flows.json" ' in capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""Every way to keep state, with every way to be called, to make a message, to hold a publisher and to run."""
+"""Combinations of kinds of state, callbacks, messages, publishers and main programs."""
 
 import random
 from collections.abc import Iterator
@@ -29,7 +29,7 @@ def lines_with(text: str, word: str) -> set[int]:
 
 
 @pytest.mark.parametrize("parts", dict.fromkeys(chosen()), ids="-".join)
-def test_the_value_reaches_the_publish_call_by_its_statements_and_nothing_reaches_the_other(parts):
+def test_only_the_tainted_value_reaches_its_publish_call(parts):
     text = node(*parts)
     module = parse("node.py", text.encode(), "node")
     assert isinstance(module, Module)

@@ -9,7 +9,7 @@ from tarl_lint.settings.schema import Wrapper
 from tarl_lint.settings.wrappers import facts
 
 
-def test_the_default_configuration_wants_every_rule_and_excludes_nothing():
+def test_the_default_configuration_enables_every_rule_and_excludes_nothing():
     config = Config()
     assert config.enabled("TARL101")
     assert config.enabled("TARL201")
@@ -27,7 +27,7 @@ def test_the_default_configuration_wants_every_rule_and_excludes_nothing():
         (("TARL1",), ("TARL102",), "TARL101", True),
     ],
 )
-def test_codes_are_selected_and_ignored_by_their_beginning(select, ignore, code, wanted):
+def test_codes_are_selected_and_ignored_by_prefix(select, ignore, code, wanted):
     assert Config(select=select, ignore=ignore).enabled(code) is wanted
 
 
@@ -46,7 +46,7 @@ def test_settings_come_from_the_nearest_pyproject_with_our_table(in_directory):
     assert dict(config.origins)["select"] == "pyproject.toml"
 
 
-def test_the_command_line_wins_over_the_settings_file(in_directory):
+def test_the_command_line_overrides_the_settings_file(in_directory):
     in_directory({"pyproject.toml": '[tool.tarl-lint]\nselect = ["TARL1"]\nfail-on = "hazard"\n'})
     config = resolve(Options(select=("TARL2",)))
     assert config.select == ("TARL2",)
@@ -66,7 +66,7 @@ def test_the_search_for_settings_ends_at_the_top_of_the_repository(in_directory)
     assert config.root == root / "repository"
 
 
-def test_an_unknown_key_is_refused_with_the_key_that_was_meant(in_directory):
+def test_an_unknown_key_is_refused_with_a_suggestion(in_directory):
     in_directory({"pyproject.toml": '[tool.tarl-lint]\nigore = ["TARL102"]\n'})
     with pytest.raises(ConfigError, match=r"pyproject\.toml: .*no key 'igore': did you mean 'ignore'\?"):
         resolve(Options())
@@ -82,14 +82,14 @@ def test_an_unknown_key_is_refused_with_the_key_that_was_meant(in_directory):
         ("fail-on = 'always'", r"'fail-on' .* must be one of 'never', 'hazard', 'explicit', 'implicit'"),
     ],
 )
-def test_a_value_of_the_wrong_kind_is_refused_with_what_is_wanted(in_directory, line, complaint):
+def test_a_value_of_the_wrong_type_is_refused_with_the_expected_type(in_directory, line, complaint):
     in_directory({"pyproject.toml": f"[tool.tarl-lint]\n{line}\n"})
     with pytest.raises(ConfigError, match=complaint):
         resolve(Options())
 
 
 @pytest.mark.parametrize("name", ["tarl_lint", "tarl-lnt", "tarllint"])
-def test_a_table_whose_name_is_mistyped_is_refused_with_the_name_that_was_meant(in_directory, name):
+def test_a_misspelt_table_is_refused_with_a_suggestion(in_directory, name):
     in_directory({"pyproject.toml": f"[tool.{name}]\n[tool.other]\n"})
     with pytest.raises(ConfigError, match=rf"no \[tool\.{name}\]: did you mean \[tool\.tarl-lint\]\?"):
         resolve(Options())
@@ -97,7 +97,7 @@ def test_a_table_whose_name_is_mistyped_is_refused_with_the_name_that_was_meant(
     assert resolve(Options()).file is None
 
 
-def test_escapes_of_gitignore_are_no_backslashes_of_windows(in_directory):
+def test_gitignore_escapes_are_distinguished_from_windows_backslashes(in_directory):
     assert settings(in_directory, r"exclude = ['a\ b', '\#x', '\*']").exclude == (r"a\ b", r"\#x", r"\*")
 
 
@@ -106,7 +106,7 @@ def test_a_byte_order_mark_before_the_settings_is_ignored(in_directory):
     assert resolve(Options()).tf2
 
 
-def test_a_settings_file_of_another_name_holds_the_keys_at_its_top_level(in_directory):
+def test_a_settings_file_of_another_name_has_its_keys_at_the_top_level(in_directory):
     in_directory({"lint.toml": 'ignore = ["TARL102"]\n'})
     assert resolve(Options(config=Path("lint.toml"))).ignore == ("TARL102",)
 
@@ -117,7 +117,7 @@ def test_a_named_pyproject_without_our_table_is_refused(in_directory):
         resolve(Options(config=Path("pyproject.toml")))
 
 
-def test_a_settings_file_that_is_missing_or_not_toml_is_named(in_directory):
+def test_a_missing_or_invalid_settings_file_is_refused_by_name(in_directory):
     in_directory({"bad.toml": "select = [", "pyproject.toml": "tool.tarl-lint = 3"})
     with pytest.raises(ConfigError, match=r"missing\.toml cannot be read: No such file"):
         resolve(Options(config=Path("missing.toml")))
@@ -127,7 +127,7 @@ def test_a_settings_file_that_is_missing_or_not_toml_is_named(in_directory):
         resolve(Options())
 
 
-def test_the_baseline_beside_the_settings_is_used_when_it_is_there(in_directory):
+def test_the_baseline_beside_the_settings_file_is_used_if_it_exists(in_directory):
     root = in_directory({"pyproject.toml": "[tool.tarl-lint]\n", "src/node.py": ""})
     assert resolve(Options(paths=(Path("src"),))).baseline is None
     (root / "tarl-flows.json").write_text("{}")
@@ -135,7 +135,7 @@ def test_the_baseline_beside_the_settings_is_used_when_it_is_there(in_directory)
     assert resolve(Options(paths=(Path("src"),), no_baseline=True)).baseline is None
 
 
-def test_a_baseline_that_is_named_must_exist_unless_it_is_being_written(in_directory):
+def test_a_named_baseline_must_exist_unless_it_is_being_written(in_directory):
     root = in_directory({"pyproject.toml": '[tool.tarl-lint]\nbaseline = "ci/flows.json"\n'})
     for options in (Options(), Options(write_baseline=True)):
         assert resolve(options).baseline == root / "ci/flows.json"
@@ -150,7 +150,7 @@ def settings(in_directory, text: str) -> Config:
     return resolve(Options())
 
 
-def test_functions_of_the_project_are_named_in_full(in_directory):
+def test_functions_in_settings_have_qualified_names(in_directory):
     config = settings(
         in_directory, 'sources = ["bus.listen"]\nsinks = ["robot.bus.Bus.send"]\nsanitizers = []'
     )
@@ -158,13 +158,13 @@ def test_functions_of_the_project_are_named_in_full(in_directory):
     assert config.named == {"bus.listen", "robot.bus.Bus.send"}
 
 
-def test_topics_are_renamed_as_they_are_launched(in_directory):
+def test_remaps_rename_topics(in_directory):
     config = settings(in_directory, 'tf2 = true\nremaps = {"/scan" = "/front/scan"}')
     assert config.tf2
     assert config.launched == {"scan": "/front/scan"}
 
 
-def test_wrappers_say_what_they_are_like_and_where_arguments_stand(in_directory):
+def test_wrappers_declare_their_model_and_argument_positions(in_directory):
     config = settings(
         in_directory,
         '[tool.tarl-lint.wrappers]\n"bus.listen" = "rospy.Subscriber"\n'
@@ -220,12 +220,12 @@ def test_per_file_ignores_are_patterns_with_codes(in_directory):
         ("per_file_ignores = {}", r"no key 'per_file_ignores': did you mean 'per-file-ignores'\?"),
     ],
 )
-def test_names_and_tables_that_cannot_be_meant_are_refused(in_directory, line, complaint):
+def test_invalid_names_and_tables_are_refused(in_directory, line, complaint):
     with pytest.raises(ConfigError, match=complaint):
         settings(in_directory, line)
 
 
-def test_a_wrapper_of_what_ros_does_not_have_is_refused_with_what_was_meant():
+def test_a_wrapper_of_an_unknown_function_is_refused_with_a_suggestion():
     with pytest.raises(
         ConfigError, match=r"'bus\.listen' .* like 'rospy\.Subscribr', .* mean 'rospy\.Subscriber'\?"
     ):

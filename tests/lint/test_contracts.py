@@ -1,4 +1,4 @@
-"""Every module of tarl_lint stands on a floor of the import contract, and inheritance stays shallow."""
+"""Every module of tarl_lint belongs to a layer of the import contract, and inheritance is shallow."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 import tarl_lint
 
 ROOT = Path(__file__).parents[2]
-DEPTH = 3  # classes of ours above `object`
+DEPTH = 3  # levels of inheritance below `object`
 
 
 def modules() -> list[str]:
@@ -20,7 +20,7 @@ def modules() -> list[str]:
 
 
 def floors() -> list[str]:
-    """Return the names in the contract, without a reader of TOML, which Python 3.10 does not have."""
+    """Return the names in the contract, without a TOML parser, which Python 3.10 lacks."""
     text = (ROOT / "pyproject.toml").read_text("utf-8")
     layers = text.partition('name = "tarl_lint floors"')[2].partition("layers = [")[2].partition("\n]")[0]
     lines = re.findall(r'"([^"]*)"', layers)
@@ -36,7 +36,7 @@ def test_every_module_is_in_the_contract():
     assert missing == []
 
 
-def test_the_contract_names_no_module_that_is_gone():
+def test_the_contract_names_only_existing_modules():
     known = {*modules(), "tarl_lint.__main__"}
     assert [name for name in floors() if name not in known] == []
 
@@ -52,7 +52,7 @@ def test_inheritance_is_shallow():
     assert deep == []
 
 
-def test_what_the_cache_looks_at_are_all_packages_that_decide_what_is_found():
+def test_the_cache_key_covers_all_packages_that_influence_findings():
     from tarl_lint.run.cache import PACKAGES
 
     packages = {m.name for m in pkgutil.walk_packages(tarl_lint.__path__, "tarl_lint.") if m.ispkg}

@@ -11,7 +11,7 @@ from tests.lint.analysing import analysed, steps
 
 
 def dependence(text: str) -> dict[int, set[tuple[int, str]]]:
-    """Return by line which lines, gone which way, decide whether it runs."""
+    """Return for each line the branches (line, outcome) on which it depends."""
     text = dedent(text).strip()
     body = lower_module(Module("m.py", "m", text, ast.parse(text))).body
     lines: dict[int, int] = {}
@@ -29,7 +29,7 @@ def dependence(text: str) -> dict[int, set[tuple[int, str]]]:
     return {lines[n]: {(lines[b], way) for b, way in branches} for n, branches in control.direct.items()}
 
 
-def test_both_arms_of_a_condition_depend_on_it_and_what_follows_does_not():
+def test_both_branches_depend_on_the_condition_and_later_statements_do_not():
     found = dependence("""
         if a:
             b()
@@ -40,7 +40,7 @@ def test_both_arms_of_a_condition_depend_on_it_and_what_follows_does_not():
     assert (found[2], found[4], found[5]) == ({(1, "then")}, {(1, "else")}, set())
 
 
-def test_what_follows_a_loop_does_not_depend_on_it():
+def test_statements_after_a_loop_do_not_depend_on_it():
     found = dependence("""
         while a:
             b()
@@ -49,7 +49,7 @@ def test_what_follows_a_loop_does_not_depend_on_it():
     assert (found[1], found[2], found[3]) == ({(1, "body")}, {(1, "body")}, set())
 
 
-def test_the_rest_of_an_endless_loop_depends_on_the_way_out():
+def test_the_rest_of_an_endless_loop_depends_on_its_exit():
     found = dependence("""
         while True:
             if a:
@@ -61,7 +61,7 @@ def test_the_rest_of_an_endless_loop_depends_on_the_way_out():
 
 
 @pytest.mark.parametrize("leave", ["return", "raise E"])
-def test_what_comes_after_an_early_end_depends_on_its_condition(leave):
+def test_statements_after_an_early_return_depend_on_its_condition(leave):
     found = dependence(f"""
         if a:
             {leave}
@@ -95,7 +95,7 @@ def test_the_rest_of_a_loop_body_depends_on_continue():
     assert found[4] == {(2, "else")}
 
 
-def test_an_endless_loop_without_a_way_out_has_an_analysis():
+def test_an_endless_loop_without_an_exit_is_analysed():
     found = dependence("""
         while True:
             a()
@@ -103,7 +103,7 @@ def test_an_endless_loop_without_a_way_out_has_an_analysis():
     assert 2 in found
 
 
-def test_a_long_chain_of_conditions_is_told_of_the_nearest_and_reaches_the_first(tmp_path):
+def test_of_many_conditions_the_nearest_are_stored_and_the_first_is_reachable(tmp_path):
     arms = "".join(f"    {'el' if n else ''}if k == {n}:\n        v = {n}\n" for n in range(300))
     head = "import rospy\ndef on(msg):\n    k = msg.data\n    v = 0\n"
     tail = "    out.publish(v)\nout = rospy.Publisher('a', F)\nrospy.Subscriber('b', F, on)\n"
@@ -113,7 +113,7 @@ def test_a_long_chain_of_conditions_is_told_of_the_nearest_and_reaches_the_first
     assert all(f"v = {n}" in control for n in range(300))
 
 
-def test_what_many_conditions_decide_takes_no_more_for_each():
+def test_each_statement_stores_a_bounded_number_of_conditions():
     source = "".join(f"{'el' if n else ''}if k == {n}:\n    v = {n}\n" for n in range(400))
     body = lower_module(Module("m.py", "m", source, ast.parse(source))).body
     control = control_dependence(body)
@@ -121,7 +121,7 @@ def test_what_many_conditions_decide_takes_no_more_for_each():
     assert control.far
 
 
-def test_control_dependence_takes_no_more_memory_than_there_are_statements():
+def test_memory_of_control_dependence_is_linear_in_the_statements():
     body = ast.parse("x = 0\n" + "if x:\n    x = 1\n" * 5_000)
     program = lower_module(Module("node.py", "node", "", body))
     tracemalloc.start()

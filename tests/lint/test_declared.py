@@ -1,4 +1,4 @@
-"""What packages name for others to start is read as text, wherever the names stand."""
+"""Entry points that packages declare are read as text from every kind of file."""
 
 import pytest
 
@@ -17,7 +17,7 @@ from tarl_lint.read.declared import Declarations
         ("urdf/arm.xacro", '<plugin type="arm.node.start"></plugin>'),
     ],
 )
-def test_a_name_is_found_in_every_kind_of_description(tmp_path, place, text):
+def test_entry_points_are_found_in_every_kind_of_description(tmp_path, place, text):
     (tmp_path / "package.xml").write_text("<package/>")
     file = tmp_path / place
     file.parent.mkdir(exist_ok=True)
@@ -29,7 +29,7 @@ def test_a_name_is_found_in_every_kind_of_description(tmp_path, place, text):
 
 @pytest.mark.parametrize("naming", ["package.xml", "CMakeLists.txt"])
 @pytest.mark.parametrize("place", ["extras.xml", "../extras.xml", "/extras.xml"])
-def test_a_description_of_another_name_is_read_inside_the_package_only(tmp_path, naming, place):
+def test_a_description_of_another_name_is_read_only_inside_the_package(tmp_path, naming, place):
     package = tmp_path / "arm"
     package.mkdir()
     (package / "package.xml").write_text("<package/>")
@@ -41,7 +41,7 @@ def test_a_description_of_another_name_is_read_inside_the_package_only(tmp_path,
     assert Declarations().of(f"{package}/arm/node.py", "arm.node") == (() if place[:2] == ".." else ("Arm",))
 
 
-def test_without_a_package_and_with_unreadable_descriptions_nothing_is_named(tmp_path):
+def test_missing_and_unreadable_descriptions_declare_nothing(tmp_path):
     assert Declarations().of(f"{tmp_path}/node.py", "node") == ()
     (tmp_path / "setup.py").mkdir()
     (tmp_path / "plugin.xml").write_bytes(b"\xff\xfe<class type=")

@@ -1,4 +1,4 @@
-"""Room for deep recursion."""
+"""Deep recursion."""
 
 import sys
 
@@ -11,7 +11,7 @@ def depth(left: int) -> int:
     return 0 if not left else 1 + depth(left - 1)
 
 
-def test_it_allows_deep_recursion_only_meanwhile():
+def test_deep_recursion_is_allowed_only_during_the_call():
     before = sys.getrecursionlimit()
     deep = MAX_RECURSION - 500
     assert with_deep_stack(lambda: depth(deep)) == deep
@@ -25,6 +25,6 @@ def test_the_limit_is_restored_after_an_error():
     assert sys.getrecursionlimit() == before
 
 
-def test_it_can_be_nested():
+def test_calls_can_be_nested():
     assert with_deep_stack(lambda: with_deep_stack(lambda: depth(100))) == 100
-    assert HALF_A_CHUNK * 8 <= 4 * 2**20  # bytes that are mapped, not touched
+    assert HALF_A_CHUNK * 8 <= 4 * 2**20  # bytes, mapped but not touched

@@ -29,7 +29,7 @@ def test_python_files_and_python_scripts_without_extension_are_found(in_director
     assert paths() == ["a.py", "scripts/talker"]
 
 
-def test_what_tools_made_or_installed_is_left_out(in_directory):
+def test_generated_and_installed_files_are_skipped(in_directory):
     in_directory(
         {
             "src/a.py": "",
@@ -49,12 +49,12 @@ def test_what_tools_made_or_installed_is_left_out(in_directory):
     assert paths() == ["src/a.py"]
 
 
-def test_a_package_that_is_called_like_a_directory_of_colcon_is_analysed(in_directory):
+def test_a_package_named_like_a_colcon_directory_is_analysed(in_directory):
     in_directory({"robot/__init__.py": "", "robot/log/__init__.py": "", "robot/log/writer.py": ""})
     assert "robot/log/writer.py" in paths()
 
 
-def test_ignored_and_excluded_files_are_left_out_unless_named(in_directory):
+def test_ignored_and_excluded_files_are_skipped_unless_named(in_directory):
     root = in_directory(
         {".gitignore": "made/\n*_pb2.py\n", "made/a.py": "", "b_pb2.py": "", "c.py": "", "vendor/d.py": "",
          "sub/.gitignore": "!b_pb2.py\n", "sub/b_pb2.py": ""}
@@ -64,7 +64,7 @@ def test_ignored_and_excluded_files_are_left_out_unless_named(in_directory):
     assert paths("made", "vendor/d.py", config=config) == ["made/a.py", "vendor/d.py"]
 
 
-def test_ignore_files_above_count_up_to_the_top_of_the_repository(in_directory):
+def test_ignore_files_apply_up_to_the_top_of_the_repository(in_directory):
     root = in_directory(
         {".gitignore": "*.py\n", "repo/.gitignore": "a.py\n", "repo/src/a.py": "", "repo/src/b.py": ""}
     )
@@ -88,13 +88,13 @@ def test_a_file_named_twice_is_analysed_once(in_directory):
     assert paths("src", "src/a.py", "./src/../src") == ["src/a.py"]
 
 
-def test_files_outside_the_working_directory_have_their_whole_path(in_directory, monkeypatch):
+def test_files_outside_the_working_directory_have_absolute_paths(in_directory, monkeypatch):
     root = in_directory({"a/x.py": "", "b/y.py": ""})
     monkeypatch.chdir(root / "a")
     assert paths(".", "../b") == [(root / "b/y.py").as_posix(), "x.py"]
 
 
-def test_a_path_that_does_not_exist_is_named_with_its_neighbour(in_directory):
+def test_a_missing_path_is_refused_with_a_suggestion(in_directory):
     in_directory({"source/a.py": ""})
     with pytest.raises(UsageError, match=r"sorce: no such file or directory: did you mean source\?"):
         find([Path("sorce")], Config())
@@ -111,7 +111,7 @@ def test_a_directory_that_cannot_be_read_is_noted(in_directory):
     assert discovery.notes.unreadable == ("secret",)
 
 
-def test_what_is_not_analysed_is_counted(in_directory):
+def test_skipped_files_are_counted(in_directory):
     in_directory(
         {
             "src/driver.cpp": "int main() { ros::init(argc, argv, \"driver\"); }",
@@ -158,7 +158,7 @@ def test_only_the_init_file_of_a_package_is_a_package(in_directory):
     assert packages == ["pkg/__init__.py"]
 
 
-def test_package_dir_of_setup_files_is_honoured(in_directory):
+def test_package_dir_of_setup_files_is_respected(in_directory):
     in_directory(
         {
             "one/setup.py": "from setuptools import setup\nsetup(package_dir={'': 'src'})\n",
@@ -186,6 +186,6 @@ def test_package_dir_of_setup_files_is_honoured(in_directory):
 @pytest.mark.parametrize(
     "text", ["setup(package_dir=", "setup(package_dir=where())", "setup(package_dir={**x})"]
 )
-def test_a_setup_file_that_says_nothing_readable_is_passed_over(in_directory, text):
+def test_an_unreadable_setup_file_is_ignored(in_directory, text):
     in_directory({"setup.py": text, "pkg/__init__.py": "", "pkg/a.py": ""})
     assert names("pkg/a.py") == {"pkg/a.py": "pkg.a"}

@@ -1,4 +1,4 @@
-"""docs/lint.md and docs/ci.md show what the tool does today."""
+"""The examples in docs/lint.md and docs/ci.md match the tool."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def blocks(page: str, language: str) -> list[str]:
 
 @pytest.fixture
 def output(monkeypatch, capsys):
-    """Return what the tool prints at the top of the project."""
+    """Return the tool's output in the root of the project."""
 
     def of(*arguments: str) -> str:
         monkeypatch.chdir(ROOT)
@@ -36,16 +36,16 @@ def output(monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("command", re.findall(r"^\$ tarl-lint (examples.*)$", LINT, re.MULTILINE))
-def test_console_output_is_what_is_printed(output, command):
+def test_console_output_matches_the_tool(output, command):
     (shown,) = (b for b in blocks(LINT, "console") if b.startswith(f"$ tarl-lint {command}\n"))
     assert output(*command.split()) == shown.partition("\n")[2]
 
 
-def test_the_picture_is_what_is_drawn(output):
+def test_the_picture_matches_the_tool(output):
     assert blocks(LINT, "mermaid") == [output(*PICTURED, "--format", "mermaid")]
 
 
-def test_the_annotation_is_what_is_written(output):
+def test_the_annotation_matches_the_tool(output):
     (shown,) = (line for line in CI.splitlines() if line.startswith("::") and "title=TARL" in line)
     assert shown in output("examples/shuttle/traveller.py", "--format", "github").splitlines()
 
@@ -58,7 +58,7 @@ def test_every_format_option_and_key_is_described():
     assert [key for key in KEYS if key not in "".join(blocks(LINT, "toml"))] == []
 
 
-def test_the_settings_shown_can_be_used(in_directory):
+def test_the_example_settings_are_valid(in_directory):
     (text,) = blocks(LINT, "toml")
     in_directory(
         {"pyproject.toml": text, "tarl-flows.json": '{"format": 1, "tool": "tarl-lint", "flows": []}'}

@@ -63,7 +63,7 @@ def test_sinks_of_the_settings_are_publish_calls():
     assert kinds(module("node", text), sinks=("bus.send",)) == [("explicit", ("a",), ())]
 
 
-def test_of_modules_with_one_name_the_nearest_is_meant():
+def test_an_import_finds_the_nearest_of_modules_with_the_same_name():
     near = module("tools", "def helper(x):\n    return 0", "one/tools.py")
     far = module("tools", "def helper(x):\n    return x", "two/tools.py")
     text = NODE.format(value="helper(msg.data)")
@@ -91,7 +91,7 @@ def test_relative_imports_find_their_package():
     assert len(kinds(package, inner, node)) == 2
 
 
-def test_modules_that_cannot_matter_are_left_out():
+def test_irrelevant_modules_are_not_analysed():
     node = module("node", NODE.format(value="helper(msg.data)"))
     tools = module("tools", "def helper(x):\n    return x\ndef clean(x):\n    return x")
     apart = module("apart", "x = 1")
@@ -100,7 +100,7 @@ def test_modules_that_cannot_matter_are_left_out():
     assert relevant([apart, tools], Config()) == []
 
 
-def test_what_only_prose_speaks_of_matters_not():
+def test_words_in_comments_do_not_make_a_module_relevant():
     prose = '''
         """Ask pub.publish(msg) of a Publisher."""
         topic = "it's"  # as rospy.Subscriber has it
@@ -110,20 +110,20 @@ def test_what_only_prose_speaks_of_matters_not():
     assert relevant([module("code", prose + 'send = f"{pub.publish(said)}"')], Config())
 
 
-def test_modules_that_import_each_other_come_in_the_order_of_their_paths():
+def test_modules_that_import_each_other_are_ordered_by_path():
     one, two = module("one", "import two\npublish = 1"), module("two", "import one, three")
     three = module("three", "x = 1")
     assert [m.name for m in relevant([one, two, three], Config())] == ["three", "two", "one"]
     assert relevant([three, two, one], Config()) == relevant([one, two, three], Config())
 
 
-def test_the_catalog_holds_where_the_source_of_ros_is_among_the_files():
+def test_the_catalog_takes_precedence_over_source_files_of_ros():
     library = module("rospy", "class Subscriber: ...\nclass Publisher: ...")
     node = module("node", NODE.format(value="msg.data"))
     assert kinds(library, node) == kinds(node) == [("explicit", ("a",), ("b",))]
 
 
-def test_classes_that_only_others_start_are_started():
+def test_classes_started_from_outside_are_analysed():
     node = module(
         "node",
         """
@@ -155,14 +155,14 @@ TOOLS = """
     """
 
 
-def test_settings_speak_of_functions_in_the_tree_too():
+def test_settings_apply_to_functions_in_the_files():
     node = module("node", NODE.format(value="tools.checked(msg.data)").replace("import bus", "import tools"))
     tools = module("tools", TOOLS)
     assert kinds(node, tools) == [("explicit", ("a",), ("b",))]
     assert kinds(node, tools, sanitizers=("tools.checked",)) == []
 
 
-def test_settings_speak_of_methods_by_the_class_that_defines_them():
+def test_settings_name_methods_by_the_defining_class():
     text = """
         from tools import Bus
         class Radio(Bus):
@@ -178,7 +178,7 @@ def test_settings_speak_of_methods_by_the_class_that_defines_them():
     assert found == [("explicit", ("a",), ())]
 
 
-def test_wrappers_of_the_settings_do_what_they_are_like_wherever_their_arguments_stand():
+def test_wrappers_act_like_their_model_with_any_argument_positions():
     text = """
         import bus
         from std_msgs.msg import Float64
@@ -197,7 +197,7 @@ def test_wrappers_of_the_settings_do_what_they_are_like_wherever_their_arguments
     assert (flow.sink.topics, flow.sink.type) == (("b",), "Float64")
 
 
-def test_a_wrapper_may_be_like_a_method_of_a_node():
+def test_a_wrapper_can_be_like_a_node_method():
     text = """
         import bus
         out = bus.talk(Float64, "b", 10)
@@ -207,7 +207,7 @@ def test_a_wrapper_may_be_like_a_method_of_a_node():
     assert kinds(module("node", text), wrappers=wrappers) == [("explicit", ("a",), ("b",))]
 
 
-def test_a_callback_registered_with_what_nothing_is_known_of_is_no_failure():
+def test_a_callback_registered_with_an_unknown_object_does_not_fail():
     text = "from elsewhere import sync\nfrom rospy import Subscriber\nsync.registerCallback(print)\n"
     text += "def f(filters):\n    filters.registerCallback(f)\nf(None)\n"
     assert analyse([module("node", text)], Config()) == ()

@@ -10,7 +10,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 
 @pytest.mark.parametrize("code", sorted(known_rules()))
-def test_the_page_of_a_rule_is_what_its_file_says(code):
+def test_the_page_of_a_rule_matches_its_module(code):
     written = (DOCS / "rules" / f"{code}.md").read_text("utf-8")
     assert written == page(code), "run: python -m tarl_lint.explain docs/rules"
 
@@ -29,7 +29,7 @@ def test_explain_prints_the_page_without_its_markup(capsys):
     assert "        brake.publish(force)\n" in out
 
 
-def test_examples_that_follow_each_other_are_kept_apart(capsys):
+def test_consecutive_examples_are_separated(capsys):
     main(["--explain", "TARL204"])
     out = capsys.readouterr().out
     assert (
@@ -38,11 +38,11 @@ def test_examples_that_follow_each_other_are_kept_apart(capsys):
     assert out.count("--------") == 1
 
 
-def test_the_codes_that_other_files_know_are_those_of_the_rules():
+def test_codes_in_other_files_are_those_of_the_rules():
     assert tuple(known_rules()) == RULES
 
 
-def test_the_guide_shows_what_the_command_prints(capsys, monkeypatch):
+def test_the_guide_matches_the_output_of_the_command(capsys, monkeypatch):
     monkeypatch.chdir(DOCS.parent)
     main(["examples/shuttle/traveller.py"])
     printed = "$ tarl-lint examples/shuttle/traveller.py\n" + capsys.readouterr().out

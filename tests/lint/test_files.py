@@ -1,4 +1,4 @@
-"""Files are written whole or not at all; what is no file is never replaced by one."""
+"""Files are written atomically; pipes and devices are never replaced by files."""
 
 import os
 import stat
@@ -17,7 +17,7 @@ def test_a_file_is_replaced_and_keeps_its_mode(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["flows.json"]
 
 
-def test_a_pipe_or_device_is_written_to_and_stays_what_it_is(tmp_path):
+def test_a_pipe_or_device_is_written_to_and_not_replaced(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     read = []

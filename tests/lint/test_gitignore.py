@@ -42,20 +42,20 @@ def left_out(lines: list[str], path: str, *, is_directory: bool = True) -> bool:
 
 
 @pytest.mark.parametrize(("pattern", "path", "expected"), CASES)
-def test_patterns_mean_what_git_says(pattern, path, expected):
+def test_patterns_match_like_in_git(pattern, path, expected):
     assert left_out([pattern], path) is expected
 
 
-def test_the_last_pattern_that_speaks_of_a_path_decides():
+def test_the_last_matching_pattern_decides():
     assert not left_out(["*.py", "!keep.py"], "keep.py")
     assert left_out(["!keep.py", "*.py"], "keep.py")
 
 
-def test_a_pattern_for_directories_leaves_files_alone():
+def test_a_directory_pattern_does_not_match_files():
     assert not left_out(["build/"], "build", is_directory=False)
 
 
-def test_the_nearest_file_decides_and_speaks_only_of_its_own_directory():
+def test_the_nearest_ignore_file_decides_for_its_own_directory():
     outer, inner = parse("/top", ["*.py"]), parse("/top/a", ["!*.py"])
     assert ignored("/top/x.py", [outer, inner], is_directory=False)
     assert not ignored("/top/a/x.py", [outer, inner], is_directory=False)
@@ -65,7 +65,7 @@ def test_the_nearest_file_decides_and_speaks_only_of_its_own_directory():
 lines_of_patterns = st.text("ab*?/!.[]\\^", min_size=1, max_size=6).filter(
     lambda line: (
         not re.search(r"[^/]\*\*+/|/\*\*+[^/*]", line)
-    )  # git cuts the literal beginning off before it reads `**`
+    )  # git removes the literal beginning before it reads `**`
 )
 
 
@@ -74,8 +74,8 @@ lines_of_patterns = st.text("ab*?/!.[]\\^", min_size=1, max_size=6).filter(
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 @given(st.lists(lines_of_patterns, min_size=1, max_size=3))
-def test_git_itself_agrees(tmp_path: Path, lines: list[str]):
-    """Compare with `git check-ignore` on paths whose parents are not ignored (git looks no further below one)."""
+def test_the_results_agree_with_git(tmp_path: Path, lines: list[str]):
+    """Compare with `git check-ignore` on paths whose parents are not ignored (git does not descend into those)."""
     if not (tmp_path / ".git").exists():
         subprocess.run(["git", "init", "-q", str(tmp_path)], check=True)
     (tmp_path / ".gitignore").write_text("\n".join(lines) + "\n")
@@ -92,6 +92,6 @@ def test_git_itself_agrees(tmp_path: Path, lines: list[str]):
     st.lists(st.sampled_from(["*a", "**/", "?*", "[ab]*", "*", "a*/", "*b*"]), min_size=10, max_size=60),
     st.lists(st.sampled_from(["a" * 60, "a", "ab" * 30]), min_size=1, max_size=40),
 )
-def test_no_pattern_takes_for_ever(pieces: list[str], names: list[str]):
-    """Expressions that try every way never end on these: `*a*a*a…b` against a name of many letters a."""
+def test_no_pattern_needs_exponential_time(pieces: list[str], names: list[str]):
+    """Backtracking expressions need exponential time for `*a*a*a…b` against a name of many letters a."""
     parse("/top", ["".join(pieces) + "c"]).verdict(f"/top/{'/'.join(names)}", is_directory=False)

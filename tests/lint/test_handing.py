@@ -1,4 +1,4 @@
-"""Every kind of callable, handed to a library in every way: its data arrives, and that of others does not."""
+"""Every kind of callable, passed to a library in every way: its data reaches the result, other data does not."""
 
 import pytest
 from hypothesis import given, settings
@@ -90,7 +90,7 @@ WAYS = [
 
 @settings(max_examples=40)
 @given(function=st.sampled_from(CARRYING + SILENT), handed=st.sampled_from(WAYS))
-def test_what_a_callable_returns_is_in_what_the_library_gives_back(tmp_path_factory, function, handed):
+def test_the_result_of_a_callable_is_part_of_the_librarys_result(tmp_path_factory, function, handed):
     directory = tmp_path_factory.mktemp("node")
     text = NODE.replace("{callable}", function).replace("{handed}", handed)
     found = {(f.source.topics, f.kind) for f in analysed(directory, node=text).flows}
@@ -98,6 +98,6 @@ def test_what_a_callable_returns_is_in_what_the_library_gives_back(tmp_path_fact
 
 
 @pytest.mark.parametrize("handed", [way for way in WAYS if "0.0" in way])
-def test_what_the_library_is_given_may_be_passed_to_the_callable(tmp_path, handed):
+def test_the_librarys_arguments_may_be_passed_to_the_callable(tmp_path, handed):
     text = NODE.replace("{callable}", "self.idle").replace("{handed}", handed.replace("0.0", "self.other"))
     assert {f.source.topics for f in analysed(tmp_path, node=text).flows} == {("other",)}

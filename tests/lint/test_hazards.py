@@ -1,4 +1,4 @@
-"""Hazards: what is reported, at which line, and what looks alike but is right."""
+"""Hazards: reported code and lines, and similar code that is correct."""
 
 import json
 from textwrap import dedent
@@ -63,11 +63,11 @@ def test_a_command_computed_from_a_sensor_without_limit_is_a_hazard(body):
         "cmd.linear.x = 2.0 * [0.1, 0.2, 0.3][int(msg.range)]",
     ],
 )
-def test_a_command_that_something_limits_is_none(body):
+def test_a_limited_command_is_not_a_hazard(body):
     assert lines("TARL202", inside(RANGE, body, 8)) == []
 
 
-def test_the_line_that_computes_the_value_is_named_not_the_publish_call():
+def test_the_hazard_is_at_the_computation_not_at_the_publish_call():
     body = "speed = 0.3 * msg.range\ncmd.linear.x = speed"
     assert lines("TARL202", inside(RANGE, body, 8)) == [13]
 
@@ -103,7 +103,7 @@ SPEED = """
 @pytest.mark.parametrize(
     ("package", "message", "field"), [("std_msgs", "Float64", "data"), ("geometry_msgs", "Twist", "linear.x")]
 )
-def test_speeds_that_may_be_measurements_are_no_commands(topic, value, found, package, message, field):
+def test_speeds_that_may_be_measurements_are_not_commands(topic, value, found, package, message, field):
     text = SPEED.format(topic=topic, value=value, package=package, message=message, field=field)
     assert len(lines("TARL202", text)) == found
 
@@ -141,11 +141,11 @@ WATCH = """
         ("return msg.ranges", "", 0),
     ],
 )  # fmt: skip
-def test_a_callback_that_does_nothing_that_matters_is_a_hazard(body, more, found):
+def test_a_callback_without_effect_is_a_hazard(body, more, found):
     assert len(lines("TARL203", WATCH.format(body=body, more=more))) == found
 
 
-def test_the_name_of_a_topic_is_no_use_of_an_attribute_of_that_name():
+def test_a_topic_name_is_not_a_use_of_an_attribute_of_that_name():
     text = WATCH.format(body="self.scan = msg", more="").replace("/scan", "scan")
     assert len(lines("TARL203", text)) == 1
     assert lines("TARL204", SENDER.format(more="").replace('"/a"', '"pub"')) == [6]
@@ -155,7 +155,7 @@ def test_the_name_of_a_topic_is_no_use_of_an_attribute_of_that_name():
     assert lines("TARL204", SENDER.format(more=looked_up).replace('"/a"', '"pub"')) == []
 
 
-def test_a_callback_that_an_heir_replaces_is_none():
+def test_a_callback_that_a_subclass_overrides_is_not_a_hazard():
     base = WATCH.format(body="pass", more="").replace("Watch()", "Near()").replace(
         'rospy.init_node("watch")',
         'class Near(Watch):\n        def on_scan(self, msg):\n            print(msg)\n    rospy.init_node("watch")',
@@ -192,7 +192,7 @@ SENDER = """
         ("    class Else:\n        def send(self):\n            self.pub.publish(1.0)", []),
     ],
 )
-def test_a_publisher_that_nobody_could_publish_with_is_a_hazard(more, found):
+def test_an_unused_publisher_is_a_hazard(more, found):
     assert lines("TARL204", SENDER.format(more=more)) == found
 
 
@@ -208,7 +208,7 @@ def test_a_publisher_of_the_same_name_in_another_class_does_not_hide_one():
     assert lines("TARL204", SENDER.format(more=more)) == [6]
 
 
-def test_a_publisher_used_from_another_file_is_none():
+def test_a_publisher_used_from_another_file_is_not_a_hazard():
     user = """
     from a import Sender
     Sender().pub.publish(1.0)
@@ -265,5 +265,5 @@ DECIDED = """
         ("Unheard", "range", "/scan", 0),
     ],
 )
-def test_only_what_measures_is_a_sensor(kind, field, topic, found):
+def test_only_measurements_are_sensors(kind, field, topic, found):
     assert len(lines("TARL202", DECIDED.format(kind=kind, field=field, topic=topic))) == found

@@ -27,14 +27,14 @@ KEEPER = """
 TOTAL = "total = self.scaled + x + near + self.odom.twist.linear.x"
 
 
-def test_variables_that_hold_the_field_come_shortest_first(tmp_path):
+def test_variables_that_contain_the_field_are_sorted_by_length(tmp_path):
     analysis = analysed(tmp_path, node=KEEPER)
     place = site(analysis, TOTAL)
     assert analysis.holders("odom", "pose.position.y", place)[:3] == ("near", "self.y", "keeper.y")
     assert analysis.holders("/odom", "pose.position.x", place)[0] == "x"
 
 
-def test_a_message_kept_whole_holds_all_its_fields(tmp_path):
+def test_a_stored_message_contains_all_its_fields(tmp_path):
     analysis = analysed(tmp_path, node=KEEPER)
     assert (
         analysis.holders("/odom", "twist.angular.z", site(analysis, TOTAL))[0] == "self.odom.twist.angular.z"
@@ -42,14 +42,14 @@ def test_a_message_kept_whole_holds_all_its_fields(tmp_path):
     assert analysis.holders("/odom", "ranges.3", site(analysis, TOTAL))[0] == "self.odom.ranges[3]"
 
 
-def test_changed_values_and_other_topics_hold_nothing(tmp_path):
+def test_changed_values_and_other_topics_are_not_offered(tmp_path):
     analysis = analysed(tmp_path, node=KEEPER)
     found = analysis.holders("/odom", "pose.position.y", site(analysis, TOTAL))
     assert "self.scaled" not in found
     assert analysis.holders("/scan", "pose.position.y", site(analysis, TOTAL)) == ()
 
 
-def test_beside_a_new_message_what_an_earlier_one_left_is_not_offered(tmp_path):
+def test_values_of_an_earlier_message_are_not_offered(tmp_path):
     analysis = analysed(tmp_path, node=KEEPER)
     place = site(analysis, "self.y = msg.pose.position.y")
     assert analysis.holders("/odom", "pose.position.y", place) == (
@@ -59,7 +59,7 @@ def test_beside_a_new_message_what_an_earlier_one_left_is_not_offered(tmp_path):
     )
 
 
-def test_a_field_that_was_overwritten_is_not_held(tmp_path):
+def test_an_overwritten_field_is_not_offered(tmp_path):
     analysis = analysed(
         tmp_path,
         node="""

@@ -1,4 +1,4 @@
-"""A program that is too large to follow in every detail is named in every format, by file and node."""
+"""A program that exhausts its budget is named in every format, by file and node."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ def result(example) -> Result:
 
 
 @pytest.mark.parametrize("name", [n for n in FORMATS if n not in ("dot", "mermaid", "topics")])
-def test_it_is_named_in_every_format(name, result):
+def test_an_incomplete_program_is_named_in_every_format(name, result):
     text = text_of(name, result)
     assert "src/pilot.py" in text
     assert "pilot" in text.replace("src/pilot.py", "")
 
 
-def test_json_names_it_under_a_key_that_is_there_only_then(result, example):
+def test_json_has_the_key_incomplete_only_if_a_program_is(result, example):
     entry = {"path": "src/pilot.py", "node": "pilot", "message": CUT.message}
     assert json.loads(text_of("json", result))["incomplete"] == [entry]
     assert "incomplete" not in json.loads(text_of("json", everything(example)))
@@ -69,7 +69,7 @@ def test_junit_has_a_skipped_case(result):
         ("x = 1", ""),
     ],
 )
-def test_the_name_of_a_node_is_read_off_the_syntax(text, name):
+def test_the_name_of_a_node_is_found_by_syntax(text, name):
     assert node_name(ast.parse(text)) == name
 
 
@@ -80,18 +80,18 @@ SMALL = (
 )
 
 
-FEW = 2_000  # statements that one run may take here
+FEW = 2_000  # statements per run in these tests
 
 
 def large() -> str:
-    """Return a node in which one run takes more statements than one may."""
+    """Return a node whose run exceeds the limit on statements."""
     body = "".join(f"    x = helper(x) + {n}\n" for n in range(FEW))
     return SMALL.replace(
         "    pub.publish(helper(msg.data))\n", f"    x = msg.data\n{body}    pub.publish(x)\n"
     )
 
 
-def test_a_program_spends_its_own_budget_and_not_that_of_others_that_import_the_same(monkeypatch):
+def test_programs_with_common_imports_have_separate_budgets(monkeypatch):
     monkeypatch.setattr(fixpoint, "MAX_STATEMENTS", FEW)
     texts = {"lib.py": LIBRARY, "large.py": large(), "small.py": SMALL}
     modules = [Module(p, p.removesuffix(".py"), t, ast.parse(t)) for p, t in texts.items()]
@@ -118,7 +118,7 @@ def test_the_steps_of_a_node_do_not_depend_on_how_many_nodes_import_the_same(mon
     alone = {"lib.py": LIBRARY, "node.py": BRIDGED}
     expected = steps(alone)
     assert (7, "data") in expected
-    monkeypatch.setattr(value_flow_graph, "MAX_NODES", 60)  # enough for one node, not for nine
+    monkeypatch.setattr(value_flow_graph, "MAX_NODES", 60)  # enough for one node, but not for nine
     others = {f"another{n}.py": BRIDGED for n in range(8)}
     assert steps(alone) == expected
     assert steps({**others, **alone}) == expected

@@ -1,4 +1,4 @@
-"""Packages of a virtual environment are followed where the settings say so: as files, never imported or run."""
+"""Installed packages named in the settings are analysed as files, never imported or run."""
 
 from textwrap import dedent
 
@@ -53,7 +53,7 @@ DRIVER = """
 
 @pytest.fixture
 def workspace(tmp_path, monkeypatch):
-    """Return a directory with a node and a virtual environment that holds its base class."""
+    """Return a directory with a node and a virtual environment that contains its base class."""
     monkeypatch.chdir(tmp_path)
     site = tmp_path / ".venv/lib/python3.11/site-packages"
     package, info = site / "robot_base", site / "robot_base-1.4.0.dist-info"
@@ -95,7 +95,7 @@ def test_flows_pass_through_an_installed_base_class(workspace):
     assert not (workspace / "ran").exists()
 
 
-def test_without_the_setting_the_base_is_opaque_and_named(workspace):
+def test_without_the_setting_the_base_class_is_opaque_and_named(workspace):
     (workspace / "pyproject.toml").write_text("[tool.tarl-lint]\n")
     result = linted(workspace)
     assert pairs(result) == set()
@@ -104,7 +104,7 @@ def test_without_the_setting_the_base_is_opaque_and_named(workspace):
     )
 
 
-def test_an_editable_install_is_found_through_its_path_and_code_in_pth_files_is_not_run(workspace):
+def test_editable_installs_are_found_and_code_in_pth_files_is_not_run(workspace):
     site = workspace / ".venv/lib/python3.11/site-packages"
     moved = workspace / "elsewhere"
     moved.mkdir()
@@ -116,7 +116,7 @@ def test_an_editable_install_is_found_through_its_path_and_code_in_pth_files_is_
     assert not (workspace / "ran").exists()
 
 
-def test_a_change_in_the_package_changes_what_is_cached(workspace):
+def test_a_change_in_the_package_invalidates_the_cache(workspace):
     options = Options(paths=(workspace / "driver.py",))
     assert len(pairs(run(options, resolve(options)))) == 2
     node = workspace / ".venv/lib/python3.11/site-packages/robot_base/node.py"
@@ -134,7 +134,7 @@ def test_a_change_in_the_package_changes_what_is_cached(workspace):
         ("", r"'follow-installed' needs 'python'"),
     ],
 )
-def test_an_environment_that_is_none_is_told(workspace, settings, message):
+def test_a_directory_that_is_not_an_environment_is_refused(workspace, settings, message):
     (workspace / "pyproject.toml").write_text(
         f'[tool.tarl-lint]\nfollow-installed = ["robot_base"]\n{settings}\n'
     )
@@ -143,13 +143,13 @@ def test_an_environment_that_is_none_is_told(workspace, settings, message):
 
 
 @pytest.mark.parametrize("name", ['"robot.base"', "3", '"-x"'])
-def test_a_name_that_is_no_package_is_refused(workspace, name):
+def test_an_invalid_package_name_is_refused(workspace, name):
     (workspace / "pyproject.toml").write_text(f"[tool.tarl-lint]\nfollow-installed = [{name}]\n")
     with pytest.raises(ConfigError, match="must be a list of packages that are installed"):
         linted(workspace)
 
 
-def test_a_package_that_is_not_there_is_named_and_the_rest_goes_on(workspace):
+def test_a_missing_package_is_named_and_the_run_continues(workspace):
     settings = workspace / "pyproject.toml"
     settings.write_text(settings.read_text().replace('["robot_base"]', '["robot_base", "gone"]'))
     result = linted(workspace)
@@ -157,7 +157,7 @@ def test_a_package_that_is_not_there_is_named_and_the_rest_goes_on(workspace):
     assert "'follow-installed' names 'gone', but .venv contains no Python source" in said(result)
 
 
-def test_packages_of_the_system_count_only_where_the_environment_says_so(tmp_path):
+def test_system_packages_are_read_only_if_the_environment_includes_them(tmp_path):
     system = tmp_path / "usr/lib/python3.11/site-packages"
     system.mkdir(parents=True)
     home = tmp_path / "env"

@@ -1,4 +1,4 @@
-"""Ctrl-C while several processes are at work."""
+"""Ctrl-C while several processes run."""
 
 import os
 import signal
@@ -10,7 +10,7 @@ import pytest
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of a group of processes")
 @pytest.mark.parametrize("ready", ["Analysing in 2 processes", "worker"])
-def test_ctrl_c_reaches_all_processes_and_one_of_them_says_so(in_directory, ready):
+def test_ctrl_c_ends_all_processes_with_one_message(in_directory, ready):
     nodes = {f"node{n}.py": f"import rospy\nx = {n}\nrospy.Subscriber('a', B, c)\n" for n in range(2)}
     root = in_directory({**nodes, "slow.py": SLOW})
     done = subprocess.run(

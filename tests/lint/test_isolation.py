@@ -1,4 +1,4 @@
-"""Nothing of what is linted runs: not even a file with the name of a module that tarl-lint or Python imports."""
+"""No linted file runs, not even one named like a module that tarl-lint or Python imports."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ ARGUMENTS = ["--no-cache", "--format", "json", "--exit-zero"]
 
 
 def bait(directory: Path) -> None:
-    """Write a file for every name; one that runs leaves a mark and does what its namesake cannot."""
+    """Write a file for every name; if it runs, it leaves a mark and then fails."""
     marks = directory / "ran"
     marks.mkdir(parents=True)
     for name in (*(f"{name}.py" for name in NAMES if name.isidentifier()), *CONFIGURATION):
@@ -49,7 +49,7 @@ def run(command: list[str], directory: Path, **environment: str) -> subprocess.C
 
 @pytest.fixture
 def nodes(tmp_path: Path) -> Path:
-    """Write two nodes that have nothing to do with each other, so that two processes have work."""
+    """Write two independent nodes, so that two processes have work."""
     directory = tmp_path / "nodes"
     for name in ("a", "b"):
         (directory / name).mkdir(parents=True)
@@ -65,7 +65,7 @@ def place(tmp_path: Path) -> Path:
 
 
 def take_away_what_python_itself_runs(command: list[str], place: Path, **environment: str) -> None:
-    """Remove the files that Python runs before the first line of a program that imports nothing."""
+    """Remove the files that Python itself runs before the first line of a program without imports."""
     while run(command, place, **environment) and (found := marked(place)):
         for name in found:
             (place / name).unlink()
@@ -84,7 +84,7 @@ def test_the_command_runs_no_file_of_the_working_directory(place, nodes, tmp_pat
 
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
-def test_it_runs_no_file_when_they_are_what_it_reads(place, jobs):
+def test_the_command_does_not_run_the_files_that_it_lints(place, jobs):
     (place / "node.py").write_text(NODE)
     done = run([*SCRIPT, *ARGUMENTS, "--jobs", jobs, "."], place)
     assert done.returncode == 0, done.stderr
@@ -93,8 +93,8 @@ def test_it_runs_no_file_when_they_are_what_it_reads(place, jobs):
 
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
-def test_as_a_module_it_runs_no_file_that_python_itself_does_not_run(place, nodes, tmp_path, jobs):
-    """`python -m` looks up `runpy` or `importlib` in the working directory before anything of ours."""
+def test_python_m_runs_no_further_file_of_the_working_directory(place, nodes, tmp_path, jobs):
+    """`python -m` imports `runpy` or `importlib` from the working directory before any of our code runs."""
     (place / "trivial_program.py").write_text("")
     take_away_what_python_itself_runs([sys.executable, "-m", "trivial_program"], place)
     (place / "trivial_program.py").unlink()
@@ -108,7 +108,7 @@ def test_as_a_module_it_runs_no_file_that_python_itself_does_not_run(place, node
 
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="the switch came with Python 3.11")
 @pytest.mark.parametrize("switch", ["-P", "-I"])
-def test_with_a_safe_path_python_itself_runs_nothing_either(place, nodes, switch):
+def test_with_a_safe_path_python_runs_no_file_either(place, nodes, switch):
     done = run([sys.executable, switch, "-m", "tarl_lint", *ARGUMENTS, "--jobs", "2", "../nodes"], place)
     assert done.returncode == 0, done.stderr
     assert marked(place) == set()
@@ -116,8 +116,8 @@ def test_with_a_safe_path_python_itself_runs_nothing_either(place, nodes, switch
 
 @pytest.mark.parametrize("jobs", ["1", "2"])
 @pytest.mark.parametrize("value", ["", os.pathsep, "."])
-def test_a_python_path_that_names_the_working_directory_is_not_looked_at(place, nodes, tmp_path, value, jobs):
-    """The empty entry that ROS's `setup.bash` leaves is the working directory to Python."""
+def test_the_working_directory_on_pythonpath_is_ignored(place, nodes, tmp_path, value, jobs):
+    """The empty entry that ROS's `setup.bash` leaves in PYTHONPATH means the working directory."""
     path = f"/nowhere{os.pathsep}{value}"
     program = tmp_path / "program.py"
     program.write_text("")
@@ -127,7 +127,7 @@ def test_a_python_path_that_names_the_working_directory_is_not_looked_at(place, 
     assert marked(place) == set()
 
 
-def test_a_source_tree_that_is_installed_editable_is_not_looked_at(monkeypatch, tmp_path):
+def test_editable_source_trees_are_not_imported(monkeypatch, tmp_path):
     monkeypatch.setattr(sys, "path", [str(tmp_path), "", *sys.path, str(tmp_path / "src")])
     import_path.restrict()
     assert str(tmp_path) not in sys.path
@@ -136,11 +136,11 @@ def test_a_source_tree_that_is_installed_editable_is_not_looked_at(monkeypatch, 
     assert str(Path(os.__file__).parent) in sys.path
 
 
-def test_where_another_thread_runs_there_are_no_workers(monkeypatch):
+def test_no_workers_are_forked_beside_another_thread(monkeypatch):
     monkeypatch.setattr("threading.active_count", lambda: 2)
     if workers._context() is None:
         assert workers.in_processes(abs, [-1, -2], [1, 1], 2, silent) is None
 
 
-def test_answers_come_in_the_order_of_the_work():
+def test_answers_keep_the_order_of_the_work():
     assert workers.in_processes(abs, [-1, -2, -3], [1, 3, 2], 2, silent) == [1, 2, 3]

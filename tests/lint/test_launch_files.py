@@ -1,4 +1,4 @@
-"""Launch files read as text: nodes with namespaces, remappings, parameters, and what only the robot knows."""
+"""Launch files are read as text: nodes with namespaces, remappings, parameters, and symbolic values."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def test_ros1_launch_files_are_read(tmp_path: Path) -> None:
     assert settings(found, 2) == [("~rate", 5)]
 
 
-def test_what_is_known_on_the_robot_only_is_told_with_its_line(tmp_path: Path) -> None:
+def test_values_known_only_on_the_robot_are_reported_with_their_line(tmp_path: Path) -> None:
     assert [(one.line, one.reason) for one in launched(tmp_path, ROS1).problems] == [
         (16, "<param> of drive: ~model is what a command prints on the robot"),
         (17, "<param> of drive: the argument robot has no value"),
@@ -88,7 +88,7 @@ def test_what_is_known_on_the_robot_only_is_told_with_its_line(tmp_path: Path) -
     ]
 
 
-def test_arguments_are_given_from_outside(tmp_path: Path) -> None:
+def test_launch_arguments_override_defaults(tmp_path: Path) -> None:
     found = launched(tmp_path, ROS1, robot="husky", gain="2.0")
     assert [one.name for one in found.nodes] == ["watch", "part_b", "k"]
 
@@ -102,7 +102,7 @@ def test_arguments_are_given_from_outside(tmp_path: Path) -> None:
         ("<launch><param name='a' value='$(eval __import__(\"os\").getcwd())'/></launch>", "is not constant"),
     ],
 )
-def test_files_that_cannot_be_read_are_told(tmp_path: Path, text: str, reason: str) -> None:
+def test_unreadable_files_are_reported(tmp_path: Path, text: str, reason: str) -> None:
     found = launched(tmp_path, text)
     assert not found.nodes
     assert any(reason in one.reason for one in found.problems)
@@ -151,7 +151,7 @@ def test_ros2_launch_files_in_python_are_interpreted(tmp_path: Path) -> None:
     assert {(one.line, one.reason) for one in found.problems} == {(23, "the parameter home is not constant")}
 
 
-def test_an_argument_that_names_itself_ends(tmp_path: Path) -> None:
+def test_a_self_referring_argument_terminates(tmp_path: Path) -> None:
     text = """
         from launch import LaunchDescription
         from launch.actions import DeclareLaunchArgument
@@ -223,7 +223,7 @@ def generate_launch_description():
 """
 
 
-def test_includes_conditions_functions_and_components_of_python_files(tmp_path: Path) -> None:
+def test_python_files_may_use_includes_conditions_functions_and_components(tmp_path: Path) -> None:
     launched(tmp_path, PART, "part.launch.py")
     found = launched(tmp_path, COMPLETE, "bringup.launch.py")
     assert [(one.kind, one.name, one.namespace, one.executable) for one in found.nodes] == [
@@ -247,7 +247,7 @@ def test_includes_conditions_functions_and_components_of_python_files(tmp_path: 
     ]
 
 
-def test_arguments_decide_in_python_files(tmp_path: Path) -> None:
+def test_arguments_decide_conditions_in_python_files(tmp_path: Path) -> None:
     found = launched(tmp_path, COMPLETE, "bringup.launch.py", robot="jackal", serial="false")
     assert [one.executable for one in found.nodes] == [
         "never",
@@ -318,7 +318,7 @@ launch:
 
 
 @pytest.mark.parametrize(("name", "text"), [("b.launch.xml", XML2), ("b.launch.yaml", YAML2)])
-def test_ros2_launch_files_in_xml_and_yaml_say_the_same(tmp_path: Path, name: str, text: str) -> None:
+def test_ros2_launch_files_in_xml_and_yaml_are_equivalent(tmp_path: Path, name: str, text: str) -> None:
     pytest.importorskip("yaml")
     launched(tmp_path, PART, "part.launch.py")
     found = launched(tmp_path, text, name)
@@ -337,7 +337,7 @@ def test_ros2_launch_files_in_xml_and_yaml_say_the_same(tmp_path: Path, name: st
     assert [one.reason for one in found.problems] == ["<unknown_action> is not followed"]
 
 
-def test_names_that_only_the_robot_knows_stay_symbolic(tmp_path: Path) -> None:
+def test_names_known_only_on_the_robot_stay_symbolic(tmp_path: Path) -> None:
     text = """
         <launch>
           <arg name="robot"/>
@@ -362,7 +362,7 @@ def test_names_that_only_the_robot_knows_stay_symbolic(tmp_path: Path) -> None:
          "the included file $(find-pkg-share nav)/x.xml is not in the workspace"),
     ],
 )  # fmt: skip
-def test_ros2_files_that_cannot_be_read_are_told(tmp_path: Path, name: str, text: str, reason: str) -> None:
+def test_unreadable_ros2_files_are_reported(tmp_path: Path, name: str, text: str, reason: str) -> None:
     pytest.importorskip("yaml")
     found = launched(tmp_path, text, name)
     assert not found.nodes

@@ -94,14 +94,14 @@ def test_state_of_a_callback_used_in_a_timer_needs_its_lock(body, found):
         ("SingleThreadedExecutor", "ReentrantCallbackGroup", "self.group", 0),
     ],
 )
-def test_callbacks_of_rclpy_overlap_only_where_they_are_told_to(executor, group, given, found):
+def test_rclpy_callbacks_overlap_only_with_a_suitable_executor_and_group(executor, group, given, found):
     text = RCLPY.format(executor=executor, group=group, given=given)
     if given == "None":
         text = text.replace(", callback_group=None", "")
     assert len(lines("TARL201", text)) == found
 
 
-def test_what_a_thread_of_ones_own_reads_needs_the_lock_in_rclpy_too():
+def test_state_read_by_a_custom_thread_needs_the_lock_in_rclpy_too():
     text = RCLPY.format(executor="SingleThreadedExecutor", group="ReentrantCallbackGroup", given="self.group")
     text = text.replace(
         "self.create_timer(0.1, self.on_timer, callback_group=self.group)",
@@ -110,14 +110,14 @@ def test_what_a_thread_of_ones_own_reads_needs_the_lock_in_rclpy_too():
     assert len(lines("TARL201", text)) == 1
 
 
-def test_the_call_without_the_lock_is_named_where_others_come_with_it():
+def test_the_call_without_the_lock_is_named_if_others_hold_it():
     text = inside(ROSPY, "with self.lock:\n    self.send()\nself.send()", 12)
     (line,) = lines("TARL201", text)
     assert dedent(text).strip("\n").split("\n")[line - 1].strip() == "self.send()"
     assert "on_timer" in dedent(text).strip("\n").split("\n")[line - 4]
 
 
-def test_objects_that_may_guard_themselves_are_not_reported_and_containers_are():
+def test_containers_are_reported_but_not_objects_with_their_own_locks():
     text = inside(ROSPY, "self.store.append(2.0)", 12).replace("self.value = msg.data", "self.store.clear()")
     for made, found in (("[]", 1), ("deque()", 1), ("Store()", 0), ("store", 0)):
         assert len(lines("TARL201", text.replace("self.value = 0.0", f"self.store = {made}"))) == found
@@ -199,8 +199,8 @@ def test_parts_that_are_written_together_must_be_read_together(written, found):
     assert len(lines("TARL201", TWO_PARTS.format(written=body))) == found
 
 
-def test_a_function_that_ros_and_others_call_is_named_itself_in_its_own_file(tmp_path):
-    """What ROS calls without the lock has no calling line: none of another file may be named in its place."""
+def test_a_function_called_by_ros_and_others_is_reported_itself(tmp_path):
+    """A callback run by ROS without the lock has no calling line; no line of another file may be reported."""
     files = {
         "a_first.py": "import rospy\n\n\ndef name():\n    return 'x'\n",
         "node.py": """
@@ -233,8 +233,8 @@ def test_a_function_that_ros_and_others_call_is_named_itself_in_its_own_file(tmp
 
 
 @pytest.mark.parametrize(("other", "count"), [("else", 0), ("if True", 1)])
-def test_callbacks_of_which_only_one_is_registered_share_nothing(tmp_path, other, count):
-    """A node that synchronises or polls registers one callback or the other, never both."""
+def test_callbacks_registered_in_opposite_branches_do_not_race(tmp_path, other, count):
+    """A node that either synchronises or polls registers one of two callbacks, never both."""
     path = tmp_path / "node.py"
     path.write_text(
         dedent(f"""

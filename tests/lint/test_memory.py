@@ -1,4 +1,4 @@
-"""The operations of the abstract memory, each by itself."""
+"""Single operations of the abstract memory."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_an_object_that_stands_for_many_is_never_updated_strongly(ctx):
     assert heap.read_field(ctx, obj, "x").deps == DATA | OTHER
 
 
-def test_a_store_to_an_unknown_element_may_be_to_any(ctx):
+def test_a_store_to_an_unknown_element_may_hit_any_element(ctx):
     obj = instance(ctx, "a")
     updates.write_item(ctx, pointer(obj), const(0), Value(DATA))
     updates.add_element(ctx, pointer(obj), Value(OTHER))
@@ -71,7 +71,7 @@ def test_a_store_to_an_unknown_element_may_be_to_any(ctx):
     assert heap.read_any(ctx, obj).deps == DATA | OTHER
 
 
-def test_what_a_branch_stored_is_gone_when_its_layer_is_closed(ctx):
+def test_closing_a_layer_discards_its_stores(ctx):
     obj = instance(ctx, "a")
     updates.write_field(ctx, pointer(obj), "x", Value(DATA))
     ctx.store.push()
@@ -82,7 +82,7 @@ def test_what_a_branch_stored_is_gone_when_its_layer_is_closed(ctx):
     assert heap.read_field(ctx, obj, "x").deps == DATA | OTHER
 
 
-def test_the_newest_object_of_a_site_stands_apart_from_older_ones(ctx, frame):
+def test_the_newest_object_of_a_site_is_separate_from_older_ones(ctx, frame):
     newest = recency.allocate(ctx, "lib", frame, "site")
     ctx.store.put((newest, "x"), Value(DATA))
     holder = instance(ctx, "holder")
@@ -96,7 +96,7 @@ def test_the_newest_object_of_a_site_stands_apart_from_older_ones(ctx, frame):
     assert heap.read_field(ctx, newest, "x").deps == frozenset()
 
 
-def test_data_is_found_at_any_depth_and_only_there(ctx):
+def test_data_is_found_at_any_depth_but_not_elsewhere(ctx):
     outer, inner, empty = (instance(ctx, key) for key in "abc")
     updates.write_field(ctx, pointer(inner), "x", Value(DATA))
     updates.write_field(ctx, pointer(outer), "inner", pointer(inner))
@@ -104,7 +104,7 @@ def test_data_is_found_at_any_depth_and_only_there(ctx):
     assert reachable_data.deep(ctx, frozenset([empty])) == frozenset()
 
 
-def test_an_empty_part_of_a_message_counts_with_its_whole(ctx):
+def test_an_empty_part_of_a_message_is_covered_by_the_whole(ctx):
     message = recency.intern(ctx, "message", "m")
     message.info = 7
     message.sub("pose").sub("position")
@@ -113,7 +113,7 @@ def test_an_empty_part_of_a_message_counts_with_its_whole(ctx):
     assert reachable_data.deep(ctx, frozenset([message])) == frozenset([7]) | DATA
 
 
-def test_what_nothing_leads_to_is_dropped_when_a_function_returns(ctx, frame):
+def test_unreachable_objects_are_dropped_when_a_function_returns(ctx, frame):
     kept, gone = (recency.allocate(ctx, "sequence", frame, key) for key in ("kept", "gone"))
     ctx.store.put((kept, "[0]"), Value(DATA))
     ctx.store.put((gone, "[0]"), Value(DATA))
@@ -123,7 +123,7 @@ def test_what_nothing_leads_to_is_dropped_when_a_function_returns(ctx, frame):
     assert not any(owner in (gone, frame) for owner, _ in delta)
 
 
-def test_too_many_constants_are_anything():
+def test_too_many_constants_become_unknown():
     values = [const(n) for n in range(MAX_CONSTS + 1)]
     whole = BOTTOM
     for value in values[:-1]:
@@ -132,12 +132,12 @@ def test_too_many_constants_are_anything():
     assert join(whole, values[-1]).consts is None
 
 
-def test_a_join_that_brings_nothing_new_is_the_same_value():
+def test_a_join_without_change_returns_the_same_object():
     value = Value(DATA | OTHER)
     assert join(value, Value(DATA)) is value
 
 
-def test_what_others_store_is_asked_once_in_a_run_and_again_in_the_next(ctx):
+def test_stores_of_other_roots_are_read_once_per_run(ctx):
     obj = instance(ctx, "a")
     key, other = (obj, "x"), Root("other", "other")
     ctx.shared.leave(ctx.shared.ends, other, key, Value(DATA))

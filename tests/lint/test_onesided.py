@@ -23,7 +23,7 @@ EXAMPLES = {
     for kind, texts in (("invalid", rule.INVALID), ("valid", rule.VALID))
     for number, text in enumerate(texts)
 }
-SHIPPED = tuple(rule for rule in HAZARDS if rule.CODE <= "TARL204")  # a further rule may ask for more
+SHIPPED = tuple(rule for rule in HAZARDS if rule.CODE <= "TARL204")  # another rule may require a run
 TALKER = """
     import rospy
     class Talker:
@@ -60,18 +60,18 @@ def found(modules):
     return (*findings(flows), *hazards(tracer, flows, Config()))
 
 
-def test_modules_that_only_say_or_only_hear_are_not_run():
+def test_modules_that_only_publish_or_only_subscribe_are_not_run():
     assert skipped(TALKER)
     assert skipped(LISTENER)
     assert not skipped(TALKER, LISTENER)
 
 
 @pytest.mark.parametrize("text", EXAMPLES.values(), ids=EXAMPLES)
-def test_nothing_is_found_in_what_is_not_run(text):
+def test_modules_that_are_not_run_have_no_findings(text):
     assert not (skipped(text, rules=HAZARDS) and found([module(text)]))
 
 
-def test_nothing_is_found_in_the_cases_that_are_not_run():
+def test_cases_that_are_not_run_have_no_findings():
     for path in sorted(CASES.rglob("*.py")):
         if skipped(text := path.read_text(), rules=HAZARDS):
             assert not found([module(text)]), path
@@ -80,7 +80,7 @@ def test_nothing_is_found_in_the_cases_that_are_not_run():
 @pytest.mark.parametrize(
     "changed",
     [
-        ("self.pub.publish", "self.out.publish"),  # nothing is published on it
+        ("self.pub.publish", "self.out.publish"),  # never published on
         ("self.pub = rospy.Publisher", "self.pub, self.x = 1, rospy.Publisher"),
         ("import rospy", "import rospy\n    from rospy import Publisher as P\n    other = P('x', String)"),
         ("self.pub.publish", "self.pub = rospy.Publisher('other', String); self.pub.publish"),
@@ -88,11 +88,11 @@ def test_nothing_is_found_in_the_cases_that_are_not_run():
         ("import rospy", "import rospy\n    rospy.Service('s', Empty, lambda request: 1)"),
     ],
 )
-def test_a_talker_that_may_be_a_hazard_or_hear_something_is_run(changed):
+def test_a_publisher_that_may_have_a_hazard_or_subscribe_is_run(changed):
     assert not skipped(TALKER.replace(*changed))
 
 
-def test_a_listener_whose_callback_may_do_nothing_is_run():
+def test_a_subscriber_whose_callback_may_have_no_effect_is_run():
     assert not skipped(LISTENER.replace("rospy.loginfo(msg.data)", "last = msg.data"))
     assert skipped(LISTENER.replace("rospy.loginfo(msg.data)", "pass").replace("on(msg)", "on(_)"))
 
@@ -118,7 +118,7 @@ LOCKED = """
     """
 
 
-def test_state_that_is_used_under_its_lock_everywhere_or_nowhere_needs_no_run():
+def test_state_used_always_or_never_under_its_lock_needs_no_run():
     assert skipped(LOCKED)
     assert skipped(LOCKED.replace("with self.lock", "if True"))
 
@@ -136,7 +136,7 @@ def test_state_that_is_used_under_its_lock_everywhere_or_nowhere_needs_no_run():
         ),
     ],
 )
-def test_state_that_may_be_used_without_its_lock_is_run(changed):
+def test_modules_with_state_used_without_its_lock_are_run(changed):
     text = LOCKED.replace(*changed)
     assert text != LOCKED
     assert not skipped(text)
@@ -150,16 +150,16 @@ def test_state_that_may_be_used_without_its_lock_is_run(changed):
         ("def on(msg):\n    last = msg.data\non(rospy.wait_for_message('a', String))", False),
     ],
 )
-def test_a_function_that_does_nothing_is_no_callback_unless_it_is_handed_on(text, run):
+def test_an_empty_function_is_a_callback_only_if_passed_on(text, run):
     assert skipped("import rospy\n" + text) is not run
 
 
-def test_hazards_that_nobody_wants_need_nothing_to_be_run():
+def test_disabled_hazards_need_no_run():
     idle = LISTENER.replace("rospy.loginfo(msg.data)", "last = msg.data")
     assert skipped(idle, ignore=("TARL203",))
 
 
-def test_functions_of_the_settings_may_hear_or_say_anything():
+def test_functions_in_the_settings_may_publish_or_subscribe():
     assert not skipped(TALKER, sources=("bus.listen",))
 
 
@@ -184,8 +184,8 @@ def findings(evidence: Evidence) -> Iterator[Finding]:
 
 @pytest.mark.parametrize("rules_out", [True, False, None])
 @pytest.mark.parametrize("text", [LISTENER, TALKER])
-def test_a_new_rule_is_one_file_that_says_itself_what_it_rules_out(tmp_path, rules_out, text):
-    """Also on nodes that only hear or only talk; a rule that does not say it is asked about every node."""
+def test_a_new_rule_decides_in_its_own_file_what_it_rules_out(tmp_path, rules_out, text):
+    """A rule without `ruled_out` runs on every node, also on nodes that only subscribe or only publish."""
     package = tmp_path / "tarl_lint"
     shutil.copytree(Path(tarl_lint.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
     said = "" if rules_out is None else f"\n\ndef ruled_out(side: Side) -> bool:\n    return {rules_out}\n"

@@ -79,14 +79,14 @@ def test_operands_are_the_constants_that_a_site_uses(tmp_path, expression, opera
         assert operand.literal == (operand.code[-1].isdigit() or operand.code == "True")
 
 
-def test_a_named_constant_says_where_it_is_written(tmp_path):
+def test_a_named_constant_has_the_place_of_its_definition(tmp_path):
     analysis = analysed(tmp_path, node=NODE.replace("{expression}", "GAIN * msg.data"))
     (operand,) = analysis.operands(next(s.site for s in analysis.sites if s.code.startswith("v = ")))
     assert operand.definition is not None
     assert operand.definition.line == 6
 
 
-def test_a_parameter_that_callers_fill_differently_has_no_value(tmp_path):
+def test_a_parameter_with_different_arguments_has_no_value(tmp_path):
     analysis = analysed(
         tmp_path,
         node="""
@@ -105,7 +105,7 @@ def test_a_parameter_that_callers_fill_differently_has_no_value(tmp_path):
     assert (operand.code, operand.value, operand.definition) == ("gain", None, None)
 
 
-def test_what_is_constant_until_the_first_message_is_no_operand(tmp_path):
+def test_a_value_constant_only_until_the_first_message_is_not_an_operand(tmp_path):
     analysis = analysed(
         tmp_path,
         node="""
@@ -184,7 +184,7 @@ WAITING = """
         ("rospy.Rate(RATE)", "self.timer.sleep()", [("RATE", 10)]),
     ],
 )
-def test_what_waits_or_sets_a_rate_has_operands_beside_the_flows(tmp_path, timer, waits, operands):
+def test_waits_and_rates_outside_of_flows_have_operands(tmp_path, timer, waits, operands):
     analysis = analysed(tmp_path, node=WAITING.replace("{timer}", timer).replace("{waits}", waits))
     found = [o for step in analysis.timing for o in analysis.operands(step.site)]
     assert [(o.code, o.value) for o in found] == operands

@@ -1,4 +1,4 @@
-"""Services, actions and transforms are kinds of their own, which the `api` of a source or sink tells."""
+"""Services, actions and transforms are separate kinds of sources and sinks, identified by their `api`."""
 
 from pathlib import Path
 
@@ -45,16 +45,16 @@ def test_goals_are_sources_and_feedback_and_results_are_sinks_of_their_own():
     assert ("actionlib.SimpleActionServer", "actionlib.SimpleActionServer.set_succeeded") in found
 
 
-def test_transforms_are_sources_when_the_settings_say_so():
+def test_transforms_are_sources_with_the_setting_tf2():
     case = "sources/transforms_are_off.py"
     assert {f.source.api for f in flows(case)} == {"rclpy.create_subscription"}
     looked_up = [f for f in flows(case, tf2=True) if f.source.api == "tf2.lookup_transform"]
     assert {f.kind for f in looked_up} == {"explicit"}
     assert {f.source.topics for f in looked_up} == {("/tf",)}
-    assert len(looked_up) == 2  # each reaches the publish call after it, before the next one takes its place
+    assert len(looked_up) == 2  # each reaches the publish call after it, before the next one replaces it
 
 
-def test_own_kinds_can_be_told_from_topics():
+def test_services_actions_and_transforms_are_distinguished_from_topics():
     both = flows("sources/simple_action_server.py")
     assert {on_topic(f.source.api) for f in both} == {True, False}
     assert all(on_topic(f.source.api) for f in flows("state/self_attribute.py"))

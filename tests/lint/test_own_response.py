@@ -1,4 +1,4 @@
-"""The answer of a service to its own request is off by default, and old baselines stay valid."""
+"""Flows from a request to its own response are off by default, and old baselines stay valid."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def add(request):
 
 rospy.Service("add", AddTwoInts, add)
 """
-# Written by `tarl-lint --write-baseline` of the version before this rule
+# Written by `tarl-lint --write-baseline` of the last version without this rule
 BASELINE = {
     "format": 1,
     "tool": "tarl-lint",
@@ -49,7 +49,7 @@ def codes(tmp_path, monkeypatch, capsys):
     return of
 
 
-def test_it_is_counted_and_shown_when_asked_for(codes, capsys):
+def test_own_responses_are_counted_and_shown_on_request(codes, capsys):
     assert codes() == ["TARL101"]
     assert sorted(codes("--extend-select", "TARL103")) == ["TARL101", "TARL103"]
     assert codes("--select", "TARL103") == ["TARL103"]
@@ -60,7 +60,7 @@ def test_it_is_counted_and_shown_when_asked_for(codes, capsys):
     )
 
 
-def test_a_baseline_of_before_stays_valid(codes, capsys):
+def test_an_older_baseline_stays_valid(codes, capsys):
     Path("tarl-flows.json").write_text(json.dumps(BASELINE))
     assert codes() == []
     assert codes("--extend-select", "TARL103") == []
@@ -68,7 +68,7 @@ def test_a_baseline_of_before_stays_valid(codes, capsys):
     assert "No longer there" not in capsys.readouterr().out
 
 
-def test_writing_the_baseline_again_keeps_what_was_accepted(codes, capsys):
+def test_rewriting_the_baseline_keeps_accepted_findings(codes, capsys):
     Path("tarl-flows.json").write_text(json.dumps(BASELINE))
     assert main(["--no-cache", "--write-baseline"]) == 0
     assert json.loads(Path("tarl-flows.json").read_text())["flows"] == BASELINE["flows"]

@@ -21,7 +21,9 @@ from tarl_lint.settings.per_file import FileIgnores
         ("a.py/", "a.py", False),
     ],
 )
-def test_patterns_match_files_and_what_is_below_directories(tmp_path, monkeypatch, pattern, path, silenced):
+def test_patterns_match_files_and_everything_below_directories(
+    tmp_path, monkeypatch, pattern, path, silenced
+):
     monkeypatch.chdir(tmp_path)
     ignores = FileIgnores(Path(), [(pattern, ("TARL1",))])
     assert ignores.silences(Finding("TARL101", Span(path, 1, 1, 1, 2), "")) is silenced

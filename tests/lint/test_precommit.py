@@ -21,7 +21,7 @@ def call(*command: object, cwd: Path, **environment: str) -> subprocess.Complete
 
 
 def commit_everything(directory: Path) -> str:
-    """Make a directory a git repository of one commit and return its hash."""
+    """Make a directory a git repository with one commit and return its hash."""
     for arguments in (["init", "-q"], ["add", "-A"], ["commit", "-q", "-m", "All"]):
         identity = (
             "-c",
@@ -37,7 +37,7 @@ def commit_everything(directory: Path) -> str:
 
 
 def copy_product(target: Path) -> None:
-    """Copy what a commit of the present work tree would hold."""
+    """Copy the files that a commit of the current work tree would contain."""
     listed = call("git", "ls-files", "-co", "--exclude-standard", "-z", cwd=ROOT).stdout
     for name in filter(None, listed.split("\0")):
         if (ROOT / name).is_file():
@@ -45,7 +45,7 @@ def copy_product(target: Path) -> None:
             shutil.copy(ROOT / name, target / name)
 
 
-def test_the_hook_is_described_as_pre_commit_wants_it():
+def test_the_hook_definition_is_valid_for_pre_commit():
     done = call(PRE_COMMIT, "validate-manifest", ROOT / ".pre-commit-hooks.yaml", cwd=ROOT)
     assert (done.returncode, done.stdout + done.stderr) == (0, "")
 

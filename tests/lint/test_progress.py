@@ -5,7 +5,7 @@ from tarl_lint.run.progress import Progress
 
 
 class Terminal(io.StringIO):
-    """Lets a test wait until something was written."""
+    """A stream on which a test can wait for output."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -18,14 +18,14 @@ class Terminal(io.StringIO):
         return count
 
 
-def test_a_short_run_says_nothing():
+def test_a_short_run_shows_nothing():
     terminal = Terminal()
     with Progress(terminal, patience=60) as progress:
         progress.tell("Reading")
     assert terminal.getvalue() == ""
 
 
-def test_a_long_run_says_what_it_is_at_and_leaves_no_trace():
+def test_a_long_run_shows_progress_and_clears_it():
     terminal = Terminal()
     with Progress(terminal, patience=0, every=0.01) as progress:
         progress.tell("Reading file 3 of 9")
@@ -36,7 +36,7 @@ def test_a_long_run_says_what_it_is_at_and_leaves_no_trace():
     assert text.endswith("\r\x1b[K")
 
 
-def test_it_ends_when_the_run_fails():
+def test_progress_ends_when_the_run_fails():
     terminal = Terminal()
     before = threading.active_count()
     try:

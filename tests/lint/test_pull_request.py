@@ -1,4 +1,4 @@
-"""A baseline and the edits of a pull request: exactly what is new and what has vanished is told."""
+"""A baseline and the edits of a pull request: exactly the new and the vanished findings are reported."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def linted(capsys) -> tuple[int, str]:
     return main([]), capsys.readouterr().out
 
 
-def test_what_is_accepted_is_not_reported_and_does_not_fail(node, capsys):
+def test_accepted_findings_are_not_reported_and_do_not_fail(node, capsys):
     code, out = linted(capsys)
     assert code == 0
     assert out.splitlines() == [
@@ -78,7 +78,7 @@ def test_what_is_accepted_is_not_reported_and_does_not_fail(node, capsys):
     ],
     ids=["moved lines", "renamed locals", "moved method", "another path", "Windows line ends"],
 )  # fmt: skip
-def test_edits_that_change_no_flow_tell_nothing(node, capsys, edit):
+def test_edits_that_change_no_flow_report_nothing(node, capsys, edit):
     changed = edit(NODE)
     assert changed != NODE
     node.write_bytes(changed.encode())
@@ -86,7 +86,7 @@ def test_edits_that_change_no_flow_tell_nothing(node, capsys, edit):
     assert (code, out.count("\n")) == (0, 2)
 
 
-def test_a_new_flow_and_a_new_hazard_are_told_alone(node, capsys):
+def test_only_the_new_flow_and_hazard_are_reported(node, capsys):
     advertised = "        self.pub = rospy.Publisher('/progress', Float64, queue_size=1)\n"
     more = advertised.replace("pub", "progress") + advertised.replace("pub", "idle").replace(
         "progress", "idle"
@@ -101,7 +101,7 @@ def test_a_new_flow_and_a_new_hazard_are_told_alone(node, capsys):
     assert "1 new hazard: 1 TARL204 (2 accepted in tarl-flows.json).\n" in out
 
 
-def test_what_has_vanished_is_listed_and_forgotten_when_written_again(node, capsys):
+def test_vanished_findings_are_listed_until_the_baseline_is_rewritten(node, capsys):
     node.write_text(NODE.replace("0.8 * delta", "min(0.5, 0.8 * delta)").replace("rospy.Subscriber", "print"))
     code, out = linted(capsys)
     assert code == 0
@@ -115,7 +115,7 @@ def test_what_has_vanished_is_listed_and_forgotten_when_written_again(node, caps
     assert capsys.readouterr().out == ("tarl-flows.json: 0 flows and 1 hazard accepted (0 new, 2 removed).\n")
 
 
-def test_hazards_can_be_kept_out_of_the_baseline(node, capsys):
+def test_hazards_can_be_excluded_from_the_baseline(node, capsys):
     Path("tarl-flows.json").unlink()
     main(["--write-baseline", "--select", "TARL1"])
     assert capsys.readouterr().out == "tarl-flows.json: 1 flow accepted (1 new, 0 removed).\n"
@@ -124,13 +124,13 @@ def test_hazards_can_be_kept_out_of_the_baseline(node, capsys):
     assert "2 new hazards: 1 TARL202, 1 TARL204.\n" in out
 
 
-def test_rules_that_are_not_asked_for_keep_their_entries(node, capsys):
+def test_disabled_rules_keep_their_entries(node, capsys):
     before = Path("tarl-flows.json").read_text()
     main(["--write-baseline", "--select", "TARL1"])
     assert Path("tarl-flows.json").read_text() == before
 
 
-def test_json_holds_fingerprint_and_status_of_hazards_too(node, capsys):
+def test_json_contains_fingerprint_and_status_of_hazards(node, capsys):
     main(["--format", "json"])
     diagnostics = json.loads(capsys.readouterr().out)["diagnostics"]
     assert {d["code"] for d in diagnostics} == {"TARL101", "TARL202", "TARL204"}
@@ -138,14 +138,14 @@ def test_json_holds_fingerprint_and_status_of_hazards_too(node, capsys):
     assert len({d["fingerprint"] for d in diagnostics}) == 3
 
 
-def test_files_that_cannot_be_read_keep_their_hazards(node, capsys):
+def test_unreadable_files_keep_their_hazards(node, capsys):
     before = Path("tarl-flows.json").read_text()
     node.write_text("def f(:\n")
     main(["--write-baseline"])
     assert Path("tarl-flows.json").read_text() == before
 
 
-def test_two_processes_that_write_the_baseline_at_once_leave_a_whole_one(node):
+def test_concurrent_writes_leave_an_intact_baseline(node):
     before = Path("tarl-flows.json").read_text()
     Path("tarl-flows.json").unlink()
     command = [sys.executable, "-m", "tarl_lint", "--write-baseline", "--no-cache"]

@@ -1,4 +1,4 @@
-"""Calls that are replayed: only where nothing that they read is another, and then with the same outcome."""
+"""Calls are replayed only if all their reads are unchanged, and then with the same result."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def obj(store):
     return recency.intern(linked("x = 1\n"), "sequence", "a")
 
 
-def test_what_is_read_before_it_is_stored_was_there_when_the_call_began(store, obj):
+def test_only_reads_before_a_store_count_as_reads_of_the_call(store, obj):
     store.get((obj, "x"))
     store.put((obj, "x"), Value(DATA))
     store.put((obj, "y"), Value(DATA))
@@ -99,7 +99,7 @@ def test_what_is_read_before_it_is_stored_was_there_when_the_call_began(store, o
     assert store.reads.keys == {(obj, "x")}
 
 
-def test_what_another_branch_has_stored_was_not_stored_on_this_one(store, obj):
+def test_stores_of_another_branch_do_not_hide_reads(store, obj):
     store.push()
     store.put((obj, "x"), Value(DATA))
     store.pop()
@@ -107,26 +107,26 @@ def test_what_another_branch_has_stored_was_not_stored_on_this_one(store, obj):
     assert store.reads.keys == {(obj, "x")}
 
 
-def test_reads_of_a_call_are_reads_of_its_caller_unless_the_caller_has_stored_there(store, obj):
+def test_reads_of_a_call_count_for_its_caller_unless_it_has_stored_there(store, obj):
     inner, outer = Reads(), Reads()
     inner.keys |= {(obj, "x"), (obj, "y")}
     outer.written.add((obj, "x"))
     outer.add(inner)
     assert outer.keys == {(obj, "y")}
     outer.written.clear()
-    outer.left += 1  # the path on which it stored is left
+    outer.left += 1  # leaves the path on which it stored
     outer.add(inner)
     assert outer.keys == {(obj, "x"), (obj, "y")}
 
 
-def test_a_look_at_an_object_counts_as_it_was_at_first(store, obj):
+def test_the_first_look_at_an_object_counts(store, obj):
     store.look(obj)
     store.put((obj, "x"), Value(DATA))
     store.look(obj)
     assert store.reads.objects[obj] < obj.stamp
 
 
-def test_a_layer_that_is_absorbed_leaves_what_storing_leaves(store, obj):
+def test_absorbing_a_layer_equals_storing_its_values(store, obj):
     deltas: list[Delta] = []
     for absorb in (True, False):
         store.push()
@@ -143,7 +143,7 @@ def test_a_layer_that_is_absorbed_leaves_what_storing_leaves(store, obj):
     assert deltas[0] == deltas[1]
 
 
-def test_calls_that_read_the_same_run_once(monkeypatch):
+def test_calls_with_unchanged_reads_run_once(monkeypatch):
     replayed = linked(HELPERS)
     monkeypatch.setattr(replay, "_same", lambda *_: False)
     executed = linked(HELPERS)
@@ -151,11 +151,11 @@ def test_calls_that_read_the_same_run_once(monkeypatch):
     assert replayed.total < 0.85 * executed.total
 
 
-def test_what_is_replayed_is_what_would_have_been_executed():
+def test_a_replay_equals_an_execution():
     assert flows(linked(HELPERS, checking=True)) == flows(linked(HELPERS))
 
 
-def test_a_replay_that_differs_is_told(monkeypatch):
+def test_a_replay_that_differs_is_reported(monkeypatch):
     monkeypatch.setattr(replay, "unchanged", lambda *_: True)
     with pytest.raises(AssertionError, match="new edges"):
         linked(HELPERS, checking=True)
@@ -168,21 +168,21 @@ def units() -> list[Path]:
 
 
 @pytest.mark.parametrize("path", units(), ids=lambda p: str(p.relative_to(CASES)))
-def test_replayed_calls_of_the_cases_would_have_done_the_same(path):
+def test_replays_of_the_cases_equal_executions(path):
     linked(path.read_text(), checking=True)
 
 
-def test_replayed_calls_of_mixed_nodes_would_have_done_the_same():
+def test_replays_of_mixed_nodes_equal_executions():
     draw = random.Random(3)
     for _ in range(60 if os.environ.get("TARL_SLOW") else 6):
         linked(node(*(draw.choice(sorted(axis)) for axis in AXES)), checking=True)
 
 
-# --- fields where many meet -------------------------------------------------------------------------------
+# --- merged fields -------------------------------------------------------------------------------
 
 
 def many(number: int) -> str:
-    """Return a node with many callbacks that all add to one list, of which one more callback sends an element."""
+    """Return a node with many callbacks that add to one list, and one callback that publishes an element."""
     callbacks = "".join(
         f"def on_{n}(msg):\n    kept.append(msg.data)\nrospy.Subscriber('in{n}', Float64, on_{n})\n"
         for n in range(number)
@@ -198,13 +198,13 @@ def chosen_later(number: int) -> str:
 
 @pytest.mark.parametrize("number", [2, MANY - 1, MANY + 8, MANY_CARRIERS + 2])
 @pytest.mark.parametrize(("made", "kind"), [(many, "explicit"), (chosen_later, "implicit")])
-def test_all_that_meets_in_a_field_leaves_it_again(number, made, kind):
+def test_all_values_merged_in_a_field_leave_it_again(number, made, kind):
     found = flows(linked(made(number)))
     assert {(f.kind, *f.source.topics) for f in found} == {(kind, f"in{n}") for n in range(number)}
 
 
 @pytest.mark.parametrize("added", ["msg.data", "msg.data + 1"])
-def test_steps_of_what_meets_in_a_field_are_those_of_the_source_alone(added):
+def test_steps_through_a_merged_field_are_those_of_the_source_alone(added):
     found = flows(linked(many(MANY + 4).replace("msg.data", added)))
     for flow in found:
         (name,) = flow.source.topics
@@ -214,12 +214,12 @@ def test_steps_of_what_meets_in_a_field_are_those_of_the_source_alone(added):
         assert f"def on_{name[2:]}" in "".join(s.code for s in flow.steps)
 
 
-def test_more_that_is_added_to_a_field_is_news_to_nobody():
+def test_values_added_to_a_merged_field_do_not_change_it():
     totals = [linked(many(number)).total for number in (MANY, 2 * MANY)]
     assert totals[1] < 2.3 * totals[0]
 
 
-def test_a_field_that_is_replaced_forgets_what_met_there(store, obj):
+def test_a_replaced_field_drops_its_merged_values(store, obj):
     machine = linked("x = 1\n")
     store = machine.store = Store(machine.shared, Root("test", "test"), gather=machine.gathered)
     (program,) = machine.programs.values()

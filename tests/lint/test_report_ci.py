@@ -1,4 +1,4 @@
-"""Reports that servers read: GitHub annotations, GitLab code quality, JUnit XML."""
+"""Reports for CI servers: GitHub annotations, GitLab code quality, JUnit XML."""
 
 import json
 from dataclasses import replace
@@ -13,7 +13,7 @@ def commands(result: Result) -> list[str]:
     return [line for line in text_of("github", result).splitlines() if line.startswith("::")]
 
 
-def test_github_gets_one_annotation_for_each_publish_call_the_gravest_first(example):
+def test_github_gets_one_annotation_per_publish_call_most_severe_first(example):
     first, hazard, old, unused = commands(everything(example))
     assert hazard.startswith("::error file=node.py,line=11,")
     assert first == (
@@ -27,17 +27,17 @@ def test_github_gets_one_annotation_for_each_publish_call_the_gravest_first(exam
     assert unused.endswith("There is no TARL102 here for this comment to silence: remove it.")
 
 
-def test_github_annotations_escape_what_their_syntax_uses(example):
+def test_github_annotations_are_escaped(example):
     (hazard,) = (c for c in commands(everything(example)) if "TARL203" in c)
     assert hazard.endswith("::scan [raw] reaches nothing, 100 %25 lost.")
 
 
-def test_what_does_not_fail_the_run_is_a_notice_on_github(example):
+def test_findings_that_do_not_fail_the_run_are_github_notices(example):
     (command,) = commands(Result(findings=(example.finding(),)))
     assert command.startswith("::notice ")
 
 
-def test_annotations_over_several_lines_name_no_columns(example):
+def test_multi_line_annotations_have_no_columns(example):
     finding = replace(example.finding(), flow=replace(example.flow(), sink=replace(
         example.sink(), span=replace(example.sink().span, end_line=19))))  # fmt: skip
     assert "line=18,endLine=19,title=" in commands(Result(findings=(finding,)))[0]
@@ -48,7 +48,7 @@ def test_the_log_on_github_ends_with_the_summary(example):
     assert "2 new flows in 1 of 2 files: 1 explicit, 1 implicit (1 accepted in tarl-flows.json).\n" in text
 
 
-def test_gitlab_gets_new_findings_with_what_it_asks_for(example):
+def test_gitlab_gets_new_findings_with_all_required_keys(example):
     entries = document(everything(example))
     assert [e["check_name"] for e in entries] == ["TARL001", "TARL101", "TARL102", "TARL203"]
     assert [e["severity"] for e in entries] == ["minor", "major", "info", "major"]
@@ -62,7 +62,7 @@ def test_gitlab_gets_new_findings_with_what_it_asks_for(example):
     assert json.loads(text_of("gitlab", everything(example))) == entries
 
 
-def test_gitlab_fingerprints_differ_and_stay_when_lines_move(example):
+def test_gitlab_fingerprints_are_unique_and_independent_of_lines(example):
     findings = (example.finding(),) * 3 + everything(example).findings[3:]
     before = document(Result(findings=findings))
     moved = [
@@ -91,7 +91,7 @@ def test_junit_has_a_suite_for_each_file_and_a_case_for_each_finding(example):
     }
 
 
-def test_junit_failures_hold_the_taint_list(example):
+def test_junit_failures_contain_the_taint_list(example):
     failure = next(suites(everything(example)).iter("failure"))
     assert failure.get("message") == "odom reaches progress"
     assert "node.py:18:9: odom reaches progress" in failure.text
@@ -103,7 +103,7 @@ def test_junit_names_of_equal_findings_are_numbered_without_lines(example):
     assert names == ["TARL101 odom reaches progress", "TARL101 odom reaches progress #2"]
 
 
-def test_junit_is_xml_whatever_the_code_says(example):
+def test_junit_is_valid_xml_for_any_code(example):
     step = replace(example.flow().steps[0], code='if a < b and "\x00]]>&amp;\x1b" > c:')
     finding = replace(example.finding(), message='<"&\n\ud800', flow=replace(example.flow(), steps=(step,)))
     (case,) = suites(Result(findings=(finding,))).iter("testcase")
@@ -111,7 +111,7 @@ def test_junit_is_xml_whatever_the_code_says(example):
     assert 'if a < b and "?]]>&amp;?" > c:' in case[0].text
 
 
-def test_junit_has_a_passed_case_where_nothing_was_found():
+def test_junit_has_a_passed_case_if_nothing_was_found():
     root = suites(Result())
     assert root.get("tests") == "1"
     assert root.get("failures") == "0"

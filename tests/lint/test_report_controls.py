@@ -1,4 +1,4 @@
-"""Whatever a topic holds, a report stays what its format says: lines stay lines, and no terminal is steered."""
+"""Any topic name leaves a report valid: it breaks no line and sends no control characters to a terminal."""
 
 import io
 import json
@@ -80,7 +80,7 @@ def test_no_report_is_broken_by_a_topic(tmp_path_factory, name, source, sink):
         assert text.count("\n") == rendered(directory, name, "in", "in" if one else "out").count("\n")
 
 
-def test_lines_that_a_topic_would_forge_are_seen_as_its_text(tmp_path):
+def test_line_breaks_in_a_topic_are_escaped(tmp_path):
     text = rendered(tmp_path, "concise", "in", "out\nother.py:1:1 TARL201 forged")
     assert "out\\nother.py:1:1 TARL201 forged" in text
     assert not re.search(r"^other\.py", text, re.MULTILINE)

@@ -1,4 +1,4 @@
-"""The indented JSON is what Python's encoder writes."""
+"""The indented JSON equals the output of Python's encoder."""
 
 import json
 
@@ -14,16 +14,16 @@ VALUES = st.recursive(LEAVES, lambda v: st.lists(v) | st.dictionaries(st.text(),
 
 
 @given(VALUES)
-def test_it_writes_what_python_writes(value):
+def test_the_output_equals_that_of_python(value):
     assert dumped(value) == json.dumps(value, indent=1)
 
 
 @given(VALUES)
-def test_what_is_written_already_stands_where_it_was_written_for(value):
+def test_preserialised_parts_are_inserted_at_their_level(value):
     whole = dumped({"a": [Written(dumped(value, 2))]})
     assert whole == json.dumps({"a": [value]}, indent=1)
 
 
-def test_the_report_is_the_document(example):
+def test_the_report_contains_the_document(example):
     result = everything(example)
     assert text_of("json", result) == json.dumps(document(result), indent=1) + "\n"

@@ -26,7 +26,7 @@ def result(example):
     )
 
 
-def test_the_document_is_the_frozen_one(example, result):
+def test_the_document_matches_the_frozen_example(example, result):
     diagnostic = document(result)["diagnostics"][0]
     assert document(result) | {"diagnostics": []} == {
         "format": 1,
@@ -73,7 +73,7 @@ def test_keys_come_in_the_documented_order(result):
     )
 
 
-def test_accepted_flows_and_hazards_are_in_it(result):
+def test_accepted_flows_and_hazards_are_included(result):
     assert [(d["code"], d["status"], "flow" in d) for d in document(result)["diagnostics"]] == [
         ("TARL101", "new", True),
         ("TARL102", "accepted", True),
@@ -81,7 +81,7 @@ def test_accepted_flows_and_hazards_are_in_it(result):
     ]
 
 
-def test_it_keeps_to_the_schema_and_the_schema_to_its_own(result):
+def test_the_document_and_the_schema_are_valid(result):
     jsonschema.Draft202012Validator.check_schema(SCHEMA)
     jsonschema.validate(document(result), SCHEMA)
     jsonschema.validate(document(Result()), SCHEMA)
@@ -90,14 +90,14 @@ def test_it_keeps_to_the_schema_and_the_schema_to_its_own(result):
 @pytest.mark.parametrize(
     "change", [{"status": "old"}, {"code": "TARL102"}, {"line": 0}, {"extra": 1}, {"flow": None}]
 )
-def test_the_schema_refuses_what_is_not_of_the_format(result, change):
+def test_the_schema_refuses_invalid_documents(result, change):
     made = document(result)
     made["diagnostics"][0] |= change
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate(made, SCHEMA)
 
 
-def test_the_text_is_ascii_and_reads_back_as_the_document(example, result):
+def test_the_text_is_ascii_and_parses_to_the_document(example, result):
     step = replace(example.flow().steps[0], code="größe = '漢字'")
     odd = replace(result.findings[0], flow=replace(example.flow(), steps=(step,)))
     changed = replace(result, findings=(odd,))

@@ -1,4 +1,4 @@
-"""Reports of trees with hundreds of flows: what comes first, what is counted, and what is left out."""
+"""Reports of trees with hundreds of flows: order, counts and omissions."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_one_package_needs_no_heading(example):
     assert not any(line.startswith("arm") for line in shown)
 
 
-def test_who_lints_only_examples_sees_their_packages(example):
+def test_a_tree_of_examples_is_shown_by_package(example):
     found = tuple(located(example.finding(), f"examples/{n}/a.py", n) for n in ("arm", "base"))
     assert [group.name for group in packages.grouped(found)] == ["arm", "base"]
 
@@ -76,7 +76,7 @@ def test_no_finding_is_lost_by_grouping(paths: list[str]) -> None:
 
 
 @pytest.mark.parametrize("most", [1, 4, 5, 6, 9])
-def test_no_more_flows_are_shown_than_wanted_and_the_rest_is_counted(many, most):
+def test_at_most_the_requested_number_of_flows_is_shown_and_the_rest_counted(many, most):
     shown = lines(many, most_flows=most)
     assert sum("TARL10" in line for line in shown) == most
     left = [int(line.split()[1]) for line in shown if line.startswith("    and ")]
@@ -85,7 +85,7 @@ def test_no_more_flows_are_shown_than_wanted_and_the_rest_is_counted(many, most)
     assert "10 flows in 10 files: 7 explicit, 3 implicit." in shown
 
 
-def test_long_lists_are_shown_by_their_shortest_chain(example):
+def test_long_lists_are_reduced_to_their_shortest_chain(example):
     finding = example.finding()
     steps = (*finding.flow.steps[:-1], *[example.step("delta = goal - pos")] * 10, finding.flow.steps[-1])
     long = replace(finding, flow=replace(finding.flow, steps=steps, chain=(1, 2, len(steps) - 1)))
@@ -97,7 +97,7 @@ def test_long_lists_are_shown_by_their_shortest_chain(example):
 
 
 @pytest.mark.parametrize("baseline", [None, Path("tarl-flows.json")])
-def test_json2_keeps_to_its_schema(example, baseline):
+def test_json2_is_valid_by_its_schema(example, baseline):
     made = json.loads(text_of("json2", everything(example, baseline=baseline)))
     jsonschema.Draft202012Validator(SCHEMA).validate(made)
     jsonschema.Draft202012Validator(SCHEMA).validate(json.loads(text_of("json2", Result())))
@@ -111,7 +111,7 @@ def test_json2_names_followed_packages_and_classes_where_flows_end(example):
     assert not {"followed", "opaque"} & json.loads(text_of("json2", Result())).keys()
 
 
-def test_json2_says_the_same_as_json(example):
+def test_json2_has_the_same_contents_as_json(example):
     result = everything(example)
     one, two = (json.loads(text_of(name, result)) for name in ("json", "json2"))
     for old, new in zip(one["diagnostics"], two["diagnostics"], strict=True):
@@ -126,7 +126,7 @@ def test_json2_says_the_same_as_json(example):
     assert len({json.dumps(step) for step in two["steps"]}) == len(two["steps"])
 
 
-def test_reports_that_servers_would_refuse_are_cut_and_say_so(example, monkeypatch):
+def test_too_large_reports_are_reduced_with_a_note(example, monkeypatch):
     monkeypatch.setattr(upload_limits, "MOST_BYTES", 6_000)
     finding = example.finding()
     flow = replace(finding.flow, chain=(1, 6))
@@ -145,7 +145,7 @@ def test_reports_that_servers_would_refuse_are_cut_and_say_so(example, monkeypat
     assert notes["shortened"].startswith(f"{len(run['results'])} flows reduced")
 
 
-def test_the_gravest_findings_stay_when_some_are_left_out(example):
+def test_the_most_severe_findings_stay_when_some_are_omitted(example):
     hazard = Finding("TARL203", example.span("pos = data.pose"), "scan reaches nothing.")
     result = Result(findings=(example.finding(), example.finding("implicit"), hazard))
     (run,) = sarif.document(result, upload_limits.Cut(1, 1_000))["runs"]

@@ -14,7 +14,7 @@ def shown(flows, width: int = 0) -> list[str]:
     return [plain(line) for line in overview(flows, View(width=width))]
 
 
-def test_each_published_topic_is_said_to_carry_or_to_follow(example):
+def test_each_published_topic_lists_its_data_and_its_conditions(example):
     flows = [flow(example, "odom", "cmd_vel", line=n) for n in range(MANY)]
     flows += [flow(example, "scan", "cmd_vel", "implicit"), flow(example, "odom", "cmd_vel", "implicit")]
     flows += [flow(example, "goal", "path"), flow(example, "estop", "led", "implicit")]
@@ -36,5 +36,5 @@ def test_long_lists_are_wrapped_to_the_terminal(example):
     assert len(lines) > 3
 
 
-def test_what_fits_the_screen_needs_no_overview(example):
+def test_short_reports_have_no_overview(example):
     assert shown([flow(example, "odom", "cmd_vel", line=n) for n in range(MANY - 1)]) == []

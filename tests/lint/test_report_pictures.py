@@ -32,14 +32,14 @@ def parts(*findings, **more):
     ]
 
 
-def test_publish_calls_under_the_same_inputs_are_one_part(example):
+def test_publish_calls_with_the_same_inputs_share_a_box(example):
     odom = example.finding()
     assert parts(into(odom, "a", 18), into(odom, "b", 19, "stop")) == [
         ("stop\ntravel", [("odom", "explicit")], ["a", "b"], False)
     ]
 
 
-def test_publish_calls_under_other_inputs_are_parts_of_their_own(example):
+def test_publish_calls_with_different_inputs_have_separate_boxes(example):
     odom, scan, implicit = example.finding(), example.finding(topic="scan"), example.finding("implicit")
     assert parts(into(odom, "a", 18), into(scan, "b", 19)) == [
         ("travel", [("odom", "explicit")], ["a"], False),
@@ -48,7 +48,7 @@ def test_publish_calls_under_other_inputs_are_parts_of_their_own(example):
     assert len(parts(into(odom, "a", 18), into(implicit, "b", 19))) == 2
 
 
-def test_every_way_through_a_part_is_a_flow_and_every_flow_a_way(example):
+def test_paths_through_boxes_correspond_to_flows(example):
     topics = ["odom", "scan", "joy"]
     found = [
         into(example.finding(topic=t), f"out{n}", 30 + n)
@@ -64,7 +64,7 @@ def test_every_way_through_a_part_is_a_flow_and_every_flow_a_way(example):
     assert sum(len(file) for _, file in drawn.files) == 3
 
 
-def test_a_topic_is_one_with_and_without_slash_and_unknown_ones_are_many(example):
+def test_a_slash_does_not_distinguish_topics_and_unknown_ones_are_separate(example):
     odom = example.finding()
     drawn = picture(
         Result(findings=(into(odom, "cmd", 1), into(odom, "/cmd", 2), into(odom, "", 3), into(odom, "", 4)))
@@ -73,7 +73,7 @@ def test_a_topic_is_one_with_and_without_slash_and_unknown_ones_are_many(example
     assert sorted(t.key.split(" ")[0] for t in drawn.topics) == ["?", "?", "cmd", "odom"]
 
 
-def test_new_flows_are_marked_only_beside_a_baseline(example):
+def test_new_flows_are_marked_only_with_a_baseline(example):
     old = into(replace(example.finding(), status="accepted"), "a", 18)
     new = into(example.finding(), "b", 19)
     assert [p[3] for p in parts(old, new, baseline=Path("tarl-flows.json"))] == [False, True]
@@ -89,7 +89,7 @@ def test_new_flows_are_marked_only_beside_a_baseline(example):
         (["a.py", "x/a.py"], ["a.py", "x/a.py"]),
     ],
 )
-def test_files_are_called_by_the_shortest_name_that_tells_them_apart(paths, names):
+def test_files_have_their_shortest_unique_name(paths, names):
     assert list(short_names(paths).values()) == names
 
 
@@ -103,7 +103,7 @@ def test_dot_draws_topics_parts_and_edges(example):
 
 
 @pytest.mark.skipif(shutil.which("dot") is None, reason="Graphviz is not installed")
-def test_graphviz_takes_it_with_whatever_names(example):
+def test_graphviz_accepts_any_names(example):
     odd = into(example.finding(topic='say "hi" \\'), "a\nb", 18, 'f"<b>"')
     done = subprocess.run(
         ["dot", "-Tsvg"],
@@ -127,13 +127,13 @@ def test_mermaid_draws_the_same_graph(example):
     ]  # fmt: skip
 
 
-def test_mermaid_takes_names_for_names(example):
+def test_mermaid_does_not_interpret_names_as_syntax(example):
     odd = into(example.finding(topic='say "hi" #1'), "a<b>`", 18)
     text = text_of("mermaid", Result(findings=(odd,)))
     assert '(["say #quot;hi#quot; #35;1"])' in text
     assert '(["a#lt;b#gt;#96;"])' in text
 
 
-def test_the_picture_of_nothing_is_a_graph_too():
+def test_the_picture_without_flows_is_a_valid_graph():
     assert text_of("dot", Result()).endswith("}\n")
     assert text_of("mermaid", Result()).startswith("flowchart LR\n")

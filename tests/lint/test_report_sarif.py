@@ -32,14 +32,14 @@ def results(result: Result, code: str = "TARL101") -> list[dict]:
 
 
 @pytest.mark.parametrize("baseline", [None, Path("tarl-flows.json")])
-def test_the_log_keeps_to_the_standard(example, schema, baseline):
+def test_the_log_is_valid_by_the_standard(example, schema, baseline):
     validator = jsonschema.Draft4Validator(schema)
     validator.check_schema(schema)
     assert list(validator.iter_errors(document(everything(example, baseline=baseline)))) == []
     assert list(validator.iter_errors(document(Result()))) == []
 
 
-def test_the_schema_is_not_content_with_anything(example, schema):
+def test_the_schema_refuses_invalid_logs(example, schema):
     broken = document(everything(example))
     broken["runs"][0]["results"][1]["codeFlows"][0]["threadFlows"][0]["locations"] = []
     assert list(jsonschema.Draft4Validator(schema).iter_errors(broken))
@@ -61,7 +61,7 @@ def test_every_step_is_a_location_of_the_code_flow_with_role_dependence_and_code
     assert condition["location"]["physicalLocation"]["region"]["startLine"] == 15
 
 
-def test_a_result_stands_at_the_publish_call_and_leads_to_the_subscription(example):
+def test_a_result_is_at_the_publish_call_and_refers_to_the_subscription(example):
     (found,) = results(everything(example))
     (place,) = found["locations"]
     assert place["physicalLocation"]["artifactLocation"] == {"uri": "node.py", "uriBaseId": "%SRCROOT%"}
@@ -80,7 +80,7 @@ def test_calls_inside_a_wrapper_are_related_locations(example):
     assert found["relatedLocations"][1]["physicalLocation"]["artifactLocation"]["uri"] == "bus.py"
 
 
-def test_flows_of_one_fingerprint_are_told_apart_and_keep_it(example):
+def test_flows_with_equal_fingerprints_are_numbered(example):
     prints = [r["partialFingerprints"] for r in run_of(Result(findings=(example.finding(),) * 2))["results"]]
     assert [p["tarlFlow/v1"] for p in prints] == ["odom-explicit"] * 2
     assert [p["primaryLocationLineHash"] for p in prints] == ["odom-explicit:1", "odom-explicit:2"]
@@ -95,7 +95,7 @@ def test_accepted_flows_are_suppressed_and_unchanged(example):
     ]
 
 
-def test_what_a_comment_silences_is_suppressed_in_source(example, schema):
+def test_silenced_findings_are_suppressed_in_source(example, schema):
     result = replace(everything(example), silenced=(replace(example.finding("explicit", "imu")),))
     suppressed = [r for r in results(result) if "suppressions" in r]
     assert [r["message"]["text"] for r in suppressed] == ["imu reaches progress ([subscription](1))"]
@@ -104,12 +104,12 @@ def test_what_a_comment_silences_is_suppressed_in_source(example, schema):
     assert list(jsonschema.Draft4Validator(schema).iter_errors(document(result))) == []
 
 
-def test_the_root_that_paths_start_from_is_named_without_naming_the_machine(example):
+def test_the_root_of_paths_does_not_reveal_the_machine(example):
     bases = run_of(everything(example))["originalUriBaseIds"]
     assert bases == {"%SRCROOT%": {"description": {"text": "The working directory of tarl-lint."}}}
 
 
-def test_without_a_baseline_nothing_is_said_about_one(example):
+def test_without_a_baseline_results_have_no_baseline_state(example):
     result = everything(example, baseline=None)
     assert all("baselineState" not in r for r in run_of(result)["results"])
 
@@ -133,18 +133,18 @@ def test_levels_are_notes_for_flows_and_warnings_for_the_rest(example):
     assert levels == {"TARL001": "warning", "TARL101": "note", "TARL102": "note", "TARL203": "warning"}
 
 
-def test_brackets_in_messages_are_no_links(example):
+def test_brackets_in_messages_are_not_links(example):
     (hazard,) = results(everything(example), "TARL203")
     assert hazard["message"]["text"] == "scan \\[raw\\] reaches nothing, 100 % lost."
 
 
-def test_what_was_not_analysed_is_a_notification(example):
+def test_unanalysed_files_are_notifications(example):
     (invocation,) = run_of(everything(example))["invocations"]
     assert invocation["executionSuccessful"] is True
     assert "3 C++ nodes" in invocation["toolExecutionNotifications"][0]["message"]["text"]
 
 
-def test_names_of_files_are_made_uris(example, schema):
+def test_file_names_are_encoded_as_uris(example, schema):
     odd = Span("my nodes/größe #1.py", 2, 1, 2, 5)
     far = replace(
         example.flow().steps[0], span=Span("/srv/other/a.py", 1, 1, 1, 2), site=SiteId("a", "", "x")
@@ -159,7 +159,7 @@ def test_names_of_files_are_made_uris(example, schema):
     assert list(jsonschema.Draft4Validator(schema).iter_errors(made)) == []
 
 
-def test_the_text_is_ascii_and_reads_back(example):
+def test_the_text_is_ascii_and_parses(example):
     text = text_of("sarif", everything(example))
     assert text.isascii()
     assert json.loads(text) == document(everything(example))

@@ -79,7 +79,7 @@ def test_accepted_flows_are_counted_but_not_shown(example, result_of):
     )
 
 
-def test_nothing_found_is_said_in_words(result_of):
+def test_a_run_without_findings_is_described_in_words(result_of):
     assert shown(result_of(statistics=Statistics(files=3))) == (
         "No flow from a subscription to a publish call in 3 files.\n"
     )
@@ -95,7 +95,7 @@ def test_vanished_flows_are_named(example, result_of):
     assert "  and 5 more\n" in shown(result_of(vanished=many, baseline=Path("tarl-flows.json")))
 
 
-def test_unreadable_files_and_whatever_else_was_not_analysed_are_said(example, result_of):
+def test_unreadable_files_and_other_gaps_are_listed(example, result_of):
     unknown = replace(
         example.finding(), flow=replace(example.flow(), source=replace(example.source(), topics=()))
     )
@@ -113,20 +113,20 @@ def test_unreadable_files_and_whatever_else_was_not_analysed_are_said(example, r
     ) in text
 
 
-def test_unreadable_files_are_only_counted_when_their_rule_is_not_wanted(result_of):
+def test_unreadable_files_are_only_counted_if_their_rule_is_disabled(result_of):
     result = result_of(errors=(SourceError("old.py", 3, "This is Python 2."),), names_errors=False)
     for name in ("text", "concise"):
         assert "old.py" not in shown(result, name=name)
         assert "Not analysed: 1 file that is not readable" in shown(result, name=name)
 
 
-def test_a_comment_that_silences_nothing_is_noted(result_of):
+def test_an_unused_comment_is_noted(result_of):
     text = shown(result_of(unused=(Suppression("node.py", 4, 20, "TARL101"), Suppression("node.py", 5, 1))))
     assert "node.py:4:20 note: there is no TARL101 here for this comment to silence: remove it.\n" in text
     assert "node.py:5:1 note: there is no finding here for this comment" in text
 
 
-def test_a_hazard_has_a_frame_of_its_own(example, result_of):
+def test_a_hazard_has_its_own_code_frame(example, result_of):
     hazard = Finding("TARL203", example.span("pos = data.pose"), "What odom brings reaches nothing.")
     text = shown(result_of(hazard))
     assert text.startswith("node.py:11:5 TARL203 What odom brings reaches nothing.\n")
@@ -147,7 +147,7 @@ def test_steps_in_other_files_name_them(example, result_of):
     assert "                    9  receive   ● def" in text
 
 
-def test_a_step_over_several_lines_is_joined(example, result_of):
+def test_a_multi_line_step_is_joined(example, result_of):
     code = "self.sub = self.create_subscription(\n    Odometry,\n    'odom',\n    self.on_odom,\n)"
     flow = example.flow()
     finding = replace(example.finding(), flow=replace(flow, steps=(replace(flow.steps[0], code=code),)))
@@ -179,7 +179,7 @@ def test_carets_stand_below_the_call_after_tabs_and_wide_characters(result_of):
     assert carets == "     │                 ^^^"
 
 
-def test_a_call_over_many_lines_is_shown_by_its_ends(result_of):
+def test_a_long_call_is_shown_by_its_first_and_last_lines(result_of):
     text = "pub.publish(\n" + "".join(f"    x{i},\n" for i in range(9)) + ")\n"
     hazard = Finding("TARL201", Span("node.py", 1, 1, 11, 2), "…")
     lines = shown(replace(result_of(hazard), texts={"node.py": text})).splitlines()
@@ -193,12 +193,12 @@ def test_a_call_over_many_lines_is_shown_by_its_ends(result_of):
     ]
 
 
-def test_a_file_that_is_gone_meanwhile_costs_only_the_frame(example, result_of):
+def test_a_deleted_file_loses_only_its_code_frame(example, result_of):
     text = shown(replace(result_of(example.finding()), texts={}))
     assert text.startswith("node.py:18:9 publishes progress (Float64) in travel\n\n    TARL101")
 
 
-def test_concise_has_one_line_for_each_finding(example, result_of):
+def test_concise_format_has_one_line_per_finding(example, result_of):
     result = result_of(
         example.finding(), example.finding("implicit", "scan"), errors=(SourceError("a.py", 2, "No."),)
     )
@@ -211,7 +211,7 @@ def test_concise_has_one_line_for_each_finding(example, result_of):
     ]
 
 
-def test_statistics_count_what_was_found(example, result_of):
+def test_statistics_count_findings(example, result_of):
     text = shown(result_of(example.finding(), example.finding("implicit", "scan")), View(statistics=True))
     for line in (" 1  TARL101", " 1  TARL102", " 0  TARL001", " 2  subscriptions that reach a publish call",
                  " 1  publish calls reached", "10  steps that pass on the value", " 2  steps that are conditions",

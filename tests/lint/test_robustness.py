@@ -1,4 +1,4 @@
-"""Whatever lies in the tree: nothing crashes or hangs, what cannot be analysed is named, the rest is reported."""
+"""On any files, nothing crashes or hangs, files that cannot be analysed are named, and the others are reported."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ Lint = Callable[..., Result]
 
 @pytest.fixture
 def lint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Lint:
-    """Lint files beside a good node, whose flow must be there whatever the others are."""
+    """Lint files beside a valid node, whose flow must always be reported."""
     monkeypatch.chdir(tmp_path)
 
     def go(files: dict[str, bytes | str], *, jobs: int = 1) -> Result:
@@ -78,7 +78,7 @@ def reasons(result: Result) -> dict[str, str]:
         (b"import rospy\n" + b"x = 1\n" * (LARGEST // 6), "The file has more than 2 MB: move data out"),
     ],
 )  # fmt: skip
-def test_a_file_that_cannot_be_analysed_is_named_with_what_to_do(lint, data, reason):
+def test_a_file_that_cannot_be_analysed_is_named_with_advice(lint, data, reason):
     assert reason in reasons(lint({"odd.py": data}))["odd.py"]
 
 
@@ -98,7 +98,7 @@ def test_a_file_that_cannot_be_analysed_is_named_with_what_to_do(lint, data, rea
     ],
     ids=["empty", "blank", "shebang", "BOM", "CRLF", "CR", "form feeds", "no last line end", "latin-1", "surrogate"],
 )  # fmt: skip
-def test_a_file_that_only_looks_odd_is_analysed(lint, data):
+def test_an_unusual_but_valid_file_is_analysed(lint, data):
     result = lint({"odd.py": data})
     assert reasons(result) == {}
     assert ("odd.py" in {f.span.path for f in result.findings}) == (b"rospy" in data)
@@ -149,7 +149,7 @@ def test_deep_blocks_are_analysed_or_named(lint, header):
     reasons(lint({"odd.py": text}))
 
 
-def test_what_is_no_regular_file_is_passed_over_and_named_when_asked_for(lint, tmp_path, capsys):
+def test_special_files_are_skipped_and_named_on_request(lint, tmp_path, capsys):
     Path("directory.py").mkdir()
     os.mkfifo("pipe.py")
     Path("device.py").symlink_to("/dev/zero")
@@ -167,8 +167,8 @@ def test_what_is_no_regular_file_is_passed_over_and_named_when_asked_for(lint, t
     assert "circle is a broken link to circle" in capsys.readouterr().err
 
 
-def test_places_that_may_not_be_read_are_named(lint, monkeypatch, capsys):
-    """Simulated, since tests may be run by someone who may read everything."""
+def test_unreadable_places_are_named(lint, monkeypatch, capsys):
+    """Simulated, since the user who runs the tests may be root."""
     Path("closed").mkdir()
     Path("secret.py").write_text("x = 1\n")
     scandir, opened = os.scandir, Path.open
@@ -190,7 +190,7 @@ def test_places_that_may_not_be_read_are_named(lint, monkeypatch, capsys):
     assert result.statistics.notes.unreadable == ("closed",)
 
 
-def test_names_that_are_no_text_or_steer_terminals_are_shown_harmlessly(lint, capsys):
+def test_control_characters_in_names_are_escaped(lint, capsys):
     names = [os.fsdecode(b"n\xf6de.py"), "größe \N{ROBOT FACE}.py", "new\nline.py", "esc\x1b[31m.py"]
     assert reasons(lint(dict.fromkeys(names, PLAIN))) == {}
     for form in ("text", "concise", "json", "sarif", "github", "gitlab", "junit", "dot", "mermaid"):
@@ -205,7 +205,7 @@ def test_names_that_are_no_text_or_steer_terminals_are_shown_harmlessly(lint, ca
     assert main([]) == 0
 
 
-def test_what_code_holds_does_not_steer_the_terminal(lint, capsys):
+def test_control_characters_in_code_are_escaped(lint, capsys):
     lint({"odd.py": NODE.format("msg.data  # \x1b]0;owned\x07")})
     main(["odd.py"])
     assert "# \\x1b]0;owned\\x07" in capsys.readouterr().out
@@ -230,7 +230,7 @@ def test_random_bytes_are_read_or_refused(data):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_damaged_programs_are_read_or_refused(seed):
-    """A real node with bytes changed, taken out and doubled."""
+    """A real node with bytes changed, removed and doubled."""
     chosen = random.Random(seed)
     for _ in range(200 if SLOW else 20):
         data = bytearray(PLAIN.encode())
@@ -265,13 +265,13 @@ def standard_library() -> list[Path]:
 
 
 def test_the_standard_library_is_analysed():
-    """Each file as if it were a node's: without a word of ROS in it only its syntax would be looked at."""
+    """Each file is treated as part of a node; otherwise only its syntax would be checked."""
     for path in standard_library():
         examined(b"\n".join([path.read_bytes(), b"import rospy"]), str(path))
 
 
 def examined(data: bytes, path: str = "odd.py") -> None:
-    """Analyse a text as a file of its own; failures of ours are failures of the test."""
+    """Analyse a text as a single file; an internal error fails the test."""
     script = read(path, data, "odd")
     if isinstance(script, Script):
         report = perform(Task((script,), analyse=True), Config())

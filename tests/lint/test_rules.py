@@ -1,4 +1,4 @@
-"""The snippets inside the rules are their tests."""
+"""The snippets in the rules' modules are their tests."""
 
 import pytest
 
@@ -26,7 +26,7 @@ def reported(text: str) -> set[str]:
 
 
 @pytest.mark.parametrize(("code", "name", "text"), SNIPPETS)
-def test_snippets_are_what_they_say(code, name, text):
+def test_snippets_are_valid_or_invalid_as_declared(code, name, text):
     assert (code in reported(text)) == (name == "INVALID")
 
 
@@ -37,7 +37,7 @@ def test_every_rule_has_both_kinds_of_snippets():
         assert rule.SUMMARY[0].islower()
 
 
-def test_a_finding_stands_at_the_publish_call_and_names_both_topics():
+def test_a_finding_is_at_the_publish_call_and_names_both_topics():
     text = known_rules()["TARL101"].INVALID[0]
     from inspect import cleandoc
 

@@ -25,7 +25,7 @@ def lint() -> Callable[..., Result]:
 
 @pytest.fixture
 def accept(lint) -> Callable[..., Path]:
-    """Accept what is found, as --write-baseline does, and return the file."""
+    """Accept all findings, as --write-baseline does, and return the baseline."""
 
     def go(*paths: str) -> Path:
         result = lint(*paths, write_baseline=True)
@@ -94,7 +94,7 @@ def test_a_file_that_disappears_meanwhile_is_an_error(example, in_directory, lin
     ]
 
 
-def test_a_crash_of_the_analysis_is_our_bug_in_one_sentence(example, in_directory, lint, crash, monkeypatch):
+def test_a_crash_of_the_analysis_is_reported_in_one_sentence(example, in_directory, lint, crash, monkeypatch):
     in_directory({"node.py": example.text})
     with pytest.raises(
         AnalysisBug, match=r"has a bug .*KeyError: 'graph', test_runner\.py:\d+\).*TARL_DEBUG=1"
@@ -105,19 +105,19 @@ def test_a_crash_of_the_analysis_is_our_bug_in_one_sentence(example, in_director
         lint()
 
 
-def test_nothing_to_lint_is_said_with_what_there_is_instead(in_directory, lint):
+def test_a_run_without_python_files_lists_what_was_found(in_directory, lint):
     in_directory({"README": "", "node.cpp": "ros::init(argc, argv);"})
     with pytest.raises(UsageError, match=r"no Python file to lint in \. \(there are 1 C\+\+ nodes"):
         lint()
 
 
-def test_rules_that_are_ignored_find_nothing(example, in_directory, lint):
+def test_ignored_rules_find_nothing(example, in_directory, lint):
     in_directory({"node.py": example.text})
     assert lint(ignore=("TARL1",)).findings == ()
     assert lint(select=("TARL102",)).findings == ()
 
 
-def test_what_a_sanitizer_of_the_settings_returns_is_clean(example, in_directory, lint):
+def test_results_of_sanitizers_are_not_tainted(example, in_directory, lint):
     text = example.text.replace("import rospy\n", "import rospy\nfrom safety import fixed\n", 1)
     root = in_directory({"node.py": text.replace("pub.publish(vel)", "pub.publish(fixed(vel))")})
     assert [f.code for f in lint().findings] == ["TARL101"]
@@ -139,7 +139,7 @@ def test_a_comment_for_a_rule_that_did_not_run_is_not_reported(example, in_direc
     assert lint(select=("TARL102",)).unused == ()
 
 
-def test_accepted_flows_are_not_new_even_when_lines_move(example, in_directory, lint, accept):
+def test_accepted_flows_stay_accepted_when_lines_move(example, in_directory, lint, accept):
     root = in_directory({"node.py": example.text})
     accept()
     (root / "node.py").write_text("#!/usr/bin/env python3\n\n\n" + example.text)
@@ -149,7 +149,7 @@ def test_accepted_flows_are_not_new_even_when_lines_move(example, in_directory, 
     assert result.vanished == ()
 
 
-def test_another_flow_of_an_accepted_group_reports_the_group(example, in_directory, lint, accept):
+def test_a_further_flow_in_an_accepted_group_reports_the_group(example, in_directory, lint, accept):
     root = in_directory({"node.py": example.text})
     accept()
     twice = example.text.replace(
@@ -159,7 +159,7 @@ def test_another_flow_of_an_accepted_group_reports_the_group(example, in_directo
     assert [f.status for f in lint().findings] == ["new", "new"]
 
 
-def test_a_flow_that_is_gone_has_vanished(example, in_directory, lint, accept):
+def test_a_missing_flow_is_reported_as_vanished(example, in_directory, lint, accept):
     root = in_directory({"node.py": example.text})
     accept()
     (root / "node.py").write_text("x = 1\n")
@@ -168,9 +168,7 @@ def test_a_flow_that_is_gone_has_vanished(example, in_directory, lint, accept):
     assert [e.fingerprint.source for e in lint().vanished] == ["odom"]
 
 
-def test_flows_of_files_that_were_not_looked_at_or_cannot_be_read_are_kept(
-    example, in_directory, lint, accept
-):
+def test_flows_of_unread_files_are_kept(example, in_directory, lint, accept):
     root = in_directory({"a/node.py": example.text, "b/other.py": "x = 1\n"})
     path = accept()
     before = path.read_bytes()
@@ -199,7 +197,7 @@ def test_a_baseline_is_the_same_from_every_directory(example, in_directory, lint
     assert baseline.dumps(baseline.merged(result.found, result.kept)).encode() == before
 
 
-def test_equal_nodes_of_two_ros_packages_are_told_apart(example, in_directory, lint):
+def test_equal_nodes_of_two_ros_packages_are_distinguished(example, in_directory, lint):
     manifest = "<package><name>{}</name></package>"
     in_directory(
         {"a/package.xml": manifest.format("left"), "a/scripts/node.py": example.text,

@@ -1,4 +1,4 @@
-"""Every setting as a user meets it: files on disk, a command, what it prints and how it ends."""
+"""Every setting end to end: files on disk, the command, its output and exit code."""
 
 from __future__ import annotations
 
@@ -45,25 +45,25 @@ def settings(text: str) -> dict[str, str]:
     return {"pyproject.toml": f"[tool.tarl-lint]\n{text}\n"}
 
 
-def test_a_source_of_ones_own_calls_back(lint):
+def test_a_custom_source_calls_its_callback(lint):
     node = LISTENER.format(body="pub.publish(msg)", subscribe='bus.listen("/in", on_value)')
     assert lint({"node.py": node}) == []
     assert "node.py:9 TARL101" in lint({"node.py": node, **settings('sources = ["robot.bus.listen"]')})
 
 
-def test_a_sink_of_ones_own_publishes(lint):
+def test_a_custom_sink_publishes(lint):
     node = PLAIN.replace("pub.publish(msg.data)", 'bus.Bus().send("/out", msg.data)')
     assert "node.py:9 TARL101" not in lint({"node.py": node})
     assert "node.py:9 TARL101" in lint({"node.py": node, **settings('sinks = ["robot.bus.Bus.send"]')})
 
 
-def test_a_sanitizer_of_ones_own_cleans(lint):
+def test_a_custom_sanitizer_removes_taint(lint):
     node = PLAIN.replace("pub.publish(msg.data)", "pub.publish(safety.clamp(msg.data))")
     assert lint({"node.py": node}) == ["node.py:9 TARL101"]
     assert lint({"node.py": node, **settings('sanitizers = ["robot.safety.clamp"]')}) == []
 
 
-def test_a_wrapper_of_ones_own_is_like_what_it_wraps(lint):
+def test_a_custom_wrapper_acts_like_the_wrapped_function(lint):
     node = PLAIN.replace("rospy.Publisher(", "bus.advertise(Float64, topic=").replace(
         ", Float64, queue_size=1", ""
     )
@@ -72,7 +72,7 @@ def test_a_wrapper_of_ones_own_is_like_what_it_wraps(lint):
     assert lint({"node.py": node, **settings(like)}) == ["node.py:9 TARL101"]
 
 
-def test_transforms_are_sources_when_asked_for(lint):
+def test_transforms_are_sources_on_request(lint):
     node = """\
 import rospy, tf2_ros
 from std_msgs.msg import Float64
@@ -113,7 +113,7 @@ def test_extend_exclude_adds_to_the_settings_and_exclude_replaces_them(lint, cap
     assert " ".join(line.split()) == 'exclude = ["gen/", "vendor"] # pyproject.toml and command line'
 
 
-def test_ignore_files_of_git_are_nested_and_negated(lint):
+def test_nested_and_negated_gitignore_files_are_respected(lint):
     files = dict.fromkeys(["top.py", "old/a.py", "old/keep.py", "new/a.py", "new/deep/b.py"], PLAIN)
     ignores = {
         ".gitignore": "old/*\n!old/keep.py\n/top.py\n",
@@ -132,7 +132,7 @@ def test_per_file_ignores_are_written_as_for_flake8(lint, value):
     assert lint({"a.py": PLAIN, "b/b.py": PLAIN}, "--per-file-ignores", value) == []
 
 
-def test_rules_are_chosen_with_commas_and_by_repeating(lint):
+def test_rules_are_selected_by_commas_or_repeated_options(lint):
     both = PLAIN + 'rospy.Publisher("/idle", Float64, queue_size=1)\nrospy.init_node("n")\n'
     assert lint({"a.py": both}) == ["a.py:9 TARL101", "a.py:14 TARL204"]
     assert lint({"a.py": both}, "--select", "TARL101,TARL204") == ["a.py:9 TARL101", "a.py:14 TARL204"]
@@ -144,26 +144,26 @@ def test_rules_are_chosen_with_commas_and_by_repeating(lint):
     assert lint({"a.py": both}, "--ignore", "TARL1", "--ignore", "TARL2") == []
 
 
-def test_another_settings_file_is_used_when_named(lint):
+def test_a_named_settings_file_is_used(lint):
     files = {"a.py": PLAIN, "strict.toml": 'ignore = ["TARL1"]\n', **settings('select = ["TARL1"]')}
     assert lint(files) == ["a.py:9 TARL101"]
     assert lint(files, "--config", "strict.toml") == []
 
 
-def test_only_hazards_were_asked_for_and_none_was_found(in_directory, capsys):
+def test_a_run_for_hazards_alone_without_findings_says_so(in_directory, capsys):
     in_directory({"a.py": PLAIN})
     assert main(["--select", "TARL2"]) == 0
     assert capsys.readouterr().out == "No hazard in 1 file.\n"
 
 
 @pytest.mark.parametrize("text", ["tf2 = 1", "exlude = []", "extend-exclude = []", 'tf2 = "yes"'])
-def test_settings_that_cannot_be_meant_are_refused(in_directory, capsys, text):
+def test_invalid_settings_are_refused(in_directory, capsys, text):
     in_directory({"a.py": PLAIN, **settings(text)})
     assert main([]) == 2
     assert capsys.readouterr().err.startswith("tarl-lint: pyproject.toml: ")
 
 
-def test_the_text_of_an_editor_is_linted_in_its_place(in_directory, capsys, monkeypatch):
+def test_unsaved_text_replaces_its_file(in_directory, capsys, monkeypatch):
     import io
     import types
 

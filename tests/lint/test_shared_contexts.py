@@ -1,4 +1,4 @@
-"""Calls that share a context: no flow is missed, and long programs are followed to the end."""
+"""Calls that share a context: no flow is missed, and long programs are analysed completely."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ HELPERS = [
 
 @pytest.fixture
 def sharing(monkeypatch):
-    """Let all calls of a function share a context, from the first on."""
+    """Make all calls of a function share a context."""
     monkeypatch.setattr(context_selection, "MANY", -1)
     monkeypatch.setattr(context_selection, "OFTEN", -1)
 
@@ -61,7 +61,7 @@ rospy.Subscriber("in", F, on)
 """
 
 
-def test_data_of_one_caller_may_reach_another_only_where_contexts_are_shared(tmp_path, monkeypatch):
+def test_data_crosses_callers_only_if_they_share_a_context(tmp_path, monkeypatch):
     (tmp_path / "node.py").write_text(TWO)
     assert [f.sink.topics for f in analyse([tmp_path]).flows] == [("out",)]
     monkeypatch.setattr(context_selection, "MANY", -1)
@@ -89,7 +89,7 @@ def test_the_conditions_of_all_callers_decide_what_runs(tmp_path):
 
 
 @pytest.mark.usefixtures("sharing")
-def test_each_call_that_supplies_a_callback_stays_a_subscription_of_its_own(tmp_path):
+def test_each_call_that_supplies_a_callback_stays_a_separate_subscription(tmp_path):
     (tmp_path / "node.py").write_text(
         "import rospy\npub = rospy.Publisher('out', F)\n"
         "def listen(topic, callback):\n    rospy.Subscriber(topic, F, callback)\n"
@@ -110,7 +110,7 @@ def test_recursion_through_a_shared_context_ends():
 
 
 def tree_of_calls(depth: int, width: int) -> str:
-    """Return a node whose functions call the next one several times: contexts are a power of its depth."""
+    """Return a node whose functions each call the next one several times: contexts grow exponentially with depth."""
     levels = "".join(
         f"def f{n}(x):\n" + f"    x = f{n + 1}(x)\n" * width + "    return x\n" for n in range(depth)
     )
@@ -120,7 +120,7 @@ def tree_of_calls(depth: int, width: int) -> str:
     )
 
 
-def test_contexts_that_are_a_power_of_the_depth_are_followed_to_the_end(monkeypatch):
+def test_programs_with_exponentially_many_contexts_are_analysed_completely(monkeypatch):
     monkeypatch.setattr(context_selection, "MANY", 300)
     machine = linked(tree_of_calls(depth=8, width=4))
     assert not machine.cut

@@ -1,4 +1,4 @@
-"""The shortest path of a flow: as short as there is one, from a message's arrival to the publish call."""
+"""The shortest path of a flow, from a message's arrival to the publish call, is minimal."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ CASES = sorted((Path(__file__).parent.parent / "cases").glob("*.py"))
 
 @st.composite
 def graphs(draw: st.DrawFn) -> tuple[list[list[int]], dict[int, int]]:
-    """Draw what each node is made from, and the statements of some of the nodes."""
+    """Draw the dependencies of each node, and the statements of some nodes."""
     size = draw(st.integers(2, 7))
     nodes = st.integers(0, size - 1)
     formers = draw(st.lists(st.lists(nodes, max_size=3, unique=True), min_size=size, max_size=size))
@@ -27,7 +27,7 @@ def graphs(draw: st.DrawFn) -> tuple[list[list[int]], dict[int, int]]:
 
 
 def cheapest(formers: list[list[int]], statements: Mapping[int, int], start: int, end: int) -> float:
-    """Return the least number of changes to another statement, by relaxing all edges again and again."""
+    """Return the least number of statement changes on a path, by Bellman-Ford relaxation."""
     cost = [float("inf")] * len(formers)
     cost[end] = 0
     for _, node in product(formers, range(len(formers))):

@@ -1,4 +1,4 @@
-"""What `a += b` does to containers and arrays."""
+"""`a += b` on containers and arrays."""
 
 from __future__ import annotations
 
@@ -31,6 +31,6 @@ rospy.spin()
         ("{}", "part = total; part |= {'a': msg.data}", "total['a']", "explicit"),
     ],
 )
-def test_what_is_added_in_place_is_in_the_container(tmp_path, made, grows, sent, kind):
+def test_elements_added_in_place_are_in_the_container(tmp_path, made, grows, sent, kind):
     found = analysed(tmp_path, node=NODE.format(made=made, grows=grows, sent=sent)).flows
     assert [f.kind for f in found] == ([kind] if kind else [])

@@ -22,7 +22,7 @@ def test_the_encoding_that_the_file_declares_is_used():
 
 
 @pytest.mark.parametrize("data", [codecs.BOM_UTF8 + b"x = 1\r\ny = 2\r\n", b"x = 1\ry = 2\r"])
-def test_byte_order_marks_and_foreign_line_ends_are_taken_off(data):
+def test_byte_order_marks_and_foreign_line_ends_are_removed(data):
     module = parsed(data)
     assert isinstance(module, Module)
     assert module.text == "x = 1\ny = 2\n"
@@ -41,7 +41,7 @@ def test_byte_order_marks_and_foreign_line_ends_are_taken_off(data):
         (b"x = " + b"-" * 200_000 + b"1", 1, ""),
     ],
 )
-def test_what_cannot_be_parsed_is_a_sentence_with_a_line(data, line, words):
+def test_a_syntax_error_gives_a_sentence_and_a_line(data, line, words):
     error = parsed(data)
     assert isinstance(error, SourceError)
     assert error.line == line
@@ -49,13 +49,13 @@ def test_what_cannot_be_parsed_is_a_sentence_with_a_line(data, line, words):
     assert error.message.endswith(".")
 
 
-def test_a_package_is_told_from_a_module():
+def test_a_package_is_distinguished_from_a_module():
     module = parse("pkg/__init__.py", b"", "pkg")
     assert isinstance(module, Module)
     assert module.is_package
 
 
-def test_a_notebook_is_named_as_one_though_its_text_may_pass_for_python():
+def test_a_notebook_is_recognised_even_if_its_text_is_valid_python():
     error = parse("a.ipynb", b'{"cells": []}', "a")
     assert isinstance(error, SourceError)
     assert "jupyter nbconvert --to script" in error.message

@@ -1,4 +1,4 @@
-"""What a run of the linter imports: little, and nothing that belongs to the plugin."""
+"""A run of the linter imports few modules, and none of the plugin."""
 
 import subprocess
 import sys
@@ -37,7 +37,7 @@ print(sorted(set({HEAVY!r}) & set(sys.modules)), file=sys.stdout)
     assert python(place, program).splitlines()[-1] == "[]"
 
 
-def test_it_works_where_the_other_dependencies_are_missing(place):
+def test_the_linter_runs_without_the_other_dependencies(place):
     program = """
 import sys
 

@@ -1,4 +1,4 @@
-"""Text that comes through the standard input, as an editor sends it."""
+"""Text from standard input, as editors send it."""
 
 import io
 import json
@@ -20,14 +20,14 @@ def lint(monkeypatch, capsys):
     return go
 
 
-def test_the_text_stands_for_the_file_that_is_named(example, in_directory, lint):
+def test_the_text_replaces_the_named_file(example, in_directory, lint):
     in_directory({"src/node.py": "x = 1\n"})
     code, out, _ = lint(example.text, "-", "--stdin-filename", "src/node.py", "--format", "concise")
     assert code == 1
     assert out.startswith("src/node.py:18:9 TARL101 ")
 
 
-def test_the_file_need_not_exist_nor_have_a_name(example, in_directory, lint):
+def test_the_file_need_neither_exist_nor_be_named(example, in_directory, lint):
     in_directory({})
     assert lint(example.text, "-", "--format", "concise")[1].startswith("stdin.py:18:9 TARL101 ")
     assert lint(example.text, "-", "--stdin-filename", "new/a.py", "--format", "concise")[1].startswith(
@@ -35,26 +35,26 @@ def test_the_file_need_not_exist_nor_have_a_name(example, in_directory, lint):
     )
 
 
-def test_the_other_files_are_read_as_they_are(example, in_directory, lint):
+def test_other_files_are_read_from_disk(example, in_directory, lint):
     in_directory({"node.py": "x = 1\n", "other.py": example.text})
     _, out, _ = lint(example.text, "-", ".", "--stdin-filename", "node.py", "--format", "json")
     assert [d["path"] for d in json.loads(out)["diagnostics"]] == ["node.py", "other.py"]
 
 
-def test_settings_are_those_of_the_file_that_is_named(example, in_directory, lint):
+def test_settings_are_those_of_the_named_file(example, in_directory, lint):
     in_directory({"package/pyproject.toml": '[tool.tarl-lint]\nignore = ["TARL101"]\n'})
     assert lint(example.text, "-", "--stdin-filename", "package/node.py")[0] == 0
     assert lint(example.text, "-", "--stdin-filename", "node.py")[0] == 1
 
 
-def test_code_that_cannot_be_read_is_named_like_any_other(in_directory, lint):
+def test_unreadable_text_is_reported_like_a_file(in_directory, lint):
     in_directory({})
     assert (
         "a.py:1:1 TARL001 The file is not valid Python" in lint("def (", "-", "--stdin-filename", "a.py")[1]
     )
 
 
-def test_a_name_without_text_is_refused(in_directory, lint):
+def test_a_file_name_without_text_is_refused(in_directory, lint):
     in_directory({"a.py": ""})
     code, _, err = lint("", "a.py", "--stdin-filename", "a.py")
     assert (code, err) == (
@@ -63,7 +63,7 @@ def test_a_name_without_text_is_refused(in_directory, lint):
     )
 
 
-def test_nothing_is_read_where_nothing_is_asked_for(in_directory, monkeypatch):
+def test_standard_input_is_read_only_on_request(in_directory, monkeypatch):
     in_directory({"a.py": ""})
     monkeypatch.setattr(sys, "stdin", None)
     assert main([str(Path("a.py"))]) == 0

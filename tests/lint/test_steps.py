@@ -1,4 +1,4 @@
-"""The taint list: complete, ordered, and nothing but."""
+"""The taint list is complete, ordered and minimal."""
 
 from textwrap import dedent
 
@@ -55,14 +55,14 @@ def test_a_script_node_has_the_taint_list_of_the_paper(tmp_path):
     ]
 
 
-def test_moved_lines_keep_their_identity(tmp_path):
+def test_moved_statements_keep_their_identity(tmp_path):
     before = analysed(tmp_path, ferry=FERRY).flows[0]
     after = analysed(tmp_path, ferry="\n\n# moved\n" + dedent(FERRY)).flows[0]
     assert [s.site for s in before.steps] == [s.site for s in after.steps]
     assert [s.span.line for s in before.steps] != [s.span.line for s in after.steps]
 
 
-def test_statements_of_equal_text_are_numbered(tmp_path):
+def test_statements_with_equal_text_are_numbered(tmp_path):
     (flow,) = analysed(
         tmp_path,
         node="""
@@ -185,7 +185,7 @@ def test_columns_count_characters(tmp_path):
         ),
     ],
 )
-def test_steps_are_what_lies_on_the_way(tmp_path, body, data, control):
+def test_steps_are_the_statements_on_the_path(tmp_path, body, data, control):
     text = f"""
 import rospy
 from geometry_msgs.msg import Twist
@@ -214,7 +214,7 @@ rospy.Subscriber("a", F, on)
     assert steps(flow, "control") == control
 
 
-def test_context_reaches_through_the_calls_that_lead_to_a_step(tmp_path):
+def test_context_includes_the_callers_of_a_step(tmp_path):
     (flow,) = analysed(
         tmp_path,
         node="""
@@ -262,7 +262,7 @@ def test_a_wrapper_is_named_by_the_call_that_supplies_the_callback(tmp_path):
     assert flow.source.topics == ("a",)
 
 
-def test_messages_of_synchronised_subscribers_are_told_apart(tmp_path):
+def test_messages_of_synchronised_subscribers_are_distinguished(tmp_path):
     flows = analysed(
         tmp_path,
         node="""
@@ -280,5 +280,5 @@ def test_messages_of_synchronised_subscribers_are_told_apart(tmp_path):
     assert [s.line for s in flows[0].source.registered] == [8, 9]
 
 
-def test_two_runs_give_the_same_answer(tmp_path):
+def test_two_runs_give_the_same_result(tmp_path):
     assert analysed(tmp_path, ferry=FERRY).flows == analysed(tmp_path, ferry=FERRY).flows

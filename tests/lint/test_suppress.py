@@ -51,7 +51,7 @@ def test_other_rules_and_other_tools_comments_silence_nothing(comment):
     assert kept(f"pub.publish(x)  {comment}\n", finding(1)) == ["TARL101"]
 
 
-def test_any_line_of_the_call_will_do_but_no_other_line():
+def test_the_comment_can_be_on_any_line_of_the_call_only():
     text = "a = 1  # tarl: ignore\npub.publish(\n    x,  # tarl: ignore\n)\n"
     assert kept(text, finding(2, end=4)) == []
     assert kept(text, finding(4)) == ["TARL101"]
@@ -61,18 +61,18 @@ def test_one_comment_silences_several_findings_of_its_line():
     assert kept("p(x)  # tarl: ignore\n", finding(1), finding(1, "TARL102")) == []
 
 
-def test_a_comment_in_a_string_is_text():
+def test_a_comment_in_a_string_has_no_effect():
     text = 'pub.publish("# tarl: ignore")\n'
     assert kept(text, finding(1)) == ["TARL101"]
     assert suppressions("node.py", text) == ()
 
 
-def test_each_rule_that_a_comment_names_in_vain_is_reported():
+def test_each_unused_rule_of_a_comment_is_reported():
     text = "p(x)  # tarl: ignore[TARL101, TARL102]\nq(y)  # tarl: ignore\nr(z)  # noqa: E501\n"
     _, silenced, unused = apply([finding(1)], {"node.py": text})
     assert silenced == (finding(1),)
     assert [(s.line, s.column, s.code) for s in unused] == [(1, 7, "TARL102"), (2, 7, "")]
 
 
-def test_comments_before_a_place_that_cannot_be_tokenized_still_count():
+def test_comments_before_a_tokenizer_error_still_apply():
     assert kept("p(x)  # tarl: ignore\n'''\n", finding(1)) == []

@@ -1,4 +1,4 @@
-"""The nodes of launch files as systems: interfaces as launched, flows across nodes, pictures, and questions."""
+"""The nodes of launch files as systems: launched interfaces, flows across nodes, pictures, and queries."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def test_arguments_choose_what_is_launched(workspace, capsys):
     ]
 
 
-def test_a_node_that_was_not_read_stands_between_topics_that_others_use(workspace, capsys):
+def test_an_unread_node_may_connect_topics_in_its_remappings(workspace, capsys):
     driver = '<node pkg="base" type="mux" name="mux"><remap from="i" to="/raw"/><remap from="o" to="/safe"/></node>'
     file = launched(workspace, relay("one", "/scan", "/raw") + driver + relay("two", "/safe", "/cmd_vel"))
     _, out, _ = run(capsys, "--launch", file)
@@ -106,7 +106,7 @@ def test_a_node_that_was_not_read_stands_between_topics_that_others_use(workspac
     assert "not read: the package base is not in the workspace; remaps /raw, /safe" in out
 
 
-def test_questions_from_a_sensor_to_an_actuator(workspace, capsys):
+def test_chains_can_be_queried_from_a_sensor_to_an_actuator(workspace, capsys):
     file = launched(
         workspace,
         relay("one", "/scan", "/mid") + relay("two", "/odom", "/mid") + relay("out", "/mid", "/cmd"),
@@ -125,13 +125,13 @@ def test_questions_from_a_sensor_to_an_actuator(workspace, capsys):
     assert "No node that was read uses /sacn." in run(capsys, "--launch", file, "--from", "/sacn")[1]
 
 
-def test_without_a_launch_file_nodes_have_the_names_of_their_code(workspace, capsys):
+def test_without_a_launch_file_nodes_have_the_names_in_their_code(workspace, capsys):
     _, out, _ = run(capsys, "--to", "/out")
     assert out.startswith(".: ") or ", names as in the code: 1 node" in out
     assert flows(out) == ["/in → /relay → /out  explicit"]
 
 
-def test_circles_end(workspace, capsys):
+def test_the_search_ends_on_cycles(workspace, capsys):
     file = launched(workspace, relay("one", "/a", "/b") + relay("two", "/b", "/a"))
     _, out, _ = run(capsys, "--launch", file)
     assert flows(out) == [
@@ -140,7 +140,7 @@ def test_circles_end(workspace, capsys):
     ]
 
 
-def test_many_ways_are_cut_short():
+def test_the_number_of_chains_is_limited():
     hops = [Hop(f"/n{i}{j}", f"/t{i}", f"/t{i + 1}", "explicit") for i in range(12) for j in range(3)]
     found, more = chains(hops)
     assert (len(found), more) == (MOST, True)
@@ -173,7 +173,7 @@ def test_main_blocks_of_imported_modules_do_not_run(workspace, capsys):
     assert "never" not in out
 
 
-def test_fingerprints_are_those_of_a_run_without_launch_files(workspace, capsys):
+def test_fingerprints_equal_those_of_a_run_without_launch_files(workspace, capsys):
     file = launched(workspace, relay("one", "/scan", "/cmd_vel"))
     (system,) = json.loads(run(capsys, "--launch", file, "--format", "json")[1])["systems"]
     plain = json.loads(run(capsys, ".", "--format", "json")[1])["diagnostics"]
@@ -184,7 +184,7 @@ def test_fingerprints_are_those_of_a_run_without_launch_files(workspace, capsys)
 
 
 @pytest.mark.parametrize("arguments", [["--launch", "all"], ["--to", "/cmd_vel"]])
-def test_the_json_of_the_example_has_its_schema(arguments, capsys, monkeypatch):
+def test_the_json_of_the_example_is_valid_by_its_schema(arguments, capsys, monkeypatch):
     monkeypatch.chdir(EXAMPLE)
     document = json.loads(run(capsys, *arguments, "--format", "json")[1])
     jsonschema.validate(document, SCHEMA)
@@ -192,7 +192,7 @@ def test_the_json_of_the_example_has_its_schema(arguments, capsys, monkeypatch):
     assert all(chain["hops"] for system in document["systems"] for chain in system["chains"])
 
 
-def test_the_example_is_read_through_all_kinds_of_launch_files(capsys, monkeypatch):
+def test_the_example_uses_all_kinds_of_launch_files(capsys, monkeypatch):
     monkeypatch.chdir(EXAMPLE)
     _, out, _ = run(
         capsys, "--launch", "scout_navigation/launch/bringup.launch.py", "robot:=r1", "--to", "/r1/cmd_vel"
@@ -249,7 +249,7 @@ def _overlap(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
         (["--launch", "all", "missing"], "missing: no such folder."),
     ],
 )
-def test_mistakes_are_told_in_sentences(workspace, capsys, arguments, message):
+def test_user_mistakes_give_sentences(workspace, capsys, arguments, message):
     code, _, err = run(capsys, *arguments)
     assert code == 2
     assert message in err
@@ -278,7 +278,7 @@ def test_every_format_is_offered():
     assert set(command.FORMATS) == {"text", "json", "mermaid", "svg"}
 
 
-def test_the_guide_shows_what_is_printed(capsys, monkeypatch):
+def test_the_guide_matches_the_output(capsys, monkeypatch):
     guide = (EXAMPLE.parents[1] / "docs/howto/launch.md").read_text("utf-8")
     shown = guide.partition("```console\n$ tarl-lint ")[2].partition("\n```")[0]
     command_line, _, expected = shown.partition("\n")

@@ -1,4 +1,4 @@
-"""Taking values apart: only the part that was taken carries the message."""
+"""Unpacking: only the part with the message is tainted."""
 
 import pytest
 
@@ -47,6 +47,6 @@ rospy.Subscriber("in", Float64, on_value)
         ("for value, _ in Pairs(msg.data): pass", 0),
     ],
 )
-def test_a_part_carries_the_message_when_it_is_the_one(tmp_path, body, flows):
+def test_only_the_unpacked_part_with_the_message_is_tainted(tmp_path, body, flows):
     text = NODE.format(body="\n".join(f"    {line}" for line in body.split("\n")))
     assert len([f for f in analysed(tmp_path, node=text).flows if f.kind == "explicit"]) == flows

@@ -1,4 +1,4 @@
-"""What only tells people something is not run; what does more is."""
+"""Log and print statements are not interpreted, unless they have another effect."""
 
 import ast
 
@@ -43,7 +43,7 @@ def flows(statement: str, own: str = "") -> int:
         "rclpy.logging.get_logger('a').error(','.join(str(a) for a in b))",
     ],
 )
-def test_messages_made_of_what_is_there_only_tell(text):
+def test_log_messages_made_of_existing_values_are_effect_free(text):
     assert only_tells(ast.parse(text, mode="eval").body, prints=True)
 
 
@@ -59,19 +59,19 @@ def test_messages_made_of_what_is_there_only_tell(text):
         "print",
     ],
 )
-def test_what_calls_or_binds_does_more(text):
+def test_log_statements_that_call_or_bind_are_not_effect_free(text):
     assert not only_tells(ast.parse(text, mode="eval").body, prints=True)
 
 
-def test_a_message_that_sends_is_followed():
+def test_a_log_message_that_publishes_is_followed():
     assert flows("print(send(msg.data))") == 1
     assert flows("rospy.loginfo(send(msg.data))") == 1
 
 
-def test_a_message_leads_nowhere():
+def test_a_log_message_is_no_flow():
     assert flows("print(msg.data)") == flows("rospy.loginfo(msg.data)") == 0
 
 
 @pytest.mark.parametrize("own", ["def print(value): send(value)", "print = send"])
-def test_a_print_of_ones_own_is_a_function_like_any_other(own):
+def test_a_redefined_print_is_an_ordinary_function(own):
     assert flows("print(msg.data)", own) == 1

@@ -1,4 +1,4 @@
-"""Names of topics are followed through the texts they are made of, and are left empty where they are not known."""
+"""Topic names are folded from constant strings, and empty if unknown."""
 
 import pytest
 
@@ -56,11 +56,11 @@ def topics(statement, config=DEFAULT):
         ('rospy.get_name() + "/in"', ()),
     ],
 )
-def test_the_topic_of_a_subscription(expression, wanted):
+def test_the_topic_of_a_subscription_is_found(expression, wanted):
     assert topics(f"rospy.Subscriber({expression}, Float64, on_value)") == [wanted]
 
 
-def test_a_helper_passes_its_topic_on():
+def test_the_topic_is_found_through_a_helper():
     assert topics('subscribe(prefix + "/in", on_value)') == [("robot/in",)]
 
 
@@ -68,16 +68,16 @@ def test_a_loop_subscribes_to_all_its_topics():
     assert topics("for name in NAMES:\n    rospy.Subscriber(name, Float64, on_value)") == [("left", "right")]
 
 
-def test_topics_are_called_what_they_are_remapped_to():
+def test_remapped_topics_have_their_new_name():
     config = Config(remaps=(("/in", "/front/in"), ("other", "never")))
     assert topics('subscribe("in", on_value)', config) == [("/front/in",)]
 
 
-def test_every_name_that_a_loop_gives_is_known():
+def test_all_names_from_a_loop_are_found():
     assert topics('for side in NAMES:\n    subscribe(side + "/in", on_value)') == [("left/in", "right/in")]
 
 
-def test_names_out_of_tables_inside_tables_are_known():
+def test_names_in_nested_tables_are_found():
     rows = ", ".join(f"(('s{n}', 1), ('p', 2))" for n in range(6))
     code = (
         f'for (s, _), (p, _) in [{rows}]:\n    rospy.Subscriber("/{{}}/%s".format(s) % p, Float64, on_value)'

@@ -1,4 +1,4 @@
-"""The quick ways through trees see what `ast` sees."""
+"""The fast tree walks find the same nodes as `ast.walk`."""
 
 import ast
 import sys
@@ -21,7 +21,7 @@ if sys.version_info >= (3, 12):
 
 
 def plain(nodes):
-    """Leave out what the quick ways leave out: operators and contexts."""
+    """Drop operators and expression contexts, which the fast walks skip."""
     return [
         n
         for n in nodes
@@ -37,7 +37,7 @@ def test_all_nodes_are_found_in_the_order_of_the_tree(text):
         assert children(node) == plain(ast.iter_child_nodes(node))
 
 
-def test_functions_come_in_the_order_of_their_lines():
+def test_functions_are_found_in_source_order():
     tree = ast.parse(TEXTS[1])
     lines = [n.lineno for n in walk(tree) if isinstance(n, (ast.FunctionDef, ast.ClassDef))]
     assert lines == sorted(lines)

@@ -1,4 +1,4 @@
-"""Settings that speak of nothing in the files are told, in every format."""
+"""Names in the settings that no file mentions are reported in every format."""
 
 import subprocess
 import sys
@@ -26,11 +26,11 @@ SAID = "pyproject.toml: 'sources' names 'robot.nothing', which no file mentions:
         ("", False),
     ],
 )
-def test_a_name_is_met_where_it_is_defined_or_used_with_its_module(text, met):
+def test_a_name_matches_its_definition_or_a_use_with_its_module(text, met):
     assert bool(unmatched(Config(sources=("robot.bus.listen",)), [text])) is not met
 
 
-def test_every_kind_of_name_is_looked_for():
+def test_every_kind_of_name_is_checked():
     config = Config(
         sources=("a.one",),
         sinks=("a.two",),
@@ -46,7 +46,7 @@ def test_every_kind_of_name_is_looked_for():
 
 
 @pytest.mark.parametrize("name", sorted(FORMATS))
-def test_it_is_told_in_every_format(tmp_path, name):
+def test_unmatched_names_are_reported_in_every_format(tmp_path, name):
     (tmp_path / "pyproject.toml").write_text('[tool.tarl-lint]\nsources = ["robot.nothing"]\n')
     (tmp_path / "node.py").write_text("import rospy\n")
     done = subprocess.run(

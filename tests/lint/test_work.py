@@ -1,4 +1,4 @@
-"""How much work programs take: counted in statements of the analysis, not in seconds."""
+"""The work of the analysis on programs, counted in statements instead of seconds."""
 
 import ast
 import gc
@@ -19,7 +19,7 @@ from tarl_lint.read.source import Module
 from tarl_lint.run.deep_stack import with_deep_stack
 from tarl_lint.settings.config import Config
 
-MOST = 2.5 * PATIENCE  # statements that any program may take
+MOST = 2.5 * PATIENCE  # statements, limit for any program
 
 
 def work(text: str, *others: str, thorough: bool = False) -> Linker:
@@ -61,7 +61,7 @@ def main():
 
 
 def chain(length: int, calls: int) -> str:
-    """Return methods each of which calls the next one several times: the paths through them grow as a power."""
+    """Return methods that each call the next one several times: the number of paths grows exponentially."""
     bodies = []
     for n in range(length):
         called = "\n".join(f"        x += self.step_{n + 1}(x + {c})" for c in range(calls))
@@ -93,24 +93,24 @@ def test_no_program_takes_more_than_a_fixed_number_of_statements(name):
     assert work(PROGRAMS[name]()).total < MOST
 
 
-def test_twice_as_many_methods_take_about_twice_as_much():
+def test_work_grows_linearly_with_the_number_of_methods():
     one, two = (work(node(chain(length, 1))).total for length in (10, 20))
     assert two < 2.6 * one
 
 
-def test_flows_of_a_large_program_are_found_within_its_bounds():
+def test_flows_of_a_large_program_are_found_within_its_budget():
     text = node(chain(8, 6))
     (flow,) = engine.analyse([Module("node.py", "node", text, ast.parse(text))], Config())
     assert (flow.kind, flow.source.topics, flow.sink.topics) == ("explicit", ("in0",), ("out",))
 
 
-def test_the_same_flows_are_found_with_and_without_what_comes_from_no_source():
+def test_ignoring_values_without_a_source_does_not_change_the_flows():
     text = node(chain(4, 2), subscriptions=2)
     module = Module("node.py", "node", text, ast.parse(text))
     assert engine.trace([module], Config())[1] == engine.analyse([module], Config()) != ()
 
 
-def test_programs_that_are_not_followed_to_the_end_are_counted(in_directory, capsys, monkeypatch):
+def test_incomplete_programs_are_counted(in_directory, capsys, monkeypatch):
     monkeypatch.setattr(fixpoint, "PATIENCE", 20_000)
     monkeypatch.setattr(fixpoint, "MAX_STATEMENTS", 5_000)
     in_directory({"node.py": node(chain(24, 6), subscriptions=30)})
@@ -139,17 +139,17 @@ rospy.Subscriber("a", Float64, on)
 """
 
 
-def test_what_takes_no_part_and_gets_no_data_is_followed_only_so_far():
+def test_calls_without_data_into_irrelevant_modules_have_a_small_budget():
     given, idle = (work(USER.format(start=50, given=g), TOOL).total for g in ("msg.data", "1"))
     assert idle < LEISURE + 100 < given
 
 
-def test_what_gets_data_is_followed_wherever_it_goes():
+def test_calls_with_data_are_followed_everywhere():
     machine = work(USER.format(start=56, given="msg.data"), TOOL)
     assert [f.kind for f in Tracer(machine).flows()] == ["explicit"]
 
 
-def test_analysing_leaves_nothing_behind_that_holds_itself():
+def test_the_analysis_leaves_no_reference_cycles():
     text = (Path(__file__).parents[1] / "cases" / "containers.py").read_text()
     module = Module("node.py", "node", text, ast.parse(text))
     gc.collect()
@@ -192,7 +192,7 @@ Watchdog("out").start()
 """
 
 
-def test_a_thread_that_starts_itself_anew_comes_to_an_end():
+def test_a_thread_that_restarts_itself_terminates():
     machine = work(RESTARTS)
     flows = Tracer(machine).flows()
     assert [(f.kind, f.source.topics, f.sink.topics) for f in flows] == [("explicit", ("in",), ("out",))]
@@ -201,7 +201,7 @@ def test_a_thread_that_starts_itself_anew_comes_to_an_end():
     assert machine.total < 1_000
 
 
-def test_conditions_that_no_source_decides_lead_to_nothing():
+def test_conditions_without_a_source_are_no_dependencies():
     text = """
 import rospy, os
 state = {}
@@ -222,7 +222,7 @@ rospy.Subscriber("a", Float64, on)
     assert lines == {4, 5}
 
 
-def test_a_program_does_not_run_again_for_what_it_did_itself():
+def test_a_root_is_not_rerun_for_its_own_stores():
     text = "import rospy\nx = []\nfor i in range(3):\n    x.append([i])\nprint(x, rospy.Publisher('a', F))\n"
     assert work(text).total < 20
 
@@ -239,21 +239,21 @@ def callback(body: str) -> str:
 @pytest.mark.parametrize(
     "again", ["    if x > 1:\n        x = x + 1\n", "    for i in range(9):\n        x = x + i\n"]
 )
-def test_a_value_that_may_have_been_changed_a_thousand_times_has_a_bounded_number_of_edges(again):
+def test_a_value_changed_in_many_places_has_a_bounded_number_of_edges(again):
     machine = work(callback(again * 1_500))
     assert machine.graph.edges < 1.2 * MAX_EDGES
     assert list(machine.cut) == ["node.py"]
     assert len(Tracer(machine).flows()) == 1
 
 
-def test_loops_in_loops_take_a_bounded_number_of_passes():
+def test_nested_loops_take_a_bounded_number_of_passes():
     nested = "".join(f"{'    ' + ' ' * depth}for x in range(int(x)):\n" for depth in range(12))
     machine = work(callback(f"{nested}{' ' * 17}x = x + 1\n"))
     assert machine.total < MOST
     assert len(Tracer(machine).flows()) == 1
 
 
-def test_elements_of_elements_of_what_nobody_knows_are_few():
+def test_nested_elements_of_unknown_objects_are_few():
     deep = "".join(f"        part = (part[{n % 2}], part[i], part)[n]\n" for n in range(12))
     machine = work(callback(f"    part = load(x)\n    for i in x:\n{deep}        part.shift(i)\n"))
     widest = max(

@@ -1,4 +1,4 @@
-"""A workspace read as text: packages, programs, modules, configurations, and what could not be read."""
+"""A workspace is read as text: packages, programs, modules, configurations, and problems."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_constant_values_are_those_that_python_computes(tmp_path: Path) -> None:
         assert names[name] == real[name], name
 
 
-def test_what_is_not_constant_is_unknown_and_nothing_is_executed(tmp_path: Path) -> None:
+def test_non_constant_values_are_unknown_and_nothing_is_executed(tmp_path: Path) -> None:
     names = interpreted(
         tmp_path,
         f"""
@@ -142,7 +142,7 @@ def test_configurations_are_interpreted(tmp_path: Path) -> None:
     assert [one["name"] for one in group["parameters"]] == ["max_x", "max_y"]
 
 
-def test_configurations_say_what_is_not_constant(tmp_path: Path) -> None:
+def test_configurations_report_non_constant_values(tmp_path: Path) -> None:
     text = CFG.replace("10, 1, 100.0", "rospy.get_param('rate'), 1, 100.0").replace('"Arm")', "name)")
     (tmp_path / "Arm.cfg").write_text(text)
     found, problems = configurations(tmp_path / "Arm.cfg")
@@ -183,7 +183,7 @@ def test_setup_files_are_interpreted(tmp_path: Path) -> None:
     ]
 
 
-def test_setup_of_catkin_and_of_cfg_files(tmp_path: Path) -> None:
+def test_catkin_setup_and_setup_cfg_are_read(tmp_path: Path) -> None:
     write(
         tmp_path / "a",
         setup_DOT_py="""
@@ -242,7 +242,7 @@ def test_cmake_files_are_read(tmp_path: Path) -> None:
     assert (found.uses_setup, found.python_packages) == (True, (("arm", "python/arm"),))
 
 
-def test_manifests_tell_the_build_type_and_do_not_expand_entities(tmp_path: Path) -> None:
+def test_manifests_give_the_build_type_and_do_not_expand_entities(tmp_path: Path) -> None:
     assert manifest(package(tmp_path / "a", "arm"))[0].kind == "catkin"
     assert manifest(package(tmp_path / "b", "arm", "ament_python"))[0].kind == "ament_python"
     write(tmp_path / "c", package_DOT_xml="<!DOCTYPE x [<!ENTITY a 'b'>]><package><name>&a;</name></package>")
@@ -284,7 +284,7 @@ def workspace(tmp_path: Path) -> Workspace:
     return read(tmp_path / "ws/src")
 
 
-def test_workspace_names_its_packages_programs_modules_and_files(tmp_path: Path) -> None:
+def test_a_workspace_lists_its_packages_programs_modules_and_files(tmp_path: Path) -> None:
     found = workspace(tmp_path)
     assert [one.name for one in found.packages] == ["arm_base", "arm_control"]
     base, control = found.packages

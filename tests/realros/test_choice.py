@@ -1,4 +1,4 @@
-"""Which ROS a test runs on."""
+"""The choice of the ROS on which a test runs."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_a_folder_of_nodes_is_searched(tmp_path: Path) -> None:
     assert choice.libraries([tmp_path]) == ("rclpy",)
 
 
-def test_auto_takes_the_embedded_ros_where_no_other_is(
+def test_auto_selects_the_embedded_ros_if_no_other_is_installed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(choice.PathFinder, "find_spec", lambda _: None)
@@ -55,7 +55,7 @@ def test_auto_takes_the_embedded_ros_where_no_other_is(
         ("import math", "no node of the marker imports rospy or rclpy"),
     ],
 )
-def test_real_says_what_is_missing(
+def test_error_names_the_missing_real_ros(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, says: str
 ) -> None:
     monkeypatch.setattr(choice.PathFinder, "find_spec", lambda _: None)
@@ -63,6 +63,6 @@ def test_real_says_what_is_missing(
         choice.make_ros("real", [node(tmp_path, text)])
 
 
-def test_an_unknown_kind_is_said() -> None:
+def test_an_unknown_kind_is_refused() -> None:
     with pytest.raises(SettingsError, match="--tarl-ros does not know 'gazebo'"):
         choice.check_kind("gazebo")

@@ -1,4 +1,4 @@
-"""The examples on a real ROS: recorded, compared and repaired through real topics, as on the embedded one."""
+"""The examples on a real ROS are recorded, compared and repaired as on the embedded one."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def run(folder: Path, *options: str) -> str:
 
 
 @pytest.mark.parametrize(("example", "test", "repair"), HERE)
-def test_an_example_is_recorded_compared_and_repaired_and_its_fixture_is_that_of_the_embedded_ros(
+def test_an_example_is_recorded_compared_and_repaired_as_on_the_embedded_ros(
     tmp_path: Path, example: str, test: str, repair: str
 ) -> None:
     digests = {}

@@ -1,4 +1,4 @@
-"""A node under observation on a real ROS, in real time, in processes of its own."""
+"""Observe a node on a real ROS, in real time and in separate processes."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ except (KeyboardInterrupt, ExternalShutdownException):
 
 @pytest.mark.parametrize("generation", ["ros1", "ros2"])
 @pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGKILL])
-def test_the_missions_of_a_real_node_are_on_file(
+def test_missions_of_a_real_node_are_written_to_the_log(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, generation: str, ending: signal.Signals
 ) -> None:
     if not installed(generation):
@@ -106,7 +106,7 @@ def test_the_missions_of_a_real_node_are_on_file(
     folder.joinpath("test_tank.py").write_text(TEST)
     assert pytester.runpytest_subprocess(*RECORD).ret == 0
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")  # a kill leaves nothing in /dev/shm
+    monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")  # a killed process leaves nothing in /dev/shm
     monkeypatch.setenv("ROS_DOMAIN_ID", str(SystemRandom().randrange(1, 100)))
     master = Master() if generation == "ros1" else None
     try:
@@ -123,7 +123,7 @@ def test_the_missions_of_a_real_node_are_on_file(
 
 
 def observed(folder: Path, world: str, ending: signal.Signals) -> Path:
-    """Run node and world until the missions are over, then end the node; return the log."""
+    """Run node and world until all missions have ended, then end the node; return the log."""
     options = ["--reward-topic", "/monitor", "--mission-topic", "/mission"]
     command = [sys.executable, "-W", "ignore", "-m", "pytest_tarl", "observe", "keeper.py", *options]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
@@ -135,6 +135,6 @@ def observed(folder: Path, world: str, ending: signal.Signals) -> Path:
             )
             assert "over" in played.stdout, played.stderr
         finally:
-            node.send_signal(ending)  # a second after the last message, which is on disk by then
+            node.send_signal(ending)  # one second after the last message, which has been written by then
             node.wait(20)
     return folder / ".tarl/missions.log"

@@ -1,4 +1,4 @@
-"""The stand-in answers as the real ROS does, whose answers are on file; where it is installed, they are asked again."""
+"""The stand-in gives the recorded results of the real ROS, which are checked where it is installed."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ ALL = [
 
 
 @pytest.mark.parametrize("probe", ALL)
-def test_the_stand_in_answers_as_the_real_ros(probe) -> None:  # type: ignore[no-untyped-def]
+def test_the_stand_in_behaves_like_the_real_ros(probe) -> None:  # type: ignore[no-untyped-def]
     assert answers(probe, "embedded") == expected(probe.parent.name)[probe.stem]
 
 
 @pytest.mark.parametrize("probe", ALL)
-def test_the_real_ros_still_answers_so(probe) -> None:  # type: ignore[no-untyped-def]
+def test_the_real_ros_still_behaves_as_recorded(probe) -> None:  # type: ignore[no-untyped-def]
     if not installed(probe.parent.name):
         pytest.skip(f"{LIBRARIES[probe.parent.name]} is not installed here")
     assert answers(probe, "real") == expected(probe.parent.name)[probe.stem]

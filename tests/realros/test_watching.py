@@ -1,4 +1,4 @@
-"""`tarl watch` as a node on a real ROS, in a process of its own: what a subscriber receives, and how it ends."""
+"""`tarl watch` as a node on a real ROS, in a separate process: published messages, and shutdown."""
 
 from __future__ import annotations
 
@@ -62,12 +62,12 @@ LISTENERS = {"ros1": ("rospy", ROS1_LISTENER), "ros2": ("rclpy", ROS2_LISTENER)}
 
 @pytest.fixture(params=["ros1", "ros2"])
 def generation(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    """A generation of ROS that is installed here, with a network of its own."""
+    """Yield each installed ROS generation, with a private network."""
     found: str = request.param
     if not installed(found):
         pytest.skip(f"{found} is not installed here")
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")  # a kill leaves nothing in /dev/shm
+    monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")  # a killed process leaves nothing in /dev/shm
     monkeypatch.setenv("ROS_DOMAIN_ID", str(SystemRandom().randrange(1, 100)))
     master = Master() if found == "ros1" else None
     yield found
@@ -93,7 +93,7 @@ def running(folder: Path, *command: str) -> Iterator[subprocess.Popen[str]]:
 
 
 def received(listener: subprocess.Popen[str], missions: int) -> dict[str, Any]:
-    """Return the first message that tells of so many missions; the listener ends by itself after a minute."""
+    """Return the first message that covers this number of missions; the listener ends after one minute."""
     assert listener.stdout is not None
     for line in listener.stdout:
         told: dict[str, Any] = json.loads(line)
@@ -103,7 +103,7 @@ def received(listener: subprocess.Popen[str], missions: int) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_a_subscriber_receives_the_account_as_the_log_grows(
+def test_a_subscriber_receives_the_verdict_while_the_log_grows(
     tmp_path: Path, generation: str, ending: signal.Signals
 ) -> None:
     fixture(tmp_path / "f.npz", walks(80, 1))
@@ -133,7 +133,7 @@ def test_a_subscriber_receives_the_account_as_the_log_grows(
 
 
 def again(folder: Path) -> None:
-    """A watch that goes on from the node's state has the evidence of one that read all at once."""
+    """A watch that resumes from the stored state has the same evidence as one that read everything at once."""
     for state in ("node", "once"):
         done = subprocess.run(watch(state, "--once"), cwd=folder, capture_output=True, text=True, timeout=60)
         assert done.returncode == 1, done.stderr

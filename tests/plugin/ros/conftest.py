@@ -14,7 +14,7 @@ Start = Callable[..., Ros]
 
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Start]:
-    """Start the source of a node in an episode of its own, or in the one given; everything is closed at the end."""
+    """Return a function that starts a node's source in a new or given episode, closed after the test."""
     open_episodes = []
 
     def start_node(source: str, *, ros: Ros | None = None, argv: tuple[str, ...] = (), **options: Any) -> Ros:
@@ -38,7 +38,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
 
 
 def heard(ros: Ros, topic: str) -> list[Any]:
-    """Collect what nodes publish on a topic from now on."""
+    """Collect the messages that nodes publish on a topic from now on."""
     messages: list[Any] = []
     ros.bus.subscribe(topic, messages.append)
     return messages

@@ -83,14 +83,14 @@ def test_goal_travels_between_nodes_with_feedback_and_result(
     assert ros.namespace["log"] == log
 
 
-def test_goal_that_is_left_without_an_end_counts_as_aborted(start: Start) -> None:
+def test_goal_without_a_final_state_is_aborted(start: Start) -> None:
     ros = start(SERVER)
     start(CLIENT.replace("ORDER", "10"), ros=ros)
     ros.step(9.0)
     assert ros.namespace["log"][-1][0] == 6
 
 
-def test_client_blocks_on_a_goal_while_another_thread_spins(start: Start) -> None:
+def test_client_can_wait_for_a_goal_while_another_thread_spins(start: Start) -> None:
     ros = start(SERVER)
     start(
         """
@@ -112,7 +112,7 @@ def test_client_blocks_on_a_goal_while_another_thread_spins(start: Start) -> Non
     assert ros.namespace["done"] == (4, [0, 1, 1])
 
 
-def test_states_that_ros_does_not_allow_are_refused(start: Start) -> None:
+def test_invalid_goal_transitions_are_refused(start: Start) -> None:
     ros = start("""
         import rclpy
         from example_interfaces.action import Fibonacci
@@ -293,7 +293,7 @@ def test_exception_in_an_execute_callback_aborts_the_goal(
     assert "Exception in your execute callback: no" in caplog.text
 
 
-def test_unknown_service_is_told_to_the_world_with_those_that_are_there(start: Start) -> None:
+def test_error_on_an_unknown_service_lists_available_services(start: Start) -> None:
     ros = start(LIFECYCLE)
     with pytest.raises(
         Exception, match=r"No node serves /camera/stop now; available services: /camera/change_state"

@@ -1,4 +1,4 @@
-"""Nodes as people write them, each using many parts at once; and the same run twice is the same run."""
+"""Realistic nodes that each use many parts of ROS; two equal runs have equal results."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ def drive(ros: Ros, steps: int) -> list[float]:
     return path
 
 
-def test_waypoint_follower_sends_goal_after_goal(start: Start) -> None:
+def test_waypoint_follower_sends_one_goal_after_another(start: Start) -> None:
     ros = start(NAVIGATOR)
     start(WAYPOINTS, ros=ros)
     path = drive(ros, 120)
@@ -133,7 +133,7 @@ def test_waypoint_follower_sends_goal_after_goal(start: Start) -> None:
     assert math.isclose(path[-1], 3.0, abs_tol=0.1)
 
 
-def test_two_runs_with_executors_actions_and_threads_are_equal_to_the_last_bit(start: Start) -> None:
+def test_two_runs_with_executors_actions_and_threads_are_bitwise_equal(start: Start) -> None:
     def run() -> tuple[list[float], list[str]]:
         ros = start(NAVIGATOR)
         states = heard(ros, "/waypoints/state")
@@ -187,7 +187,7 @@ MODES = """
 """
 
 
-def test_mode_switch_obeys_its_services(start: Start) -> None:
+def test_mode_switch_follows_service_calls(start: Start) -> None:
     ros = start(MODES, parameters={"/modes/limit": 1.0})
     enable, status = message_type("std_srvs/SetBool"), message_type("std_srvs/Trigger")
     scan = message_type("sensor_msgs/LaserScan")
@@ -254,7 +254,7 @@ TF_FOLLOWER = """
 """
 
 
-def test_follower_drives_to_where_its_leader_is(start: Start) -> None:
+def test_follower_reaches_its_leader(start: Start) -> None:
     ros = start(TF_FOLLOWER)
     made: Any = message_type("geometry_msgs/msg/TransformStamped")()
     made.header.frame_id, made.child_frame_id = "odom", "leader"
@@ -339,7 +339,7 @@ def test_parameters_change_within_their_descriptors_and_by_service(start: Start)
 
 
 @pytest.mark.parametrize("exclusive", [True, False])
-def test_reentrant_group_runs_beside_itself_and_an_exclusive_one_does_not(
+def test_reentrant_groups_run_callbacks_concurrently_and_exclusive_ones_do_not(
     start: Start, exclusive: bool
 ) -> None:
     kind = "MutuallyExclusiveCallbackGroup" if exclusive else "ReentrantCallbackGroup"
@@ -369,7 +369,7 @@ def test_reentrant_group_runs_beside_itself_and_an_exclusive_one_does_not(
     assert ros.namespace["running"] == [0]
 
 
-def test_group_of_the_nodes_own_decides_when_a_callback_may_run(start: Start) -> None:
+def test_custom_callback_group_decides_when_a_callback_runs(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.callback_groups import CallbackGroup

@@ -1,4 +1,4 @@
-"""The libraries beside rospy and rclpy: pictures, clouds, filters, packages, dynamic parameters."""
+"""Libraries besides rospy and rclpy: images, point clouds, filters, packages, dynamic parameters."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def picture(encoding: str, data: np.ndarray) -> object:
     return made
 
 
-def test_pictures_become_arrays_and_change_their_colours() -> None:
+def test_cv_bridge_converts_images_to_arrays_and_between_encodings() -> None:
     rgb = np.arange(24, dtype=np.uint8).reshape(2, 4, 3)
     bridge = CvBridge()
     assert np.array_equal(bridge.imgmsg_to_cv2(picture("rgb8", rgb)), rgb)
@@ -38,7 +38,7 @@ def test_pictures_become_arrays_and_change_their_colours() -> None:
         bridge.imgmsg_to_cv2(picture("32FC1", depth), "bgr8")
 
 
-def test_node_turns_arrays_into_pictures(start: Start) -> None:
+def test_node_publishes_arrays_as_images(start: Start) -> None:
     ros = start("""
         import numpy as np
         import rclpy
@@ -67,7 +67,7 @@ def test_node_turns_arrays_into_pictures(start: Start) -> None:
 @pytest.mark.parametrize(
     ("library", "module"), [("rospy", "sensor_msgs.point_cloud2"), ("rclpy", "sensor_msgs_py.point_cloud2")]
 )
-def test_clouds_are_made_and_read(start: Start, library: str, module: str) -> None:
+def test_point_clouds_are_created_and_read(start: Start, library: str, module: str) -> None:
     ros = start(f"""
         import math
         import {library}
@@ -82,7 +82,7 @@ def test_clouds_are_made_and_read(start: Start, library: str, module: str) -> No
     assert ros.namespace["kept"] == [(3.0, 1.0), (6.0, 4.0)]
 
 
-def test_numpy_messages_arrive_with_arrays(start: Start) -> None:
+def test_numpy_msg_delivers_numpy_arrays(start: Start) -> None:
     ros = start("""
         import numpy as np
         import rospy
@@ -101,7 +101,7 @@ def test_numpy_messages_arrive_with_arrays(start: Start) -> None:
     assert tuple(ros.bus.latest("/out").data) == (1.0, 0.5)
 
 
-def test_cache_keeps_the_last_messages_by_their_stamps(start: Start) -> None:
+def test_cache_keeps_the_last_messages_ordered_by_stamp(start: Start) -> None:
     ros = start("""
         import message_filters, rospy
         from geometry_msgs.msg import PointStamped
@@ -124,7 +124,7 @@ def test_cache_keeps_the_last_messages_by_their_stamps(start: Start) -> None:
     assert (len(known["count"]), known["before"], known["after"], known["inside"]) == (3, 2.0, 3.0, 2)
 
 
-def test_dynamic_parameters_are_limited_and_told_with_their_level(start: Start) -> None:
+def test_dynamic_parameters_are_clipped_and_passed_with_their_level(start: Start) -> None:
     ros = start(
         """
         import types
@@ -154,7 +154,7 @@ def test_dynamic_parameters_are_limited_and_told_with_their_level(start: Start) 
     assert ros.namespace["answered"].speed == ros.namespace["known"]["speed"] == 1.0
 
 
-def test_types_and_folders_of_the_users_own_packages_are_found(
+def test_types_and_folders_of_workspace_packages_are_found(
     tmp_path: Path, start: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     package = tmp_path / "src" / "rover_things"
@@ -189,7 +189,7 @@ def test_types_and_folders_of_the_users_own_packages_are_found(
         table.cache_clear()
 
 
-def test_listener_is_told_of_nodes_that_subscribe(start: Start) -> None:
+def test_subscribe_listener_is_called_for_new_subscribers(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -234,7 +234,7 @@ def test_node_that_polls_its_keyboard_waits_in_virtual_time(start: Start) -> Non
         os.close(end)
 
 
-def test_missing_libraries_and_names_are_named(start: Start) -> None:
+def test_errors_name_missing_libraries_and_functions(start: Start) -> None:
     for said, line in {
         r"rosgraph\.Master\.registerPublisher is not in": "import rosgraph; rosgraph.Master('/me').registerPublisher",
         r"roslaunch is not in": "import roslaunch",
@@ -249,7 +249,7 @@ def test_missing_libraries_and_names_are_named(start: Start) -> None:
     sys.modules.pop("cv2", None)
 
 
-def test_incompatible_qualities_of_service_do_not_connect(start: Start) -> None:
+def test_incompatible_qos_profiles_do_not_connect(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_check_compatible, qos_profile_sensor_data
@@ -268,5 +268,5 @@ def test_incompatible_qualities_of_service_do_not_connect(start: Start) -> None:
     assert ros.namespace["got"] == ["best effort"] * 2
     assert ros.namespace["verdict"] == 2
     ros.bus.publish("x", message_type("std_msgs/msg/String")())
-    assert ros.namespace["got"].count("reliable") == 1  # the world's messages reach everybody
+    assert ros.namespace["got"].count("reliable") == 1  # the world's messages reach every subscriber
     assert heard(ros, "/x") == []

@@ -1,4 +1,4 @@
-"""A node that holds the interpreter, and nodes that end in anything: where it was is told, the run goes on or ends."""
+"""Nodes that hold the interpreter or raise any exception: the place is reported, and the run continues or ends."""
 
 from __future__ import annotations
 
@@ -30,7 +30,9 @@ posix = pytest.mark.skipif(
 
 @posix
 @pytest.mark.parametrize("code", [HOLDS, SLOW_REGEX], ids=["sum", "regex"])
-def test_alone_it_is_told_where_and_the_process_ends(tank: pytest.Pytester, code: str) -> None:
+def test_without_workers_the_process_ends_with_the_place_of_the_hang(
+    tank: pytest.Pytester, code: str
+) -> None:
     tank.makeconftest(BRIEF)
     changed(tank, "keeper", "            flow = GAIN * missing", code)
     done = subprocess.run(
@@ -47,7 +49,7 @@ def test_alone_it_is_told_where_and_the_process_ends(tank: pytest.Pytester, code
 
 @posix
 @pytest.mark.parametrize("code", [HOLDS, SLOW_REGEX], ids=["sum", "regex"])
-def test_with_workers_it_is_a_sentence_with_the_line(tank: pytest.Pytester, code: str) -> None:
+def test_with_workers_the_error_names_the_line_of_the_hang(tank: pytest.Pytester, code: str) -> None:
     tank.makeconftest(BRIEF)
     changed(tank, "keeper", "            flow = GAIN * missing", code)
     told = tank.runpytest_subprocess(*RECORD, "--tarl-workers=2")
@@ -66,13 +68,13 @@ def test_a_worker_without_a_sign_of_life_is_ended_by_its_parent(
     assert time.monotonic() - before < 100  # ten seconds of CPU time would be forty with the system's timer
 
 
-def test_the_place_is_the_users_own() -> None:
+def test_the_reported_place_is_in_user_code() -> None:
     log = f'Current thread 0x1 (most recent call first):\n  File "{re.__file__}", line 3 in match\n'
     log += '  File "/home/me/node.py", line 12 in on_scan\n  File "/home/me/test_node.py", line 40 in test\n'
     assert place_held(log) == "/home/me/node.py, line 12, in on_scan"
 
 
-def test_a_long_computation_between_steps_is_the_tests_own_business(tank: pytest.Pytester) -> None:
+def test_a_long_computation_in_the_test_itself_is_not_stopped(tank: pytest.Pytester) -> None:
     tank.makeconftest(BRIEF)
     changed(
         tank, "test_tank", "    for _ in range(25):", "    sum(range(60_000_000))\n    for _ in range(25):"
@@ -97,7 +99,7 @@ ENDS = [
 
 
 @pytest.mark.parametrize("ending", ENDS)
-def test_whatever_a_node_ends_in_is_a_sentence_with_its_traceback_and_the_tests_line(
+def test_node_errors_show_a_sentence_the_traceback_and_the_line_of_the_test(
     tank: pytest.Pytester, ending: str
 ) -> None:
     changed(

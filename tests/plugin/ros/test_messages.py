@@ -28,14 +28,14 @@ def in_rosidl_range(number: float) -> bool:
     return not 3.402823466e38 < abs(number) < float("inf")
 
 
-def test_name_tells_the_generation() -> None:
+def test_form_of_the_type_name_selects_the_generation() -> None:
     assert field_names(message_type("std_msgs/Header")) == ("seq", "stamp", "frame_id")
     assert field_names(message_type("std_msgs/msg/Header")) == ("stamp", "frame_id")
     assert message_type("nav_msgs/Odometry") is message_type("nav_msgs/Odometry")
 
 
 @given(st.lists(st.lists(st.sampled_from([0.0, -0.0, 1.0, 1, float("nan"), 0.1]), min_size=36, max_size=36)))
-def test_covariances_arrive_bit_by_bit_whatever_came_before(sent: list[list[float]]) -> None:
+def test_covariances_arrive_bitwise_equal_after_any_earlier_message(sent: list[list[float]]) -> None:
     message = message_type("geometry_msgs/PoseWithCovariance")()
     for covariance in sent:
         message.covariance = list(covariance)
@@ -44,7 +44,7 @@ def test_covariances_arrive_bit_by_bit_whatever_came_before(sent: list[list[floa
         assert [float(number).hex() for number in arrived] == [float(number).hex() for number in covariance]
 
 
-def test_unknown_types_and_wrong_names_are_told() -> None:
+def test_errors_name_unknown_types_and_invalid_names() -> None:
     with pytest.raises(UnsupportedApiError, match="nav_msgs/Odometri is not known here"):
         message_type("nav_msgs/Odometri")
     with pytest.raises(UnsupportedApiError, match="is not the name of a message type"):
@@ -52,7 +52,7 @@ def test_unknown_types_and_wrong_names_are_told() -> None:
 
 
 @pytest.mark.parametrize("kind", ["ros1", "ros2"])
-def test_every_common_message_is_built_copied_and_shown(kind: str) -> None:
+def test_every_common_message_can_be_built_copied_and_printed(kind: str) -> None:
     for package in PACKAGES:
         for name in type_names(kind, package, "msg"):  # type: ignore[arg-type]
             made = find_class(kind, package, name)()  # type: ignore[arg-type, misc]
@@ -161,13 +161,13 @@ def test_ros1_arrays_arrive_as_tuples_and_bytes() -> None:
         ("std_msgs/Header", {"stamp": 5.0}, "must be a Time"),
     ],
 )
-def test_what_ros1_could_not_send_is_told(name: str, fields: dict[str, object], said: str) -> None:
+def test_values_that_ros1_cannot_send_are_refused(name: str, fields: dict[str, object], said: str) -> None:
     with pytest.raises(FieldError, match=said):
         snapshot.snapshot(message_type(name)(**fields))
 
 
 @given(st.floats(width=32).filter(in_rosidl_range), st.floats(allow_nan=False))
-def test_float32_fields_are_rounded_as_on_the_wire(single: float, double: float) -> None:
+def test_float32_fields_are_rounded(single: float, double: float) -> None:
     for name in ("std_msgs/Float32", "std_msgs/msg/Float32"):
         sent = snapshot.snapshot(message_type(name)(data=single)).data
         assert sent == single or (sent != sent and single != single)
@@ -225,13 +225,13 @@ def test_message_files_are_read_with_defaults_constants_and_arrays() -> None:
     ]
 
 
-def test_definitions_that_rosbags_lacks_are_there() -> None:
+def test_definitions_missing_in_rosbags_are_known() -> None:
     assert field_names(message_type("turtlesim/Pose"))[:3] == ("x", "y", "theta")
     assert message_type("std_srvs/srv/SetBool").Request(data=True).data is True
     assert find_message("ros1", "nowhere_msgs", "Nothing") is None
 
 
-def test_generation_of_an_installed_package_is_read_off_its_files(
+def test_generation_of_an_installed_package_is_recognised_by_its_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for package, file in (("old_msgs", "_Twist.py"), ("new_msgs", "_twist.py")):
@@ -255,7 +255,7 @@ def test_classes_of_an_installed_ros_are_used(tmp_path: Path, monkeypatch: pytes
     assert message_type("shop_msgs/Price").__module__ == "shop_msgs.msg._Price"
 
 
-def test_missing_rosbags_is_told_with_the_command(tmp_path: Path) -> None:
+def test_error_on_missing_rosbags_names_the_install_command(tmp_path: Path) -> None:
     program = """
 import sys
 sys.modules["rosbags"] = None
@@ -270,7 +270,7 @@ except Exception as error:
     assert install_command("ros") in said
 
 
-def test_package_imports_nothing_heavy_before_it_is_used() -> None:
+def test_importing_the_package_imports_nothing_heavy() -> None:
     program = (
         "import sys, pytest_tarl.ros; print(sorted({'greenlet', 'rosbags', 'numpy'} & set(sys.modules)))"
     )

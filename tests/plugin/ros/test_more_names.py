@@ -1,4 +1,4 @@
-"""Names that nodes import now and then: cameras, transformations, message classes by name, lazy transports, loggers."""
+"""Rarely used libraries: cameras, transformations, message classes by name, lazy transports, loggers."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_camera_projects_points_and_back(kind: str) -> None:
     assert model.distortionCoeffs() is None
 
 
-def test_camera_with_binning_and_region() -> None:
+def test_camera_model_respects_binning_and_region_of_interest() -> None:
     info = camera()
     info.binning_x = info.binning_y = 2  # type: ignore[attr-defined]
     info.roi.x_offset, info.roi.width, info.roi.height = 8, 32, 48  # type: ignore[attr-defined]
@@ -51,7 +51,7 @@ def test_camera_with_binning_and_region() -> None:
     assert model.fullIntrinsicMatrix()[0, 0] == 100.0
 
 
-def test_two_cameras_see_depth() -> None:
+def test_stereo_camera_computes_depth() -> None:
     model = StereoCameraModel()
     model.fromCameraInfo(camera(), camera(tx=-20.0))
     (u, v), (u_right, _) = model.project3dToPixel((0.5, -0.25, 2.0))
@@ -61,7 +61,7 @@ def test_two_cameras_see_depth() -> None:
     assert (x, z) == pytest.approx((0.5, 2.0))
 
 
-def test_matrices_are_taken_apart_and_put_together() -> None:
+def test_decomposed_matrices_can_be_composed_again() -> None:
     parts = ([1.5, 0.5, 2.0], [0.1, -0.2, 0.3], [0.4, -0.5, 0.6], [1, 2, 3])
     matrix = tf.compose_matrix(*parts)
     scale, shear, angles, translation, perspective = tf.decompose_matrix(matrix)
@@ -83,7 +83,7 @@ def test_matrices_are_taken_apart_and_put_together() -> None:
         tf.shear_matrix(1, [1, 0, 0], [0, 0, 0], [1, 1, 0])
 
 
-def test_classes_by_the_names_of_types(start: Start) -> None:
+def test_classes_are_found_by_type_name(start: Start) -> None:
     ros = start("""
         import rospy
         import roslib.message
@@ -114,21 +114,21 @@ def test_classes_by_the_names_of_types(start: Start) -> None:
     assert found["said"] == "No field name [heading]"
 
 
-def test_tf2_has_the_messages_that_it_imports(start: Start) -> None:
+def test_tf2_ros_exposes_its_ros1_messages(start: Start) -> None:
     source = (
         "import {0}\nfrom tf2_ros import TransformStamped\nhas = hasattr(TransformStamped(), '_slot_types')"
     )
     assert start(source.format("rospy")).namespace["has"] is True
 
 
-def test_tf2_has_the_messages_of_ros2(start: Start) -> None:
+def test_tf2_ros_exposes_its_ros2_messages(start: Start) -> None:
     source = (
         "import rclpy\nfrom tf2_ros import TransformStamped\nhas = hasattr(TransformStamped(), '_slot_types')"
     )
     assert start(source).namespace["has"] is False
 
 
-def test_parts_of_a_message_package_need_no_import_of_their_own(start: Start) -> None:
+def test_parts_of_a_message_package_need_no_explicit_import(start: Start) -> None:
     ros = start("""
         import rospy
         import std_msgs
@@ -138,7 +138,7 @@ def test_parts_of_a_message_package_need_no_import_of_their_own(start: Start) ->
     assert (ros.namespace["found"], ros.namespace["missing"]) == ("a", False)
 
 
-def test_lazy_transport_subscribes_since_the_world_listens(start: Start) -> None:
+def test_lazy_transport_subscribes_because_the_world_is_a_peer(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import Float64
@@ -165,7 +165,7 @@ def test_lazy_transport_subscribes_since_the_world_listens(start: Start) -> None
     assert [one.data for one in got] == [6.0]
 
 
-def test_loggers_from_the_inner_modules_of_rclpy(start: Start) -> None:
+def test_loggers_can_be_imported_from_rclpy_impl(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.impl.logging_severity import LoggingSeverity
@@ -177,7 +177,7 @@ def test_loggers_from_the_inner_modules_of_rclpy(start: Start) -> None:
     assert ros.namespace["found"] == (True, 30)
 
 
-def test_numpy_truth_values_fit_bool_of_ros1(start: Start) -> None:
+def test_numpy_bools_fit_ros1_bool_fields(start: Start) -> None:
     ros = start("""
         import numpy as np
         import rospy
@@ -188,7 +188,7 @@ def test_numpy_truth_values_fit_bool_of_ros1(start: Start) -> None:
     assert ros.bus.latest("/on").data is True
 
 
-def test_what_the_test_puts_into_sys_modules_is_imported(
+def test_modules_that_the_test_puts_into_sys_modules_are_imported(
     start: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     own = ModuleType("roslib.scriptutil")
@@ -210,7 +210,7 @@ def test_parts_of_a_standin_can_be_imported_from_it(start: Start) -> None:
              "pcl_msgs/msg/PolygonMesh", "control_msgs/action/PointHead", "rcl_interfaces/srv/GetLoggerLevels",
              "laser_assembler/AssembleScans2", "audio_common_msgs/AudioData"],
 )  # fmt: skip
-def test_more_types_are_known(name: str) -> None:
+def test_further_message_types_are_known(name: str) -> None:
     found = message_type(name)
     assert found.__name__ == name.rpartition("/")[2]
 

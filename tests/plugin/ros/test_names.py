@@ -30,11 +30,11 @@ def test_remapping_applies_to_the_resolved_name(old: str, new: str) -> None:
     assert resolve("other", "/robot/node", {old: new}) == "/robot/other"
 
 
-def test_absolute_names_have_one_slash_before_each_part() -> None:
+def test_absolute_names_have_single_slashes() -> None:
     assert [absolute(name) for name in ("odom", "/odom/", "//a//b", "/")] == ["/odom", "/odom", "/a/b", "/"]
 
 
-def test_ros1_command_line_is_taken_apart() -> None:
+def test_ros1_command_line_is_parsed() -> None:
     line = parse_ros1(
         ["file.bag", "a:=b", "_gain:=2.5", "__name:=n", "__ns:=/r", "_on:=true", "_list:=[1, 2]"]
     )
@@ -43,7 +43,7 @@ def test_ros1_command_line_is_taken_apart() -> None:
     assert (line.name, line.namespace, line.rest) == ("n", "/r", ("file.bag",))
 
 
-def test_ros2_command_line_is_taken_apart() -> None:
+def test_ros2_command_line_is_parsed() -> None:
     line = parse_ros2(["x", "--ros-args", "-r", "a:=b", "-p", "gain:=2", "-r", "__node:=n", "--", "y", "-r"])
     assert (line.remappings, line.parameters, line.name) == ({"a": "b"}, {"gain": 2}, "n")
     assert line.rest == ("x", "y", "-r")
@@ -54,12 +54,12 @@ def test_ros2_command_line_is_taken_apart() -> None:
     [("1", 1), ("1.5", 1.5), ("-3e2", -300.0), ("True", True), ("off", False), ("'1'", "1"), ("base_link", "base_link"),
      ("[a, 2]", ["a", 2]), ("", "")],
 )  # fmt: skip
-def test_values_are_read_as_on_a_command_line(text: str, value: object) -> None:
+def test_values_are_parsed_as_on_a_command_line(text: str, value: object) -> None:
     assert parse_value(text) == value
     assert type(parse_value(text)) is type(value)
 
 
-def test_a_file_of_parameters_is_read_where_the_command_line_names_it(tmp_path: Path) -> None:
+def test_parameter_files_named_on_the_command_line_are_read(tmp_path: Path) -> None:
     file = tmp_path / "params.yaml"
     file.write_text("/**:\n  ros__parameters:\n    gain: 2.5\n")
     line = parse_ros2(["--ros-args", "-p", "low:=1", "--params-file", str(file)])

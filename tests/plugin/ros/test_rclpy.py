@@ -50,7 +50,7 @@ FOLLOWER = """
 """
 
 
-def test_class_node_with_timer_steers_by_what_it_heard(start: Start) -> None:
+def test_class_node_with_timer_uses_received_messages(start: Start) -> None:
     ros = start(FOLLOWER, parameters={"follower": {"speed": 0.7}})
     commands = heard(ros, "/cmd_vel")
     ros.bus.publish("light", Float64(data=0.75))
@@ -59,7 +59,7 @@ def test_class_node_with_timer_steers_by_what_it_heard(start: Start) -> None:
     assert (ros.subscribed, dict(ros.published)) == ({"/light"}, {"/cmd_vel": 2})
 
 
-def test_end_of_an_episode_ends_spin_as_an_external_shutdown(start: Start) -> None:
+def test_end_of_an_episode_ends_spin_like_an_external_shutdown(start: Start) -> None:
     ros = start(FOLLOWER)
     ros.close()
     assert ros.namespace["ended"] == ["external", False]
@@ -67,7 +67,7 @@ def test_end_of_an_episode_ends_spin_as_an_external_shutdown(start: Start) -> No
     assert not ros.alive
 
 
-def test_spin_once_takes_one_message_and_the_queue_keeps_its_depth(start: Start) -> None:
+def test_spin_once_handles_one_message_and_the_queue_respects_its_depth(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -94,7 +94,7 @@ def test_spin_once_takes_one_message_and_the_queue_keeps_its_depth(start: Start)
     assert ros.namespace["counts"] == [2, (2, 1_500_000_000)]
 
 
-def test_late_timer_skips_the_periods_it_missed(start: Start) -> None:
+def test_late_timer_skips_missed_periods(start: Start) -> None:
     ros = start("""
         import time
         import rclpy
@@ -232,7 +232,7 @@ def test_coroutine_callbacks_await_futures(start: Start) -> None:
     assert ros.namespace["log"] == ["yes"]
 
 
-def test_coroutine_that_awaits_a_response_in_its_own_exclusive_group_waits_for_ever(start: Start) -> None:
+def test_coroutine_that_awaits_a_response_in_its_own_exclusive_group_deadlocks(start: Start) -> None:
     ros = start("""
         import rclpy
         from std_srvs.srv import Trigger
@@ -253,7 +253,7 @@ def test_coroutine_that_awaits_a_response_in_its_own_exclusive_group_waits_for_e
     assert ros.namespace["log"] == ["asked"]
 
 
-def test_multi_threaded_executor_goes_on_while_a_callback_waits(start: Start) -> None:
+def test_multi_threaded_executor_continues_while_a_callback_waits(start: Start) -> None:
     ros = start("""
         import time
         import rclpy
@@ -275,7 +275,7 @@ def test_multi_threaded_executor_goes_on_while_a_callback_waits(start: Start) ->
     assert ros.namespace["log"] == ["slow", "quick", "quick", "quick", "slow", "quick"]
 
 
-def test_spin_in_a_thread_with_a_rate_in_the_main_program(start: Start) -> None:
+def test_spin_works_in_a_thread_beside_a_rate_in_the_main_program(start: Start) -> None:
     ros = start("""
         import threading
         import rclpy
@@ -301,7 +301,7 @@ def test_spin_in_a_thread_with_a_rate_in_the_main_program(start: Start) -> None:
     assert ros.shutdown_errors == ()
 
 
-def test_context_of_ones_own_is_the_context_of_the_program(start: Start) -> None:
+def test_custom_context_is_the_context_of_the_program(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
@@ -320,7 +320,7 @@ def test_context_of_ones_own_is_the_context_of_the_program(start: Start) -> None
     assert ros.namespace["state"] == (False, False, [True])
 
 
-def test_message_is_awaited_without_an_executor(start: Start) -> None:
+def test_wait_for_message_needs_no_executor(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.wait_for_message import wait_for_message
@@ -337,7 +337,7 @@ def test_message_is_awaited_without_an_executor(start: Start) -> None:
     assert (ros.namespace["found"], ros.namespace["message"].data) == (True, 2.0)
 
 
-def test_nodes_look_around_in_the_graph(start: Start) -> None:
+def test_nodes_can_query_the_graph(start: Start) -> None:
     ros = start("""
         import rclpy
         from std_msgs.msg import Float64
@@ -360,7 +360,7 @@ def test_nodes_look_around_in_the_graph(start: Start) -> None:
     )  # fmt: skip
 
 
-def test_durations_calculate(start: Start) -> None:
+def test_durations_support_arithmetic(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.duration import Duration
@@ -388,7 +388,7 @@ def test_transient_local_reaches_later_subscribers_and_volatile_does_not(start: 
     assert ros.namespace["got"] == [1.0]
 
 
-def test_time_and_duration_calculate_and_convert(start: Start) -> None:
+def test_time_and_duration_support_arithmetic_and_conversion(start: Start) -> None:
     ros = start("""
         import rclpy
         from rclpy.duration import Duration
@@ -412,7 +412,7 @@ def test_time_and_duration_calculate_and_convert(start: Start) -> None:
     ]  # fmt: skip
 
 
-def test_exception_in_a_callback_ends_the_node_and_is_told(start: Start) -> None:
+def test_exception_in_a_callback_ends_the_node_and_is_reported(start: Start) -> None:
     ros = start(FOLLOWER.replace("self.error = msg.data - 0.5", "self.error = msg.dat - 0.5"))
     with pytest.raises(
         NodeError, match=r"'/follower' raised AttributeError.*node\.py, line \d+, in on_light"
@@ -429,7 +429,7 @@ def test_use_before_init_and_double_shutdown_fail_as_in_ros(start: Start) -> Non
         start("import rclpy; rclpy.init(); rclpy.shutdown(); rclpy.shutdown()")
 
 
-def test_what_is_missing_is_named(start: Start) -> None:
+def test_errors_name_missing_apis(start: Start) -> None:
     make = "import rclpy; rclpy.init(); node = rclpy.create_node('n');"
     for missing, line in {
         r"rclpy\.serialization": "import rclpy.serialization",
@@ -440,7 +440,7 @@ def test_what_is_missing_is_named(start: Start) -> None:
             start(line)
 
 
-def test_world_may_publish_the_ros1_class_of_the_same_type(start: Start) -> None:
+def test_world_can_publish_the_ros1_class_of_the_same_type(start: Start) -> None:
     ros = start("""
         import rclpy
         from sensor_msgs.msg import LaserScan
@@ -457,7 +457,7 @@ def test_world_may_publish_the_ros1_class_of_the_same_type(start: Start) -> None
     assert (got.header.stamp.sec, got.header.frame_id, got.ranges.tolist()) == (3, "laser", [1.0, 2.0])
 
 
-def test_logging_goes_through_python_and_honours_once_and_throttle(
+def test_logging_uses_python_and_respects_once_and_throttle(
     start: Start, caplog: pytest.LogCaptureFixture
 ) -> None:
     ros = start("""

@@ -1,4 +1,4 @@
-"""ROS 1 messages as bytes, and bags read and written by nodes."""
+"""Serialised ROS 1 messages, and bags read and written by nodes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def store() -> Any:
 
 
 @pytest.mark.parametrize("name", KINDS)
-def test_bytes_are_those_of_ros(name: str, store: Any) -> None:
+def test_serialised_messages_equal_those_of_ros(name: str, store: Any) -> None:
     message = filled(message_type(name), 3)
     data = serialize(message)
     other = name.replace("/", "/msg/")
@@ -38,7 +38,7 @@ def test_bytes_are_those_of_ros(name: str, store: Any) -> None:
     assert again == type(message)._tarl_copy(message)  # type: ignore[attr-defined]
 
 
-def test_wrong_bytes_are_told() -> None:
+def test_invalid_bytes_are_refused() -> None:
     kind = message_type("sensor_msgs/JointState")
     data = serialize(filled(kind, 1))
     for wrong in (data[:-1], data + b"\0", data[:12] + b"\xff\xff\xff\xff" + data[16:], b""):
@@ -46,7 +46,7 @@ def test_wrong_bytes_are_told() -> None:
             deserialize(kind, wrong, field_class)
 
 
-def test_messages_read_and_write_themselves() -> None:
+def test_messages_serialise_and_deserialise() -> None:
     kind, buffer = message_type("geometry_msgs/Twist"), BytesIO()
     filled(kind, 2).serialize(buffer)  # type: ignore[attr-defined]
     assert kind().deserialize(buffer.getvalue()).linear.x == pytest.approx(0.5 + 0.1 * math.sin(2))
@@ -96,7 +96,7 @@ def test_a_node_writes_a_bag_and_another_one_reads_it(start: Start, tmp_path: Pa
     assert (found["raw"], found["missing"], found["wrong"]) == (b"\0\0\0\0\0\0\xf0?", 2, True)
 
 
-def test_types_that_only_the_bag_knows_are_built(start: Start, tmp_path: Path) -> None:
+def test_types_known_only_to_the_bag_are_built(start: Start, tmp_path: Path) -> None:
     from rosbags.rosbag1 import Writer
 
     text = f"own_msgs/Part[] parts\nstring name\n{'=' * 80}\nMSG: own_msgs/Part\nint32[2] pair\n"

@@ -55,7 +55,7 @@ def test_script_node_shuttles_between_its_goals(start: Start) -> None:
     assert min(path[there:]) < 0.5
 
 
-def test_two_episodes_are_equal_to_the_last_bit(start: Start) -> None:
+def test_two_episodes_are_bitwise_equal(start: Start) -> None:
     assert drive(start(TRAVELLER), 80) == drive(start(TRAVELLER), 80)
 
 
@@ -118,7 +118,7 @@ def test_subscribers_do_not_see_what_the_publisher_changes_later(start: Start) -
     assert ros.namespace["got"][0].linear.x == 0.0
 
 
-def test_publish_takes_fields_by_position_by_keyword_and_messages(start: Start) -> None:
+def test_publish_accepts_fields_by_position_or_keyword_and_messages(start: Start) -> None:
     ros = Ros()
     said = heard(ros, "/x")
     with ros.installed():
@@ -140,7 +140,7 @@ def test_publish_takes_fields_by_position_by_keyword_and_messages(start: Start) 
     assert [message.data for message in said] == [5.0, 6.0, 7.0, 8.0]
 
 
-def test_publishing_what_does_not_fit_the_type_is_an_error_of_the_node(start: Start) -> None:
+def test_publishing_a_value_that_does_not_fit_its_type_is_a_node_error(start: Start) -> None:
     with pytest.raises(NodeError, match=r"'/talker' raised ROSSerializationException.*node.py, line 5"):
         start("""
             import rospy
@@ -228,7 +228,7 @@ def test_wait_for_message_returns_the_next_message_or_times_out(start: Start) ->
     assert "timeout exceeded while waiting for message on topic /word" in ros.namespace["late"][1]
 
 
-def test_callback_that_sleeps_does_not_hold_up_the_test_and_later_messages_queue(start: Start) -> None:
+def test_sleeping_callback_does_not_block_the_test_and_later_messages_queue(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -247,7 +247,7 @@ def test_callback_that_sleeps_does_not_hold_up_the_test_and_later_messages_queue
     assert ros.namespace["done"] == [("a", 1.0), ("c", 2.0)]
 
 
-def test_nodes_talk_to_each_other_in_the_order_of_their_publishing(start: Start) -> None:
+def test_nodes_receive_messages_in_the_order_of_publication(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import Float64
@@ -275,7 +275,7 @@ def test_nodes_talk_to_each_other_in_the_order_of_their_publishing(start: Start)
     assert ros.namespace["got"] == [2.0, 4.0, 6.0]
 
 
-def test_observers_hear_a_message_before_any_subscriber_and_without_one(start: Start) -> None:
+def test_observers_get_messages_before_subscribers_and_without_any(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -291,7 +291,7 @@ def test_observers_hear_a_message_before_any_subscriber_and_without_one(start: S
     assert order == [("/heard", "x"), "node", ("/unheard", "y")]
 
 
-def test_latched_messages_reach_those_who_come_later(start: Start) -> None:
+def test_latched_messages_reach_later_subscribers(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -369,7 +369,7 @@ def test_end_of_an_episode_runs_hooks_and_interrupts_waits(start: Start) -> None
     assert ros.shutdown_errors == ()
 
 
-def test_node_that_refuses_to_end_is_ended(start: Start) -> None:
+def test_node_that_refuses_to_end_is_killed(start: Start) -> None:
     ros = start("""
         import rospy
         rospy.init_node("stubborn")
@@ -384,7 +384,7 @@ def test_node_that_refuses_to_end_is_ended(start: Start) -> None:
     assert not ros.alive
 
 
-def test_node_that_spins_at_its_end_is_told_and_the_others_are_ended(start: Start) -> None:
+def test_node_that_never_waits_at_shutdown_is_reported_and_the_others_end(start: Start) -> None:
     ros = start(
         """
         import rospy
@@ -447,7 +447,7 @@ def test_exception_in_a_callback_is_raised_where_the_test_publishes(start: Start
         ros.bus.publish("word", String("x"))
 
 
-def test_exit_status_of_a_node_is_told(start: Start) -> None:
+def test_nonzero_exit_status_of_a_node_is_reported(start: Start) -> None:
     start("import sys; sys.exit(0)")
     with pytest.raises(NodeError, match="exited with status 3"):
         start("import sys; sys.exit(3)")
@@ -472,7 +472,7 @@ def test_node_that_never_waits_is_stopped_with_the_line(start: Start) -> None:
     assert "Rate.sleep()" in str(caught.value)
 
 
-def test_loop_that_sleeps_for_no_time_is_stopped_too(start: Start) -> None:
+def test_loop_that_sleeps_for_zero_seconds_is_stopped_too(start: Start) -> None:
     ros = start(
         """
         import rospy
@@ -487,7 +487,7 @@ def test_loop_that_sleeps_for_no_time_is_stopped_too(start: Start) -> None:
         ros.step(2.0)
 
 
-def test_what_is_missing_is_named(start: Start) -> None:
+def test_errors_name_missing_apis(start: Start) -> None:
     for missing, line in {
         r"rospy\.get_node_info": "import rospy; rospy.get_node_info()",
         r"rospy\.impl": "import rospy.impl",
@@ -499,7 +499,7 @@ def test_what_is_missing_is_named(start: Start) -> None:
             start(line)
 
 
-def test_world_that_publishes_another_type_is_told(start: Start) -> None:
+def test_publishing_another_type_from_the_world_is_an_error(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import Float64
@@ -515,7 +515,7 @@ def test_world_that_publishes_another_type_is_told(start: Start) -> None:
         ros.bus.publish("x", 5.0)
 
 
-def test_error_of_a_world_listener_reaches_the_test_and_not_the_node(start: Start) -> None:
+def test_error_in_a_world_callback_is_raised_in_the_test_not_in_the_node(start: Start) -> None:
     ros = start("""
         import rospy
         from std_msgs.msg import String
@@ -537,7 +537,7 @@ def test_error_of_a_world_listener_reaches_the_test_and_not_the_node(start: Star
     assert "caught" not in ros.namespace
 
 
-def test_nothing_is_left_in_the_interpreter(start: Start) -> None:
+def test_episodes_leave_nothing_in_the_interpreter(start: Start) -> None:
     import threading
     import time
 
@@ -567,7 +567,7 @@ def test_nothing_is_left_in_the_interpreter(start: Start) -> None:
     assert after[1:] == before[1:]
 
 
-def test_modules_that_were_there_before_are_restored(monkeypatch: pytest.MonkeyPatch, start: Start) -> None:
+def test_modules_imported_before_are_restored(monkeypatch: pytest.MonkeyPatch, start: Start) -> None:
     own = type(sys)("rospy")
     monkeypatch.setitem(sys.modules, "rospy", own)
     ros = Ros()
@@ -578,7 +578,7 @@ def test_modules_that_were_there_before_are_restored(monkeypatch: pytest.MonkeyP
     assert sys.modules["rospy"] is own
 
 
-def test_rospy_outside_of_a_node_says_so() -> None:
+def test_rospy_outside_of_a_node_is_an_error() -> None:
     ros = Ros()
     with ros.installed():
         import rospy
@@ -630,7 +630,7 @@ def test_libraries_imported_by_a_node_keep_real_locks(start: Start) -> None:
     assert ros.namespace["own"] is not _thread.LockType
 
 
-def test_stamps_are_the_virtual_time_unless_the_world_set_them(start: Start) -> None:
+def test_unset_stamps_become_the_virtual_time(start: Start) -> None:
     ros = start("""
         import rospy
         from sensor_msgs.msg import Range
@@ -647,7 +647,7 @@ def test_stamps_are_the_virtual_time_unless_the_world_set_them(start: Start) -> 
     assert [stamp.to_sec() for stamp in ros.namespace["stamps"]] == [1.5, 7.0]
 
 
-def test_message_filters_join_messages_of_the_same_time(start: Start) -> None:
+def test_message_filters_synchronise_messages_with_equal_stamps(start: Start) -> None:
     ros = start("""
         import message_filters
         import rospy
@@ -668,7 +668,7 @@ def test_message_filters_join_messages_of_the_same_time(start: Start) -> None:
     assert ros.namespace["pairs"] == [(1.0, 2.0)]
 
 
-def test_transformations_turn_quaternions_into_angles_and_back(start: Start) -> None:
+def test_transformations_convert_quaternions_to_angles_and_back(start: Start) -> None:
     ros = start("""
         from tf.transformations import euler_from_quaternion, quaternion_from_euler
         angles = euler_from_quaternion(quaternion_from_euler(0.1, -0.7, 2.5))

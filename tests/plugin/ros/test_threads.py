@@ -1,4 +1,4 @@
-"""Nodes with threads of their own: the threads play in virtual time, so that runs are the same."""
+"""Threads of nodes run in virtual time, so that runs are reproducible."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ rospy.spin()
 
 
 def trajectory() -> tuple[list[tuple[float, str]], list[tuple[str, float, float]]]:
-    """Run the node for 40 steps; return what it published and when, and which thread did which work."""
+    """Run the node for 40 steps; return its messages with times, and the work of each thread."""
     published: list[tuple[float, str]] = []
     names: dict[str, Any] = {"__name__": "__main__", "__file__": "node.py"}
     ros, number = Ros(), message_type("std_msgs/Float64")
@@ -55,7 +55,7 @@ def trajectory() -> tuple[list[tuple[float, str]], list[tuple[str, float, float]
     return published, trail
 
 
-def test_two_runs_of_a_node_with_threads_take_the_same_trajectory_to_the_last_bit() -> None:
+def test_two_runs_of_a_node_with_threads_have_bitwise_equal_trajectories() -> None:
     first, second = trajectory(), trajectory()
     assert len(first[0]) > 15
     assert {name for name, _, _ in first[1]} == {"a", "b", "c"}

@@ -1,4 +1,4 @@
-"""What nodes ask of the tools' libraries: rosgraph, rosnode, rostopic, rosservice, rosparam, ros_numpy and others."""
+"""Libraries of the ROS 1 tools: rosgraph, rosnode, rostopic, rosservice, rosparam, ros_numpy and others."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TALKER = """
 """
 
 
-def test_master_knows_who_publishes_listens_and_serves(start: Start) -> None:
+def test_master_lists_publishers_subscribers_and_services(start: Start) -> None:
     ros = start(TALKER)
     start(
         """
@@ -89,7 +89,7 @@ def test_nodes_topics_and_services_are_found_by_name(start: Start) -> None:
     assert told["left"] == ["/asker"]
 
 
-def test_blocking_question_about_a_topic_waits_for_its_publisher(start: Start) -> None:
+def test_blocking_topic_query_waits_for_a_publisher(start: Start) -> None:
     ros = start("""
         import rospy, rostopic
         rospy.init_node("asker")
@@ -131,7 +131,7 @@ def test_parameters_are_read_from_files(start: Start, tmp_path: object) -> None:
     assert told["said"][2].startswith("Invalid YAML in file [broken.yaml]")
 
 
-def test_buffer_of_another_node_answers_lookups(start: Start) -> None:
+def test_buffer_server_answers_lookups_of_other_nodes(start: Start) -> None:
     ros = start("""
         import rospy, tf2_ros
         from geometry_msgs.msg import TransformStamped
@@ -217,7 +217,7 @@ def test_parameters_of_another_node_are_read_and_set(start: Start) -> None:
 
 
 @pytest.mark.parametrize("library", ["rospy", "rclpy"])
-def test_messages_become_arrays_and_back(start: Start, library: str) -> None:
+def test_ros_numpy_converts_messages_to_arrays_and_back(start: Start, library: str) -> None:
     ros = start(f"""
         import {library}
         import numpy as np

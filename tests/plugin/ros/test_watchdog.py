@@ -1,4 +1,4 @@
-"""Who is stopped: a node that computes without end or hangs outside of ROS, none that a busy machine lets wait."""
+"""The watchdog stops a node that computes endlessly or hangs outside of ROS, but none that a busy machine delays."""
 
 import time
 
@@ -9,7 +9,7 @@ from pytest_tarl.ros.watchdog import Spinning, Watchdog
 
 
 def _sleep(seconds: float) -> None:
-    """Let wall time go by in many short waits, as a starved thread or a polling one does."""
+    """Spend wall time in many short waits, like a starved or polling thread."""
     for _ in range(round(seconds / 0.02)):
         time.sleep(0.02)
 
@@ -19,14 +19,14 @@ def _compute_without_end() -> None:
         pass
 
 
-def test_wall_time_alone_stops_nobody() -> None:
+def test_wall_time_alone_does_not_stop_a_node() -> None:
     dog = Watchdog()
     dog.arm(0.2)
     _sleep(0.6)
     assert not dog.disarm()
 
 
-def test_endless_computing_is_stopped() -> None:
+def test_endless_computation_is_stopped() -> None:
     dog = Watchdog()
     dog.arm(0.1)
     with pytest.raises(Spinning):
@@ -35,7 +35,7 @@ def test_endless_computing_is_stopped() -> None:
     assert dog.hanging(0.1) == "0.1 s of computing"
 
 
-def test_computing_between_moves_of_the_clock_stops_nobody() -> None:
+def test_computation_between_moves_of_the_clock_is_not_stopped() -> None:
     dog = Watchdog()
     dog.arm(0.3)
     start = time.thread_time()
@@ -54,7 +54,7 @@ def test_endless_waiting_outside_of_ros_is_stopped_much_later(monkeypatch: pytes
     assert "waiting for something outside" in dog.hanging(0.1)
 
 
-def test_debugger_may_stand_still(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_debugger_can_pause_without_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(watchdog, "_PATIENCE", 1)
     dog = Watchdog()
     prompt = {"__name__": "pdb", "wait": _sleep}
@@ -64,8 +64,8 @@ def test_debugger_may_stand_still(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not dog.disarm()
 
 
-def test_thread_without_a_clock_of_its_own_is_measured_by_the_process(
+def test_thread_without_its_own_clock_is_measured_by_the_process(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(watchdog, "_CLOCK_OF", None)
-    test_endless_computing_is_stopped()
+    test_endless_computation_is_stopped()

@@ -1,4 +1,4 @@
-"""Nodes in a workspace: packages beside theirs, generated configurations, modules that nobody installs."""
+"""Nodes in a workspace: other packages, generated configurations, modules that no package installs."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def write(folder: Path, files: dict[str, str]) -> None:
 
 @pytest.fixture
 def packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """Make a workspace of two packages in which the node of the fixture `start` stands, and forget it at the end."""
+    """Create a workspace of two packages that contains the node of the fixture `start`; forget it at the end."""
     monkeypatch.setattr(workspace, "_SEARCHED", [])
     write(
         tmp_path,
@@ -66,12 +66,12 @@ def packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     workspace.forget()
     before = set(sys.modules)
     yield tmp_path
-    for name in sys.modules.keys() - before:  # what the plugin's imports forget after each episode
+    for name in sys.modules.keys() - before:  # removed after each episode by the plugin's import hook
         del sys.modules[name]
     workspace.forget()
 
 
-def test_packages_of_the_workspace_are_importable_as_installed(packages: Path, start: Start) -> None:
+def test_workspace_packages_are_importable_as_if_installed(packages: Path, start: Start) -> None:
     ros = start("""
         import rospy
         import arm_base
@@ -100,14 +100,14 @@ def test_configurations_are_generated_with_their_defaults(packages: Path, start:
     assert ros.namespace["seen"] == [(2.0, 4)]
 
 
-def test_a_configuration_without_file_is_named(packages: Path, start: Start) -> None:
+def test_error_names_a_configuration_without_a_file(packages: Path, start: Start) -> None:
     with pytest.raises(
         UnsupportedApiError, match=r"No \.cfg file of arm_base generates LegConfig.*ArmConfig"
     ):
         start("import rospy\nfrom arm_base.cfg import LegConfig\n")
 
 
-def test_a_node_in_an_ignored_package_knows_its_messages(
+def test_a_node_in_an_ignored_package_can_import_its_messages(
     packages: Path, start: Start, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workspace, "_KEPT", set())
@@ -119,14 +119,14 @@ def test_a_node_in_an_ignored_package_knows_its_messages(
     assert start("import rospy\nfrom arm_base.msg import Reading\n").namespace["Reading"](1.0).value == 1.0
 
 
-def test_a_module_that_nobody_installs_is_found_and_told(packages: Path, start: Start) -> None:
+def test_a_module_that_no_package_installs_is_imported_with_a_note(packages: Path, start: Start) -> None:
     ros = start("import smoothing\nfound = smoothing.WEIGHT\n")
     assert ros.namespace["found"] == 0.25
     (note,) = ros.notes
     assert note.startswith(f"smoothing was imported from {packages / 'lib/smoothing.py'}, which no package")
 
 
-def test_modules_are_not_guessed(packages: Path, start: Start) -> None:
+def test_ambiguous_and_optional_modules_are_not_imported(packages: Path, start: Start) -> None:
     with pytest.raises(NodeError, match="No module named 'twice'"):
         start("import twice\n")
     ros = start("""
@@ -171,7 +171,7 @@ LAUNCH2 = """
 
 @pytest.fixture
 def launches(packages: Path) -> Path:
-    """Put the node of the fixture `start` into the package arm_base, with two launch files for it."""
+    """Move the node of the fixture `start` into the package arm_base, with two launch files for it."""
     write(
         packages,
         {
@@ -200,7 +200,7 @@ def started(start: Start, folder: Path, source: str, given: Given, **parameters:
     return ros.namespace  # type: ignore[attr-defined,no-any-return]
 
 
-def test_parameters_come_from_the_launch_file_where_the_test_states_none(
+def test_parameters_come_from_the_launch_file_unless_the_test_states_them(
     launches: Path, start: Start
 ) -> None:
     found = given(launches / "node.py")
@@ -232,7 +232,7 @@ def test_parameters_of_the_namespace_follow_the_node(launches: Path) -> None:
     assert given(launches / "node.py").shared == {"/everywhere": 1, "/side": "l"}
 
 
-def test_launch_files_that_disagree_give_nothing_and_are_told(launches: Path) -> None:
+def test_conflicting_launch_files_set_no_parameters_and_give_a_note(launches: Path) -> None:
     write(launches, {"launch/two.launch": LAUNCH1.format(rate=9)})
     workspace.forget()
     found = given(launches / "node.py")
@@ -255,7 +255,7 @@ def test_a_node_started_later_gets_the_parameters_of_its_own_start(start: Start)
     assert ros.namespace["found"] == 2
 
 
-def test_start_takes_the_launch_file_or_none(launches: Path, pytester: pytest.Pytester) -> None:
+def test_start_accepts_a_launch_file_or_false(launches: Path, pytester: pytest.Pytester) -> None:
     test = """
         import pytest
         from pytest_tarl import Sensor
@@ -291,7 +291,7 @@ def test_every_cache_of_workspace_facts_is_emptied(packages: Path, start: Start)
     assert [name for _, name, value in caches if value.cache_info().currsize] == []
 
 
-def test_the_dependencies_of_a_package_are_listed(packages: Path) -> None:
+def test_rospack_lists_the_dependencies_of_a_package(packages: Path) -> None:
     assert RosPack().get_depends("arm_base") == ["catkin"]
     with pytest.raises(ResourceNotFound):
         RosPack().get_depends("leg_base")

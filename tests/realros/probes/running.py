@@ -1,4 +1,4 @@
-"""Run a probe on one kind of ROS. `python -m tests.realros.probes.running` writes down what the real one answers."""
+"""Run a probe on one kind of ROS. `python -m tests.realros.probes.running` records the results of the real one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pytest_tarl.errors import NodeError
 from pytest_tarl.realros.choice import make_ros
 from pytest_tarl.ros import message_type
 
-os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"  # as every distribution up to Jazzy does without being asked
+os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"  # the default of every distribution up to Jazzy
 HERE = Path(__file__).parent
 LIBRARIES = {"ros1": "rospy", "ros2": "rclpy"}
 NAMES = {"ros1": "std_msgs/Float64", "ros2": "std_msgs/msg/Float64"}
@@ -24,23 +24,23 @@ STEPS = 10
 
 
 def probes(generation: str) -> list[Path]:
-    """List the probes of a ROS generation."""
+    """Return the probes of a ROS generation."""
     return sorted((HERE / generation).glob("*.py"))
 
 
 def expected(generation: str) -> dict[str, list[str]]:
-    """Return what the real ROS has answered, by probe."""
+    """Return the recorded results of the real ROS by probe."""
     found: dict[str, list[str]] = json.loads((HERE / f"{generation}.json").read_text("utf-8"))
     return found
 
 
 def installed(generation: str) -> bool:
-    """Tell whether the real ROS is here."""
+    """Return whether the real ROS is installed."""
     return PathFinder.find_spec(LIBRARIES[generation]) is not None
 
 
 def answers(probe: Path, kind: str) -> list[str]:
-    """Run a probe for `STEPS` steps, a number published on /in in each; return what it has said."""
+    """Run a probe for `STEPS` steps, with a number published on /in in each; return its output."""
     said: list[str] = []
 
     def say(*values: Any) -> None:
@@ -66,7 +66,7 @@ def answers(probe: Path, kind: str) -> list[str]:
 
 
 def main() -> None:
-    """Write the answers of every real ROS that is installed here."""
+    """Record the results of every installed real ROS."""
     for generation in LIBRARIES:
         if installed(generation):
             found = {probe.stem: answers(probe, "real") for probe in probes(generation)}
