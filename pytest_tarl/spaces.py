@@ -1,4 +1,4 @@
-"""Spaces of drifts: the directions in which a world may change, each with a nominal value.
+"""Spaces of drifts: the directions in which a world can change, each with a nominal value.
 
 A point of a space holds one number per direction, by name: the value of a range, or the index of an option.
 """
@@ -37,22 +37,22 @@ class Choice:
 
 
 class Fault(Protocol):
-    """A fault of the nodes' messages or processes, of a size that `extent` bounds; at its nominal size it is none."""
+    """A fault of the nodes' messages or processes. `extent` bounds its size; the nominal size means no fault."""
 
     @property
     def extent(self) -> Span | Choice:
         """Return the possible sizes."""
 
     def install(self, ros: Any, name: str, size: float, draws: np.random.Generator) -> None:
-        """Make an episode's ROS behave so. `name` is the direction's, for messages."""
+        """Install the fault in an episode's ROS. `name` is the direction's name, for messages."""
 
     def check(self, ros: Any, name: str) -> None:
-        """Raise SettingsError after an episode in which what the fault is about never occurred."""
+        """Raise SettingsError after an episode in which the fault's topic or node never occurred."""
 
 
 @dataclass(frozen=True, slots=True)
 class Space:
-    """All combinations of the directions' values; directions without a fault are parts of the test's world."""
+    """All combinations of the directions' values; directions that are not faults are parts of the test's world."""
 
     directions: Mapping[str, Span | Choice]
     faults: Mapping[str, Fault]

@@ -1,4 +1,4 @@
-"""A constant offset, as of a sensor that was mounted or calibrated wrongly."""
+"""A constant offset, like that of a wrongly mounted or calibrated sensor."""
 
 from __future__ import annotations
 

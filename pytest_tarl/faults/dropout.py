@@ -1,4 +1,4 @@
-"""Lost messages, as over a weak radio link or a full queue."""
+"""Lost messages, as on a weak radio link or in a full queue."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A frozen value, as of a driver that repeats its last reading while the sensor is gone."""
+"""A frozen value, like that of a driver that repeats its last reading while the sensor is disconnected."""
 
 from __future__ import annotations
 

@@ -19,12 +19,12 @@ class Faults:
     seed: int = 0
 
     def install(self, ros: Any) -> None:
-        """Make an episode's ROS behave so, in the order of the directions."""
+        """Install the faults in an episode's ROS, in the order of the directions."""
         for name, (fault, size) in self.active.items():
             fault.install(ros, name, size, seeds.generator(self.seed, f"fault {name}"))
 
     def check(self, ros: Any) -> None:
-        """Raise SettingsError for a fault whose topic or node did not occur; only an episode without faults tells."""
+        """Raise SettingsError for a fault whose topic or node did not occur, unless a fault is active."""
         if not self.active:
             for name, fault in self.declared.items():
                 fault.check(ros, name)

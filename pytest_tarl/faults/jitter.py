@@ -1,4 +1,4 @@
-"""A varying delay, as of a loaded computer or a shared network; messages keep their order."""
+"""A varying delay, as on a loaded computer or a shared network; messages keep their order."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
 
 def jitter(topic: str, most: float) -> TopicFault:
-    """Return a fault that delays each message by its own time, uniform from 0 to a size of up to `most` seconds."""
+    """Return a fault that delays each message by a random time, uniform from 0 to a size of up to `most` seconds."""
 
     def begin(size: float, draws: np.random.Generator) -> Channel:
-        arrival = [0.0]  # of the message before
+        arrival = [0.0]  # arrival of the previous message, s
 
         def delayed(message: Any, now: float) -> Arrivals:
             arrival[0] = max(arrival[0], now + size * float(draws.random()))

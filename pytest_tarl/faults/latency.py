@@ -1,4 +1,4 @@
-"""A constant delay, as of slow processing or a long network path; stamps stay as they were sent."""
+"""A constant delay, as by slow processing or a long network path; header stamps stay unchanged."""
 
 from __future__ import annotations
 

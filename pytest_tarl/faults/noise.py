@@ -1,4 +1,4 @@
-"""White noise, as of a cheap or ageing sensor, or of interference."""
+"""White noise, like that of a cheap or ageing sensor or of interference."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def noise(topic: str, field: str, most: float) -> TopicFault:
-    """Return a fault that adds normal noise to a field, independent in each message, of a deviation up to `most`."""
+    """Return a fault that adds independent normal noise to a field, with a standard deviation of up to `most`."""
 
     def noisy(size: float, draws: np.random.Generator) -> Callable[[float], float]:
         return lambda x: x + float(draws.normal(0.0, size))

@@ -1,4 +1,4 @@
-"""A node that dies and comes back, as one that crashes and is respawned by its launch file."""
+"""A node that crashes and is respawned, as by its launch file."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NodeRestart:
-    """The end of a node's process at the moment `at`, in s, and its start anew after an outage, its size in s."""
+    """The end of a node's process at the moment `at`, in s, and its restart after the fault's size, in s."""
 
     node: str
     at: float
     extent: Span
 
     def install(self, ros: Any, name: str, size: float, draws: np.random.Generator) -> None:  # noqa: ARG002
-        """Plan the end and the new start of the node."""
+        """Schedule the end and the restart of the node."""
         ros.interrupt(self.node, self.at, size)
 
     def check(self, ros: Any, name: str) -> None:
@@ -39,7 +39,7 @@ class NodeRestart:
 def restart(node: str, most: float, *, at: float) -> NodeRestart:
     """Return a fault that ends a node at the moment `at` and starts it again after up to `most` seconds.
 
-    The new process has lost what the old one knew. Raise SettingsError for an invalid name or moment.
+    The new process starts without the state of the old one. Raise SettingsError for an invalid name or moment.
     """
     if not isinstance(node, str) or not node:
         raise SettingsError(f"faults.restart: name the node that tarl.start starts, got {node!r}.")

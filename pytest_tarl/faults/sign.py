@@ -1,4 +1,4 @@
-"""A wrong sign, as of a motor or an encoder with swapped wires, or of another convention for an axis."""
+"""A wrong sign, as by swapped wires of a motor or encoder, or by another axis convention."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two swapped axes, as of a sensor that was mounted turned, or of another frame convention."""
+"""Two swapped axes, as by a sensor mounted at an angle of 90°, or by another frame convention."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all faults of a topic have in common: a channel through which its messages pass."""
+"""Common base of topic faults: a channel through which the topic's messages pass."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from pytest_tarl.spaces import Choice, Span, span
 if TYPE_CHECKING:
     import numpy as np
 
-Arrivals = Iterable[tuple[float, Any]]  # delays in s, and messages
-Channel = Callable[[Any, float], Arrivals]  # (message, virtual time in s) → what arrives of it, in this order
+Arrivals = Iterable[tuple[float, Any]]  # (delay in s, message)
+Channel = Callable[[Any, float], Arrivals]  # (message, virtual time in s) → its arrivals, in order
 OFF_ON = Choice((False, True))
 
 
@@ -29,7 +29,7 @@ class TopicFault:
     field: str = ""
 
     def install(self, ros: Any, name: str, size: float, draws: np.random.Generator) -> None:
-        """Let the topic's messages pass through the fault. Raise SettingsError at a message without its field."""
+        """Pass the topic's messages through the fault. Raise SettingsError at a message without the fault's field."""
         channel = self.begin(size, draws)
 
         def passed(message: Any, now: float) -> Arrivals:
@@ -58,7 +58,7 @@ def of_field(
     extent: Span | Choice,
     change: Callable[[float, np.random.Generator], Callable[[float], float]],
 ) -> TopicFault:
-    """Return a fault that changes each number of a field apart. Raise SettingsError for an invalid topic or field."""
+    """Return a fault that changes each number of a field separately. Raise SettingsError for invalid arguments."""
     _text(kind, "topic", topic)
     _text(kind, "field", field)
 
@@ -78,7 +78,7 @@ def of_topic(
 
 
 def sizes(kind: str, low: Any, high: Any, none: float) -> Span:
-    """Return the sizes of a fault, of which `none` means no fault. Raise SettingsError if it is not among them."""
+    """Return the range of a fault's sizes. Raise SettingsError if it does not include `none`, which means no fault."""
     found = span(f"faults.{kind}(…, {low!r}, {high!r})", low, high, None)
     if not found.low <= none <= found.high:
         raise SettingsError(

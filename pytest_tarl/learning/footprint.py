@@ -1,7 +1,7 @@
-"""Estimate the memory that recorded episodes need, and say so before it runs out.
+"""Estimate the memory that recorded episodes need, and warn before it runs out.
 
 While episodes run, their statistics are kept as columns of 8 bytes. Merging, packing and writing them takes `PEAK`
-times that. Both grow in proportion to the episodes, so the first few tell about all of them.
+times that. Both grow in proportion to the episodes, so the first few allow an estimate for all of them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pytest_tarl.learning.tables import Sample
 
 PEAK = 5  # bytes of memory per byte of columns at the peak (benchmarks/limits.py, case recording)
 FIRST = 3  # episodes before the first estimate; later ones are made each time their number has doubled
-STRIDE = 32_000_000  # bytes of columns between two looks at what is left
+STRIDE = 32_000_000  # bytes of columns between two checks of the free memory
 GB = 1e9
 
 
@@ -81,7 +81,7 @@ class Footprint:
             )
 
     def _needed(self, columns: int) -> int:
-        """Return the bytes still to be taken to write columns of so many bytes; those so far are taken already."""
+        """Return the further bytes needed to write columns of this size, beyond those recorded so far."""
         return PEAK * columns - self.held
 
     def _advice(self, free: int) -> str:

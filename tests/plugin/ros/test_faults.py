@@ -164,7 +164,7 @@ def test_every_number_of_a_sequence_changes_and_whole_numbers_stay_whole() -> No
 
 
 @pytest.mark.parametrize("field", ["nothing", "header.frame_id", "ranges.7"])
-def test_a_field_that_is_no_number_is_told(field: str) -> None:
+def test_a_field_that_is_not_a_number_is_refused(field: str) -> None:
     ros = Ros()
     faults.bias("/scan", field, 0, 1).install(ros, "f", 1.0, generator(1, "f"))
     with pytest.raises(SettingsError, match=f"has no number '{field}'"):
@@ -187,12 +187,12 @@ def test_a_field_that_is_no_number_is_told(field: str) -> None:
         (lambda: faults.restart("", 1.0, at=1), "name the node"),
     ],
 )
-def test_wrong_use_is_told(make: Any, told: str) -> None:
+def test_invalid_arguments_are_refused(make: Any, told: str) -> None:
     with pytest.raises(SettingsError, match=told):
         make()
 
 
-def test_a_topic_or_node_that_does_not_occur_is_told_without_active_faults() -> None:
+def test_a_missing_topic_or_node_is_refused_unless_faults_are_active() -> None:
     ros = Ros()
     ros.bus.publish("/level", Float64(data=1.0))
     lost, gone = faults.dropout("/levle", 1.0), faults.restart("kepeer", 1.0, at=1)
