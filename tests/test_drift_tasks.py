@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import ast
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 BENCHMARKS = Path(__file__).parent.parent / "benchmarks"
-JUDGING = ("drift_judging", "drift_judging_2", "drift_structure")
+JUDGING = ("drift_judging", "drift_judging_2", "drift_judging_3", "drift_structure")
+SLOW = os.environ.get("TARL_SLOW", "") not in ("", "0")
 TASKS = sorted(
     test.parent for folder in ("drift", *JUDGING) for test in BENCHMARKS.glob(f"{folder}/*/test_*.py")
 )
@@ -90,3 +94,43 @@ def test_the_second_half_has_every_kind() -> None:
         "sparse reward": 1,
         "unrepairable": 1,
     }
+
+
+def test_the_third_set_has_every_kind_and_says_where_drifts_occur() -> None:
+    third = [answer(task) for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_3"]
+    kinds = [known["kind"] for known in third]
+    assert {kind: kinds.count(kind) for kind in kinds} == {
+        "permanent": 1,
+        "structure": 3,
+        "range": 1,
+        "rare failures": 2,
+        "narrow window": 1,
+        "sparse reward": 1,
+        "unrepairable": 1,
+    }
+    assert all(known["practice"] for known in third)
+
+
+def rates(by_hand: bool) -> dict[str, tuple[float, float]]:
+    """Return the success of each task of the third set in the designed and in the drifted world."""
+    command = [sys.executable, BENCHMARKS / "drift" / "worlds.py", "--folder", BENCHMARKS / "drift_judging_3"]
+    command += ["--by-hand"] if by_hand else []
+    done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=BENCHMARKS.parent)
+    rows = [[cell.strip() for cell in line.split("|")] for line in done.stdout.splitlines() if " / " in line]
+    found = {row[1]: row[5].split(" / ") for row in rows[1:]}
+    return {task: (float(designed), float(drifted)) for task, (designed, drifted) in found.items()}
+
+
+@pytest.mark.skipif(not SLOW, reason="minutes: set TARL_SLOW=1")
+def test_drifts_hurt_and_repairs_by_hand_restore() -> None:
+    tasks = [task for task in WRITTEN_BY_HAND if task.parent.name == "drift_judging_3"]
+    before, after = rates(by_hand=False), rates(by_hand=True)
+    assert set(before) == set(after) == {task.name for task in tasks}
+    for task in tasks:
+        designed, drifted = before[task.name]
+        assert designed >= 0.98, task.name
+        assert drifted <= (0.95 if answer(task)["kind"] == "rare failures" else 0.05), task.name
+        permanent = "permanent=True" in ast.unparse(marker(task)["drifts"])
+        if answer(task)["repairable"]:
+            assert after[task.name][1] >= 0.98, task.name
+            assert permanent or after[task.name][0] >= 0.98, task.name

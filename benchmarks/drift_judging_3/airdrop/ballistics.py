@@ -1,0 +1,21 @@
+"""Fall of a parcel below its parachute."""
+
+import numpy as np
+
+CHUTE = dict(sink=6.0, opening=1.2, throw=0.9)  # m/s, s until it is open, s of flight at the drone's speed
+FREE_FALL = 4.0  # m/s, mean speed until the chute is open
+
+
+def fall_time(height):
+    """Seconds between release and ground."""
+    return CHUTE["opening"] + (height - FREE_FALL * CHUTE["opening"]) / CHUTE["sink"]
+
+
+def drift(height, wind):
+    """Where the wind carries a parcel (m, east and north)."""
+    return np.asarray(wind) * fall_time(height)
+
+
+def throw(velocity):
+    """How far a parcel flies on before the air has stopped it: m."""
+    return CHUTE["throw"] * float(np.linalg.norm(velocity))

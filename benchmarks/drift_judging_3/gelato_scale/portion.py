@@ -1,0 +1,26 @@
+#!/usr/bin/env python3
+import rospy
+from std_msgs.msg import Bool, Float32
+
+TUB = 38.0  # g, an empty tub
+AFTERRUN = 2.5  # g that still fall when the flap closes
+
+scale = {"gross": 0.0}
+rospy.init_node("portion")
+rospy.Subscriber("/scale", Float32, lambda msg: scale.update(gross=msg.data))
+rospy.Subscriber("/order", Float32, lambda msg: scale.update(order=msg.data))
+flap = rospy.Publisher("/flap", Float32, queue_size=1)
+ready = rospy.Publisher("/ready", Bool, queue_size=1)
+
+rate = rospy.Rate(10)
+while not rospy.is_shutdown():
+    net = scale["gross"] - TUB
+    missing = scale.get("order", 0.0) - AFTERRUN - net
+    if net < -15.0 or missing <= 0.0:  # no tub, or full
+        flap.publish(0.0)
+    elif missing < 25.0:
+        flap.publish(0.3)
+    else:
+        flap.publish(1.0)
+    ready.publish(net > -15.0 and missing <= 0.0)
+    rate.sleep()
