@@ -9,25 +9,25 @@ from statistics import fmean
 from pytest_tarl import seeds
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, Reason
-from pytest_tarl.repairing.between import WEAK, Between, further, stronger
+from pytest_tarl.repairing.between import WEAK, further
 from pytest_tarl.repairing.centring import centred
-from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds, operands
+from pytest_tarl.repairing.ledger import Ledger, Refused, Tried, alike, furthest, of_fresh_seeds
 from pytest_tarl.repairing.missed import Missed
 from pytest_tarl.repairing.mutants import ORIGINAL, Mutants
+from pytest_tarl.repairing.other_values import Others, OtherValues
 from pytest_tarl.repairing.placing import Placing
 from pytest_tarl.repairing.ranges import Ranged, over_the_range
 from pytest_tarl.repairing.regression_tests import NOTHING_BESIDE, Beside, beside
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import SEEDS, TOO_LITTLE, Acceptance, Outcome, World, accept, risk_of
+from pytest_tarl.searching.plainness import oddness
 from pytest_tarl.searching.search import BudgetSpentError, Candidate, Trials
-from tarl_lint.model import Operand
 
 QUICK = 3  # seeds on which to try a guard before testing it on fresh ones
 WORLDS = 3  # in which a test runs episodes: drifted, designed, and designed without the candidate
 OLD_WORLD = 8  # episodes that show the reward of a permanent repair in the old world
 MOST = 5  # candidates to test per search ...
 SHARE = 2  # ... and how many of them may have the same operands while others wait
-POWERS = (1.5, 2.0)  # exponents for the factors of a candidate at the edge of its window
 SCREENED = 20  # candidates to run on fresh seeds per search
 
 
@@ -54,8 +54,7 @@ class Examiner:
             Candidate
         ] = []  # held on known seeds, but `SHARE` candidates of the same operands were tested before
         self._missed = Missed()
-        self._pushed: set[tuple[frozenset[Operand], Guard]] = set()
-        self._bisected: set[tuple[frozenset[Operand], Guard]] = set()
+        self.others = Others(mutants, self.ledger, self._missed)
         self.tested = 0
         self._ran = 0  # episodes run in the current test
         self.turns = 1  # searches, or kinds of change, whose candidates were tested
@@ -71,6 +70,7 @@ class Examiner:
 
     def first(self, confirmed: Iterator[Candidate], trials: Trials) -> Accepted | None:
         """Examine candidates until one is accepted, the tests are used up or the budget is spent."""
+        trials.loses = lambda candidate: self._missed.again(candidate, trials, self.order.goal)
         try:
             for candidate in confirmed:
                 accepted = self._under_guards(candidate, trials)
@@ -83,59 +83,46 @@ class Examiner:
         return self._of_those_waiting()
 
     def _under_guards(self, candidate: Candidate, trials: Trials) -> Accepted | None:
-        """Examine a candidate under every guard, then stronger ones, and then milder ones."""
+        """Examine a candidate under every guard, then other values of it: stronger, milder and neighbouring ones."""
         edges: list[Candidate] = []  # held on known seeds but failed on some fresh ones
+        weak: list[Guard] = []  # do not restore the drifted world
         for guard in self.guards:
+            if any(_narrower(guard, known) for known in weak):
+                continue
             examined = self._examined(replace(candidate, guard=guard), trials)
-            if isinstance(examined, Accepted):
-                return examined
-            if self._exhausted():
-                return None
-            if examined.fresh and examined.reason in WEAK:
-                edges.append(examined.candidate)
+            if isinstance(examined, Accepted) or self._exhausted():
+                return examined if isinstance(examined, Accepted) else None
+            if examined.reason in WEAK:
+                weak.append(guard)
+                edges += [examined.candidate] if examined.fresh else []
             wide = guard == candidate.guard or (examined.fresh and guard == candidates.ALWAYS)
             if wide and examined.reason in (*TOO_LITTLE, *WEAK):
                 break  # this guard is as wide as in the search, so narrower guards cannot gain more
-        for edge in edges:
-            accepted = self._beyond(edge, trials)
-            if accepted is not None or self._exhausted():
-                return accepted
-        for guard in dict.fromkeys((candidates.ALWAYS, candidate.guard)):
-            accepted = self._milder(replace(candidate, guard=guard), trials)
+        for others in (
+            *(self.others.beyond(edge) for edge in edges),
+            *(
+                self.others.milder(replace(candidate, guard=guard))
+                for guard in dict.fromkeys((candidates.ALWAYS, candidate.guard))
+            ),
+            self.others.beside(trials),
+        ):
+            accepted = self._followed(others, trials)
             if accepted is not None or self._exhausted():
                 return accepted
         return None
 
-    def _beyond(self, candidate: Candidate, trials: Trials) -> Accepted | None:
-        """Examine stronger factors of a candidate that fails on some seeds: it is at the edge of its window."""
-        place = (operands(candidate), candidate.guard)
-        for power in POWERS if place not in self._pushed else ():
-            self._pushed.add(place)
-            moved = stronger(candidate, power, self.mutants.mutate)
-            examined = self._examined(moved, trials) if moved is not None else None
-            if isinstance(examined, Accepted):
-                return examined
-            if examined is None or not examined.fresh or examined.reason not in WEAK or self._exhausted():
+    def _followed(self, others: OtherValues, trials: Trials) -> Accepted | None:
+        """Examine other values of a candidate, each chosen by what became of the ones before."""
+        told: Tried | None = None
+        while True:
+            try:
+                candidate = next(others) if told is None else others.send(told)
+            except StopIteration:
                 return None
-        return None
-
-    def _milder(self, candidate: Candidate, trials: Trials) -> Accepted | None:
-        """Bisect between the original, which gains too little, and a candidate that breaks the designed world."""
-        known, place = self.ledger.alike(candidate), (operands(candidate), candidate.guard)
-        if known is None or known.reason != "nominal gets worse" or place in self._bisected:
-            return None
-        self._bisected.add(place)
-        between = Between(candidate, self.mutants.mutate)
-        for one in self.tried:
-            if one.candidate.guard == candidate.guard and one.reason in WEAK:
-                between.beyond(one.candidate)
-        while (middle := between.middle()) is not None:
-            examined = self._examined(middle, trials)
-            if isinstance(examined, Accepted):
-                return examined
-            if not between.told(examined.reason):
-                return None
-        return None
+            examined = self._examined(candidate, trials)
+            if isinstance(examined, Accepted) or self._exhausted():
+                return examined if isinstance(examined, Accepted) else None
+            told = examined
 
     def _examined(self, candidate: Candidate, trials: Trials) -> Accepted | Tried:
         """Examine a candidate on known seeds, then on fresh ones, unless a similar one was examined before."""
@@ -162,9 +149,14 @@ class Examiner:
         if problem:
             self._refuse(Refused(candidate, problem))
             return self.ledger.enter(Tried(candidate, problem, ()))
-        if self.ledger.tests(candidate) >= SHARE:
+        if self.ledger.tests(candidate) >= SHARE and not self.others.bracketed(candidate):
             self.waiting.append(candidate)
             return Tried(candidate, "never tested", ())
+        for plainer in [one for one in self.waiting if oddness(one.mutations) < oddness(candidate.mutations)]:
+            self.waiting.remove(plainer)
+            examined = self._on_fresh_seeds(plainer)
+            if isinstance(examined, Accepted) or self._exhausted():
+                return examined
         return self._on_fresh_seeds(candidate)
 
     def _goes_further(self, candidate: Candidate) -> bool:
@@ -207,7 +199,7 @@ class Examiner:
         if found.accepted:
             return Accepted(candidate, self._with_old_world(found, candidate), others)
         self._refuse(Refused(candidate, reason, fmean(totals), len(totals)))
-        self._missed.learn(found, self.order.goal, self.order.reference)
+        self._missed.learn(candidate, found, self.order.goal, self.order.reference)
         return tried
 
     def _with_old_world(self, found: Acceptance, candidate: Candidate) -> Acceptance:
@@ -236,6 +228,7 @@ class Examiner:
         trials.expect((candidate, pair.seed) for pair in goal.pairs[:QUICK])
         for pair in goal.pairs[:QUICK]:
             if not goal.reached(trials(candidate, pair.seed), pair.seed):
+                trials.misses[pair.seed] += 1
                 return "gain too small"
         if self._missed.again(candidate, trials, goal):
             return "gain too small"
@@ -294,3 +287,8 @@ class Examiner:
 
     def _refuse(self, refused: Refused) -> None:
         self.refused = furthest(self.refused, refused)
+
+
+def _narrower(guard: Guard, known: Guard) -> bool:
+    """Tell whether a guard holds less often than a known condition, since it asks for more beside it."""
+    return bool(known.conjuncts) and set(known.conjuncts) < set(guard.conjuncts)

@@ -6,7 +6,7 @@ the candidate's window loses less; finding it costs a few known seeds and saves 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from statistics import fmean
 
@@ -20,6 +20,7 @@ THIN = 0.5  # share of the margin; candidates that lose less are not improved
 STEPS = (1.12, 1.04)  # ratios of neighbouring values
 SEEDS = 3  # seeds on which to compare values
 MOVES = 3  # at most in one direction with one ratio
+ASIDE = (1.25, 0.8, 1.12, 0.89)  # ratios to the neighbours of a value that fails on some seeds
 
 
 def centred(
@@ -40,6 +41,19 @@ def centred(
     return candidate
 
 
+def neighbours(candidate: Candidate, mutate: Mutate) -> Iterator[Candidate]:
+    """Yield a candidate with its only value moved to either side; nothing where it has several, or a sign."""
+    for ratio in ASIDE:
+        other = moved(candidate, ratio, mutate)
+        if other is not None:
+            yield in_place(other)
+
+
+def in_place(candidate: Candidate) -> Candidate:
+    """Return a candidate that changes its constants where they are used."""
+    return replace(candidate, mutations=candidate.changes)
+
+
 def _climbed(
     candidate: Candidate, trials: Trials, mutate: Mutate, pairs: Sequence[Pair], enough: float
 ) -> Candidate:
@@ -47,17 +61,17 @@ def _climbed(
     for step in STEPS:
         for ratio in (step, 1 / step):
             for _ in range(MOVES):
-                moved = _moved(best, ratio, mutate) if most < enough else None
-                earned = _mean(moved, trials, pairs) if moved is not None else most
-                if moved is None or earned <= most:
+                other = moved(best, ratio, mutate) if most < enough else None
+                earned = _mean(other, trials, pairs) if other is not None else most
+                if other is None or earned <= most:
                     break
-                best, most = moved, earned
+                best, most = other, earned
     return best
 
 
-def _moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | None:
+def moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | None:
     """Return a candidate with its value scaled by `ratio`; None for several sites or an operand without a factor."""
-    moved: list[Mutation] = []
+    made: list[Mutation] = []
     for one in candidate.mutations:
         by = float(one.value) if one.form is not None and one.form.parameter else factor(one)
         if by is None or one.operand.site != candidate.mutations[0].operand.site:
@@ -65,8 +79,8 @@ def _moved(candidate: Candidate, ratio: float, mutate: Mutate) -> Candidate | No
         further = replace(one, value=by * ratio) if one.form is not None else mutate(one.operand, by * ratio)
         if further is None:
             return None
-        moved.append(further)
-    return replace(candidate, mutations=tuple(moved))
+        made.append(further)
+    return replace(candidate, mutations=tuple(made))
 
 
 def _mean(candidate: Candidate, trials: Trials, pairs: Sequence[Pair]) -> float:

@@ -8,28 +8,44 @@ from pytest_tarl.searching.accept import Acceptance, Reference
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 
 LATEST = 3
+FEW = 0.25  # of its missions that a candidate may lose and have nearly the right value
 
 
 @dataclass
 class Missed:
-    """Seeds on which tested candidates lost, each with the total that counts as near its designed mission."""
+    """Seeds on which tested candidates lost, each with the total that counts as near its designed mission.
+
+    `few` has the seeds of candidates that lost few of their missions and so may have nearly the right value.
+    """
 
     seeds: list[tuple[int, float]] = field(default_factory=list)
+    few: dict[Candidate, list[tuple[int, float]]] = field(default_factory=dict)
 
-    def learn(self, found: Acceptance, goal: Goal, reference: Reference) -> None:
+    def learn(self, candidate: Candidate, found: Acceptance, goal: Goal, reference: Reference) -> None:
         """Store the missions that a refused candidate lost."""
-        slack = reference.mean - goal.near
+        slack, lost = reference.mean - goal.near, []
         for seed, outcome, designed in zip(found.seeds, found.drifted, found.designed, strict=False):
             near = min(designed, reference.mean) - slack
             if outcome.total < near or goal.lost(outcome):
-                self.seeds.append((seed, near))
+                lost.append((seed, near))
+        self.seeds += lost
+        if 0 < len(lost) <= FEW * len(found.drifted):
+            self.few[candidate] = lost[-LATEST:]
 
     def again(self, candidate: Candidate, trials: Trials, goal: Goal) -> bool:
         """Tell whether a candidate loses most of the latest stored missions. Raises BudgetSpentError."""
         lost, asked = 0, self.seeds[-LATEST:]
         for seed, near in asked:
-            outcome = trials(candidate, seed)
-            lost += outcome.total < near or goal.lost(outcome)
+            lost += _loses(candidate, trials, goal, seed, near)
             if 2 * lost > len(asked):
                 return True
         return False
+
+    def mends(self, candidate: Candidate, refused: Candidate, trials: Trials, goal: Goal) -> bool:
+        """Tell whether a candidate loses none of the few missions that a refused one lost. Raises BudgetSpentError."""
+        return not any(_loses(candidate, trials, goal, seed, near) for seed, near in self.few[refused])
+
+
+def _loses(candidate: Candidate, trials: Trials, goal: Goal, seed: int, near: float) -> bool:
+    outcome = trials(candidate, seed)
+    return outcome.total < near or goal.lost(outcome)

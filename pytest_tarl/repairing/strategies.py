@@ -8,6 +8,7 @@ from pathlib import Path
 from pytest_tarl import seeds
 from pytest_tarl.model import Guard
 from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.repairing.products import one_of_each
 from pytest_tarl.repairing.request import Order
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.ask_tell import Asking, factory
@@ -27,14 +28,15 @@ def strategy(mutants: Mutants, method: str, guards: Sequence[Guard], trials: Tri
     order = mutants.order
     generator = seeds.generator(order.options.seed, method)
     if method == "sweep":
+        moved, same = one_of_each(order.analysis, operands(order))
         return Sweep(
-            operands(order),
+            moved,
             mutants.mutate,
             guards,
             trials,
             order.goal,
             generator,
-            late=timing_operands(order),
+            late=(*timing_operands(order), *same),
         )
     if method == "halving":
         return Halving(operands(order), mutants.mutate, guards, trials, order.goal)

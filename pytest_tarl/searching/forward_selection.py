@@ -18,6 +18,7 @@ MOST = 3  # parts of a combined repair
 PROMISING = 0.5  # share of the loss that a combination must gain to be balanced
 LEADERS = 5  # units to combine with the first; one of them may gain too little alone to stand out
 STEPS = (1.5, 0.65)  # factors by which balancing moves a part
+STRONG = 5.0  # factor of a part that changes nothing alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,8 +100,13 @@ class ForwardSelection:
                 return
             base, gain = yield from self._balanced(better, most)
 
-    def unions(self, parts: Sequence[tuple[Unit, float]], guard: Guard) -> Iterator[Candidate]:
-        """Combine the first part with the next ones, the best two with a third, and balance the best combination."""
+    def unions(
+        self, parts: Sequence[tuple[Unit, float]], guard: Guard, hidden: Sequence[Unit] = ()
+    ) -> Iterator[Candidate]:
+        """Combine the first part with the next ones, the best two with a third, and balance the best combination.
+
+        `hidden` are units that never changed a reward alone.
+        """
         first = Joint(tuple(parts[:1]), guard)
         if first.candidate(self.mutate) in self.settled.held:
             return
@@ -115,10 +121,30 @@ class ForwardSelection:
                 gained = yield from self.gain(joint)
                 if gained is not None and (best is None or gained > best[1]):
                     best, base = (joint, gained), joint
-            if best is not None and best[1] >= self.goal.enough - self.goal.pairs[0].total:
+            if best is not None and self._suffices(best[1]):
                 break  # two parts suffice on this seed but not on fresh ones: adjust values, do not add parts
         if best is not None and best[1] > PROMISING * needed:
-            yield from self._balanced(*best)
+            joint, gain = yield from self._balanced(*best)
+            if len(joint.parts) > 1 and not self._suffices(gain):
+                pair = Joint(best[0].parts[: MOST - 1], guard)
+                yield from self._with_what_was_hidden(pair, hidden)
+
+    def _with_what_was_hidden(self, pair: Joint, hidden: Sequence[Unit]) -> Iterator[Candidate]:
+        """Add units that change nothing alone, maybe because missions end too early, to two parts that gain much."""
+        best, most = pair, (yield from self.gain(pair)) or 0.0
+        before = most
+        for unit in hidden if most > PROMISING * self.goal.wanted else ():
+            wider = pair.with_part(unit, STRONG)
+            gained = yield from self.gain(wider)
+            if gained is not None and gained > most:
+                best, most = wider, gained
+            if self._suffices(most):
+                return
+        if most > before + self.slack:
+            yield from self._balanced(best, most)
+
+    def _suffices(self, gain: float) -> bool:
+        return gain >= self.goal.enough - self.goal.pairs[0].total
 
     def expect(self, joints: Sequence[Joint]) -> None:
         """Announce the combinations that run next unless a result changes the order."""

@@ -44,6 +44,11 @@ def plainer(
     return [*sorted(gaining, key=lambda unit: -max(gains[unit].values())), *sorted(others, key=_kind)]
 
 
+def named(units: Iterable[Unit]) -> list[Unit]:
+    """Return the units that are named constants."""
+    return [unit for unit in units if _kind(unit) is Oddness.NAMED]
+
+
 def writing(operand: Operand) -> Oddness:
     """Return the oddness of changing an operand, which is also the order to try operands in.
 

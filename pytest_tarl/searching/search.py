@@ -5,6 +5,7 @@ A search yields confirmed candidates, best first. `searching.accept` then tests 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import fmean
@@ -19,7 +20,8 @@ Mutate = Callable[[Operand, float], Mutation | None]
 Wanted = tuple["Candidate", int]  # an episode: a candidate and its seed
 
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
-CONFIRMATIONS = 5  # further seeds on which a promising candidate must hold
+CONFIRMATIONS = 5  # further seeds on which a promising candidate must hold ...
+HARD = 2  # ... at most so many of them because other candidates fell short on them
 FAR = 0.6  # share of the wanted gain that releases the reserve of episodes
 PAIRED = 2  # least number of common seeds for comparing two candidates
 
@@ -89,6 +91,11 @@ class BudgetSpentError(Exception):
     """The search has spent its budget of episodes."""
 
 
+def lost_nothing(_: Candidate) -> bool:
+    """Return False: no candidate was rejected yet, so no lost mission is known."""
+    return False
+
+
 @dataclass
 class Trials:
     """Run candidates in the drifted world, each seed once, and keep the outcomes.
@@ -103,6 +110,8 @@ class Trials:
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
     reserve: int = 0  # episodes beyond the budget, released once a candidate has gained `FAR` ...
     worth: Goal | None = None  # ... of the gain that this goal wants
+    loses: Callable[[Candidate], bool] = lost_nothing  # whether it loses what rejected candidates lost
+    misses: Counter[int] = field(default_factory=Counter)  # seed → candidates that fell short on it
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
     _known: dict[tuple[Candidate, int], Outcome] = field(default_factory=dict)
@@ -190,17 +199,22 @@ def label(candidate: Candidate) -> str:
 def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> bool:
     """Tell whether a candidate holds on further seeds, starting after `goal.pairs[first]`.
 
-    Stop early at the first failed mission if missions succeed in the designed world (unless they vary in size), at the
-    second seed that falls short, and as soon as the candidate does no better than one that earned too little.
+    The first seeds are those on which other candidates fell short. Stop early at the first failed mission if missions
+    succeed in the designed world (unless they vary in size), at the second seed that falls short, as soon as the
+    candidate does no better than one that earned too little, and before all that if it loses the missions that
+    rejected candidates lost in their acceptance tests.
     """
-    others = [goal.pairs[(first + i) % len(goal.pairs)] for i in range(1, len(goal.pairs))][:CONFIRMATIONS]
-    seeds = [pair.seed for pair in others]
+    if trials.loses(candidate):
+        return False
+    seeds = _hardest_first(trials, goal, first)
     outcomes: list[Outcome] = []
     trials.expect((candidate, seed) for seed in seeds)
     missed = 0
     for seed in seeds:
         outcomes.append(trials(candidate, seed))
-        missed += not goal.reached(outcomes[-1], seed)
+        if not goal.reached(outcomes[-1], seed):
+            missed += 1
+            trials.misses[seed] += 1
         if missed > 1 or (goal.lost(outcomes[-1]) and not goal.ranged):
             return False
         if trials.falls_short(candidate, goal.pairs, goal.enough):
@@ -209,6 +223,14 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
     if not holds and not missed:
         trials.fell_short(candidate, goal.pairs)
     return holds
+
+
+def _hardest_first(trials: Trials, goal: Goal, first: int) -> list[int]:
+    """Return the seeds to confirm on: up to `HARD` on which most others fell short, then those after the first pair."""
+    others = [goal.pairs[(first + i) % len(goal.pairs)].seed for i in range(1, len(goal.pairs))]
+    missed = [seed for seed in others if trials.misses[seed]]
+    hard = sorted(missed, key=lambda seed: -trials.misses[seed])[:HARD]
+    return [*hard, *(seed for seed in others if seed not in hard)][:CONFIRMATIONS]
 
 
 class Strategy(Protocol):

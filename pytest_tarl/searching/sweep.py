@@ -15,17 +15,20 @@ from typing import TYPE_CHECKING
 from pytest_tarl.errors import RepairError
 from pytest_tarl.model import Guard, OperandEffect
 from pytest_tarl.searching.forward_selection import ForwardSelection, Joint, Settled
-from pytest_tarl.searching.plainness import Oddness, oddness, plainer
+from pytest_tarl.searching.gains import Gains
+from pytest_tarl.searching.plainness import Oddness, named, oddness, plainer, writing
 from pytest_tarl.searching.screening import blocks, screened, worth_screening
 from pytest_tarl.searching.search import Candidate, Goal, Mutate, Trials
 from pytest_tarl.searching.units import NEAR, Unit, best_effects, units
-from tarl_lint.model import Operand, SiteId
+from tarl_lint.model import Operand
 
 if TYPE_CHECKING:
     import numpy as np
 
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (factor, the smaller step that must not have lost)
 OUTWARD = 2.3  # ratio by which to go beyond the outermost factor if that one is the best
+LEADING = 3  # units to move further before the next guard, and to try under it with their best factor ...
+HINT = 0.005  # ... if they gained at least this share of the loss
 FLIP = -1.0  # another sign
 BETWEEN = (1.5, 0.65)
 FINE = (1.22, 0.82, 1.1, 0.91)  # for operands that move the reward although larger steps found nothing
@@ -70,7 +73,7 @@ class Sweep:
         self.generator = generator
         self.slack = SLACK * goal.wanted
         self.proposed = proposed
-        self._gains: dict[tuple[Unit, Guard], dict[float, float]] = {}  # factor → gain in total reward
+        self._gains = Gains(self.slack, proposed)
         self._tried: set[Candidate] = set()
         self._settled = Settled()
         self._refined: Counter[tuple[Unit, Guard]] = Counter()
@@ -87,12 +90,12 @@ class Sweep:
                 yield from self._near_ones(block, guard)
         for factor, before in FURTHER:
             for guard in chief:
-                yield from self._all(factor, guard, self._leading(before, guard))
+                yield from self._all(factor, guard, self._leading(before, guard, -self.slack))
                 yield from self._leaders_together(guard)
         for factor in (*BETWEEN, FLIP):
             for guard in chief:
-                yield from self._all(factor, guard, self._moving(self.units))
-        gained = self._gained()
+                yield from self._all(factor, guard, self._gains.moving(self.units))
+        gained = self._gains.anything()
         if gained:
             yield from self._together()
         yield from self._finely(chief)
@@ -108,12 +111,25 @@ class Sweep:
         return best_effects([(unit, gains) for (unit, _), gains in self._gains.items()], self.mutate)
 
     def _near_ones(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
-        """Try each unit larger and smaller, then in smaller steps if it lost both ways, and combine the best."""
-        moving = self._moving(block)
+        """Try each unit larger and smaller, then in smaller steps if it lost both ways, and combine the best.
+
+        As long as nothing gained enough to build upon, the three that gained most are moved further at once.
+        """
+        moving = self._gains.moving(block)
+        yield from self._carried_over(guard)
         for factor in (1.0, *NEAR) if self.proposed else NEAR:
             yield from self._all(factor, guard, moving)
         yield from self._narrow(guard, moving)
+        for factor, before in () if self._gains.anything() else FURTHER:
+            leading = self._leading(before, guard, self.goal.wanted * HINT)
+            yield from self._all(factor, guard, leading[:LEADING])
         yield from self._leaders_together(guard)
+
+    def _carried_over(self, guard: Guard) -> Iterator[Candidate]:
+        """Try the units that gained most under other guards under this one, since those may be too narrow."""
+        pair = self._turn % len(self.goal.pairs)
+        for unit, factor in self._gains.best_under([one for one in self.guards if one != guard])[:LEADING]:
+            yield from self._try(unit, guard, factor, pair)
 
     def _all(self, factor: float, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try one factor on several operands, then refine the best one."""
@@ -135,43 +151,21 @@ class Sweep:
 
     def _narrow(self, guard: Guard, among: Sequence[Unit]) -> Iterator[Candidate]:
         """Try smaller steps where both near factors lost: the operand matters and its best value is close by."""
-        tried = {unit: self._gains.get((unit, guard), {}) for unit in among}
-        lost = [
-            unit for unit, gains in tried.items() if all(gains.get(one, 0.0) < -self.slack for one in NEAR)
-        ]
-        for factor in BETWEEN:
-            if lost:
-                yield from self._all(factor, guard, lost)
-
-    def _gained(self) -> bool:
-        """Tell whether any gain is large enough to build upon."""
-        return any(max(gains.values()) > self.slack for gains in self._gains.values())
+        lost = self._gains.lost_both_ways(guard, among)
+        for factor in BETWEEN if lost else ():
+            yield from self._all(factor, guard, lost)
 
     def _finely(self, guards: Sequence[Guard]) -> Iterator[Candidate]:
         """Try small steps on operands that move the reward and were not refined: their window may be narrow."""
         for factor in FINE:
             for guard in guards:
-                moved = [unit for unit in self._moving(self.units) if self._moves(unit)]
+                moved = [unit for unit in self._gains.moving(self.units) if self._gains.moves(unit)]
                 yield from self._all(
                     factor, guard, [unit for unit in moved if not self._refined[unit, guard]]
                 )
 
-    def _moves(self, unit: Unit) -> bool:
-        return any(any(gains.values()) for (tried, _), gains in self._gains.items() if tried == unit)
-
-    def _moving(self, among: Sequence[Unit]) -> list[Unit]:
-        """Return the units except those moved both ways, under any guard, without changing a reward."""
-        gains: dict[Unit, list[float]] = {}
-        for (unit, _), by_factor in self._gains.items():
-            gains.setdefault(unit, []).extend(gain for factor, gain in by_factor.items() if factor != 1.0)
-        return [unit for unit in among if len(gains.get(unit, ())) < len(NEAR) or any(gains[unit])]
-
-    def _leading(self, before: float, guard: Guard, least: float | None = None) -> list[Unit]:
-        """Return the units that gained at least `least` with factor `before` (default: lost nothing), best first."""
-        least = -self.slack if least is None else least
-        gains = {unit: self._gains.get((unit, guard), {}).get(before) for unit in self._moving(self.units)}
-        kept = [(gain, unit) for unit, gain in gains.items() if gain is not None and gain >= least]
-        return [unit for _, unit in sorted(kept, key=lambda one: -one[0])]
+    def _leading(self, before: float, guard: Guard, least: float) -> list[Unit]:
+        return self._gains.leading(before, guard, self.units, least)
 
     def _try(self, unit: Unit, guard: Guard, factor: float, pair: int) -> Iterator[Candidate]:
         mutations = unit.mutations(self.mutate, factor)
@@ -182,33 +176,45 @@ class Sweep:
         near = self._near(candidate, pair)
         if near is None:
             return
-        gains = self._gains.setdefault((unit, guard), {} if self.proposed else {1.0: 0.0})
-        gains[factor] = self.trials.gain(candidate, self.goal.pairs)
-        if near:
-            holds = self._settled.holds(candidate, self.trials, self.goal, pair)
-            gains[factor] = self.trials.gain(candidate, self.goal.pairs)
-            if holds:
-                yield from self._plainer(candidate, unit, pair)
-                yield candidate
-                self._refused.add((unit, guard))
+        self._gains.enter((unit, guard), factor, self.trials.gain(candidate, self.goal.pairs))
+        holds = near and self._settled.holds(candidate, self.trials, self.goal, pair)
+        self._gains.enter((unit, guard), factor, self.trials.gain(candidate, self.goal.pairs))
+        if holds:
+            yield from self._plainer(candidate, unit, pair)
+            yield candidate
+        if holds or (near and self.trials.loses(candidate)):
+            self._refused.add((unit, guard))
 
     def _plainer(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
-        """Spend a few episodes on changes that a maintainer would prefer to the candidate found."""
+        """Spend a few episodes on changes that a maintainer would prefer to the candidate found.
+
+        In place of a literal, named constants are also tried with larger steps, as small ones may show nothing.
+        """
         odd, guard, begun = oddness(found.mutations), found.guard, self.trials.spent
         # In place of an offset, refused units are refined once more.
-        before = set(self._refused) if odd is Oddness.OFFSET else set()
-        gains = {one: gains for (one, held), gains in self._gains.items() if held == guard and one != unit}
+        before = set(self._refused if odd is Oddness.OFFSET else ())
         others = [one for one in self.units if one != unit]
+        gains = self._gains.under(guard)
         for other in plainer(odd, gains, others, PROMISING * self.goal.wanted):
             for factor in NEAR if other not in gains else ():
                 yield from self._try(other, guard, factor, pair)
-            for _ in range(PLAINER_ROUNDS):
-                reached = max(self._gains.get((other, guard), {1.0: 0.0}).values())
-                closed = (other, guard) in self._refused - before
-                if reached >= PROMISING * self.goal.wanted and not closed:
-                    yield from self._between((other, guard), pair)
+            yield from self._closer(other, guard, before, pair)
             if self.trials.spent - begun >= PLAINER:
                 return
+        for factor, nearer in FURTHER if odd is Oddness.INNER else ():
+            for other in self._gains.leading(nearer, guard, named(others), -self.slack, inert=True):
+                if self.trials.spent - begun < PLAINER:
+                    yield from self._try(other, guard, factor, pair)
+                    yield from self._closer(other, guard, before, pair)
+
+    def _closer(
+        self, unit: Unit, guard: Guard, closed_before: set[tuple[Unit, Guard]], pair: int
+    ) -> Iterator[Candidate]:
+        """Refine a unit a little if it gained a good share and was not rejected meanwhile."""
+        for _ in range(PLAINER_ROUNDS):
+            closed = (unit, guard) in self._refused - closed_before
+            if self._gains.most((unit, guard)) >= PROMISING * self.goal.wanted and not closed:
+                yield from self._between((unit, guard), pair)
 
     def _expect(self, tries: Iterable[tuple[Unit, Guard, float]], pair: int) -> None:
         """Announce the tries that come next unless a result changes the order."""
@@ -232,20 +238,20 @@ class Sweep:
         for _ in range(REFINEMENTS):
             open_to = [
                 tried
-                for tried in self._gains
-                if self._refined[tried] < REFINED and tried not in self._refused
+                for tried, _ in self._gains.items()
+                if self._refined[tried] < _refinements(tried[0]) and tried not in self._refused
             ]
-            best = max(open_to, key=lambda tried: max(self._gains[tried].values()), default=None)
-            before = max(self._gains[best].values()) if best is not None else 0.0
+            best = max(open_to, key=self._gains.most, default=None)
+            before = self._gains.most(best) if best is not None else 0.0
             if best is None or before <= self.slack:
                 return
             yield from self._between(best, pair)
-            if max(self._gains[best].values()) <= max(before, PROMISING * self.goal.wanted):
+            if self._gains.most(best) <= max(before, PROMISING * self.goal.wanted):
                 return
 
     def _between(self, best: tuple[Unit, Guard], pair: int) -> Iterator[Candidate]:
         """Try an operand between its best factor and that factor's neighbours, on a log scale."""
-        gains = {factor: gain for factor, gain in self._gains[best].items() if factor > 0}
+        gains = {factor: gain for factor, gain in self._gains.of(*best).items() if factor > 0}
         factor = max(gains, key=gains.__getitem__)
         if gains[factor] <= 0:
             return
@@ -274,8 +280,7 @@ class Sweep:
         gain, unit, guard, factor = max(every, key=lambda one: one[0], default=(0.0, None, None, 1.0))
         if unit is None or guard is None or gain <= self.slack:
             return
-        gains = {unit: gains for (unit, held), gains in self._gains.items() if held == guard}
-        yield from self._joining(gains).candidates(Joint(((unit, factor),), guard))
+        yield from self._joining(self._gains.under(guard)).candidates(Joint(((unit, factor),), guard))
 
     def _leaders_together(self, guard: Guard) -> Iterator[Candidate]:
         """Combine the best operands of different sites, each with its best factor, assuming additive main effects.
@@ -283,17 +288,17 @@ class Sweep:
         An operand refused alone is refined again only afterwards: combinations come before its near-duplicates.
         """
         self._refused -= {tried for tried in self._refused if tried[1] == guard}
-        leaders: dict[SiteId, tuple[float, Unit, float]] = {}
-        for (unit, held), gains in self._gains.items():
-            gain, factor = max((gain, factor) for factor, gain in gains.items())
-            site = unit.operands[0].site
-            if held == guard and gain > leaders.get(site, (0.0,))[0]:
-                leaders[site] = gain, unit, factor
-        ranked = sorted(leaders.values(), key=lambda leader: -leader[0])
-        if ranked and ranked[0][0] > self.slack:
-            yield from self._joining({}).unions([(unit, factor) for _, unit, factor in ranked], guard)
+        leaders = self._gains.leaders(guard)
+        if leaders and leaders[0][0] > self.slack:
+            hidden = [unit for unit in self.units if not self._gains.moves(unit)]
+            yield from self._joining({}).unions([part for _, part in leaders], guard, hidden)
 
     def _joining(self, gains: Mapping[Unit, Mapping[float, float]]) -> ForwardSelection:
         return ForwardSelection(
             self.units, self.mutate, self.trials, self.goal, gains, self.slack, self._settled
         )
+
+
+def _refinements(unit: Unit) -> int:
+    """Return how many runs may refine a unit: half as many for an offset of a literal zero."""
+    return REFINED // 2 if writing(unit.operands[0]) is Oddness.OFFSET else REFINED

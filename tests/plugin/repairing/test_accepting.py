@@ -203,11 +203,14 @@ def test_bisection_finds_a_repair_between_too_weak_and_harmful_values(
 
 
 @settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(st.floats(1.5, 4.0), st.floats(1.08, 1.25), st.floats(0.82, 0.94), st.floats(1.15, 1.6))
+@given(st.floats(1.5, 4.0), st.floats(1.1, 1.25), st.floats(0.82, 0.94), st.floats(1.15, 1.6))
 def test_a_narrow_window_between_two_refused_values_is_bisected(
     low: float, width: float, weak: float, strong: float
 ) -> None:
-    """The bisection starts from the value that is known to gain too little, not from the original."""
+    """The bisection starts from the value that is known to gain too little, not from the original.
+
+    Windows are at least 10 % wide, since values within 5 % count as the same candidate.
+    """
     field: Any = Window(low, low * width)
     assert low <= accepted_factor(field, (low * weak, low * width * strong)) <= low * width
 
@@ -231,6 +234,29 @@ def test_a_value_at_the_edge_of_its_window_is_moved_further(low: float, share: f
     """The value holds on the seeds of the search but fails on others, so the factor is increased, not reduced."""
     field: Any = Edge(low, 100.0)
     assert accepted_factor(field, (low * share,)) == pytest.approx((low * share) ** 1.5, rel=1e-3)
+
+
+class Narrow(Window):
+    """One operand that suffices within a window; close beside it, it fails one mission in sixteen."""
+
+    def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+        if candidate == ORIGINAL or drift is None:
+            return Outcome(DESIGNED, passed=True)
+        (mutation,) = candidate.mutations
+        factor = float(mutation.value) / float(mutation.operand.value or 1)
+        easy = seed in KNOWN or seed % 16 != 0
+        near = 0.8 * self.low <= factor <= 1.25 * self.high
+        good = self.low <= factor <= self.high or (easy and near)
+        return Outcome(DESIGNED if good else DRIFTED, passed=good)
+
+
+@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.floats(1.5, 3.5), st.floats(0.9, 0.97))
+def test_a_value_that_lost_few_missions_is_moved_to_one_that_loses_none_of_them(
+    low: float, share: float
+) -> None:
+    field: Any = Narrow(low, 1.25 * low)
+    assert low <= accepted_factor(field, (low * share,)) <= 1.25 * low
 
 
 def test_later_candidates_must_first_pass_the_missions_that_a_refused_one_lost(

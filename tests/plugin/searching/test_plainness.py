@@ -103,6 +103,12 @@ def test_a_narrow_window_near_the_original_is_found_soon(factor: float, smaller:
     assert search.trials.spent <= 60
 
 
+def test_a_named_constant_that_small_steps_do_not_show_is_tried_in_place_of_a_literal() -> None:
+    early = replace(NAMED, span=replace(NAMED.span, line=2, end_line=2))
+    found = restoring({early: 4.0, INNER: 2.2}, window=0.3).candidates()
+    assert [next(found).mutations[0].operand for _ in range(2)] == [early, INNER]
+
+
 def test_named_constants_are_tried_before_literals_and_zeros_last() -> None:
     named_zero = replace(operand(6, "TRIM", 0.0), definition=operand(1, "0.0", 0.0).span)
     unknown = replace(operand(7, "self.k", None), definition=None)

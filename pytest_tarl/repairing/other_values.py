@@ -1,0 +1,107 @@
+"""Other values of a candidate that was examined: further on, beside it, or nearer to the original.
+
+Each way is a generator: it yields what to examine next and is sent what became of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from math import sqrt
+
+from pytest_tarl.errors import RepairError
+from pytest_tarl.model import Guard
+from pytest_tarl.repairing.between import WEAK, Between, factor, stronger
+from pytest_tarl.repairing.centring import in_place, moved, neighbours
+from pytest_tarl.repairing.ledger import Ledger, Tried, operands
+from pytest_tarl.repairing.missed import Missed
+from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.searching.search import Candidate, Trials
+from tarl_lint.model import Operand
+
+POWERS = (1.5, 2.0)  # of the factors of a candidate at the edge of its window
+CLOSE = 1.3  # ratio of two rejected values that have the window between them
+
+OtherValues = Generator[Candidate, Tried, None]
+Place = tuple[frozenset[Operand], Guard]
+
+
+class Others:
+    """Proposes other values, each way once for the same operands and guard."""
+
+    def __init__(self, mutants: Mutants, ledger: Ledger, missed: Missed) -> None:
+        self.mutants = mutants
+        self.ledger = ledger
+        self.missed = missed
+        self._pushed: set[Place] = set()
+        self._bisected: set[Place] = set()
+        self._mended: set[Candidate] = set()
+
+    def beyond(self, candidate: Candidate) -> OtherValues:
+        """Go on in the direction of a candidate that fails here and there: it is at the edge of its window."""
+        place = (operands(candidate), candidate.guard)
+        if place in self._pushed:
+            return
+        self._pushed.add(place)
+        for power in POWERS:
+            moved = stronger(candidate, power, self.mutants.mutate)
+            if moved is None:
+                return
+            examined = yield moved
+            if not examined.fresh or examined.reason not in WEAK:
+                return
+
+    def beside(self, trials: Trials) -> OtherValues:
+        """Move what lost few missions in its test to a value that loses none of them. Raises BudgetSpentError.
+
+        Where a value on the other side was rejected, too, the one between them comes first.
+        """
+        while refused := next((one for one in self.missed.few if one not in self._mended), None):
+            self._mended.add(refused)
+            for other in (*self._between(refused), *neighbours(refused, self.mutants.mutate)):
+                if self.ledger.alike(other) is None and self._mends(other, refused, trials):
+                    yield other
+                    break
+
+    def bracketed(self, candidate: Candidate) -> bool:
+        """Tell whether values on both sides, close by, lost few missions: the window lies here, and it is narrow."""
+        ratios = [ratio_of(candidate, other) for other in self.missed.few]
+        close = [one for one in ratios if one is not None and max(one, 1.0 / one) <= CLOSE]
+        return bool(close) and min(close) < 1.0 < max(close)
+
+    def _between(self, refused: Candidate) -> Iterator[Candidate]:
+        """Yield the value between a rejected one and another rejected one that is close."""
+        for other in self.missed.few:
+            ratio = ratio_of(other, refused)
+            if ratio is not None and 1.0 < max(ratio, 1.0 / ratio) <= CLOSE:
+                middle = moved(refused, sqrt(ratio), self.mutants.mutate)
+                if middle is not None:
+                    yield in_place(middle)
+
+    def _mends(self, other: Candidate, refused: Candidate, trials: Trials) -> bool:
+        try:
+            return self.missed.mends(other, refused, trials, self.mutants.order.goal)
+        except RepairError:
+            return False
+
+    def milder(self, candidate: Candidate) -> OtherValues:
+        """Bisect between the original, which gains too little, and a candidate that breaks the designed world."""
+        known, place = self.ledger.alike(candidate), (operands(candidate), candidate.guard)
+        if known is None or known.reason != "nominal gets worse" or place in self._bisected:
+            return
+        self._bisected.add(place)
+        between = Between(candidate, self.mutants.mutate)
+        for one in self.ledger.tried:
+            if one.candidate.guard == candidate.guard and one.reason in WEAK:
+                between.beyond(one.candidate)
+        while (middle := between.middle()) is not None:
+            examined = yield middle
+            if not between.told(examined.reason):
+                return
+
+
+def ratio_of(one: Candidate, other: Candidate) -> float | None:
+    """Return by what ratio one candidate moves its only operand further than another; None if they differ otherwise."""
+    if one.guard != other.guard or operands(one) != operands(other) or len(one.mutations) != 1:
+        return None
+    mine, its = factor(one.mutations[0]), factor(other.mutations[0])
+    return mine / its if mine is not None and its is not None else None

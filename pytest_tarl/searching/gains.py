@@ -1,0 +1,94 @@
+"""Table of what single units gained, by guard and factor, and the rankings that the sweep reads from it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from pytest_tarl.model import Guard
+from pytest_tarl.searching.units import NEAR, Unit
+from tarl_lint.model import SiteId
+
+Key = tuple[Unit, Guard]
+Part = tuple[Unit, float]  # a unit with a factor
+
+
+class Gains:
+    """Gains in total reward over the unmutated runs of the same seeds.
+
+    A gain of at most `slack` is too small to build upon. With `proposed` the factor 1 is a change of its own.
+    """
+
+    def __init__(self, slack: float, proposed: bool = False) -> None:
+        self.slack = slack
+        self.proposed = proposed
+        self._by_key: dict[Key, dict[float, float]] = {}
+
+    def enter(self, key: Key, factor: float, gain: float) -> None:
+        """Store the gain of a factor."""
+        self._by_key.setdefault(key, {} if self.proposed else {1.0: 0.0})[factor] = gain
+
+    def of(self, unit: Unit, guard: Guard) -> Mapping[float, float]:
+        """Return the gains of a unit under a guard, by factor."""
+        return self._by_key.get((unit, guard), {})
+
+    def most(self, key: Key) -> float:
+        """Return the gain of the best factor."""
+        return max(self._by_key.get(key, {1.0: 0.0}).values())
+
+    def items(self) -> Iterator[tuple[Key, Mapping[float, float]]]:
+        """Yield the gains of each unit and guard, in the order of the first tries."""
+        yield from self._by_key.items()
+
+    def under(self, guard: Guard) -> dict[Unit, Mapping[float, float]]:
+        """Return the gains of all units that were tried under a guard."""
+        return {unit: gains for (unit, held), gains in self._by_key.items() if held == guard}
+
+    def anything(self) -> bool:
+        """Tell whether any gain is large enough to build upon."""
+        return any(max(gains.values()) > self.slack for gains in self._by_key.values())
+
+    def moves(self, unit: Unit) -> bool:
+        """Tell whether a unit ever changed a reward."""
+        return any(any(gains.values()) for (tried, _), gains in self._by_key.items() if tried == unit)
+
+    def moving(self, among: Sequence[Unit]) -> list[Unit]:
+        """Return the units except those moved both ways, under any guard, without changing a reward."""
+        seen: dict[Unit, list[float]] = {}
+        for (unit, _), by_factor in self._by_key.items():
+            seen.setdefault(unit, []).extend(gain for factor, gain in by_factor.items() if factor != 1.0)
+        return [unit for unit in among if len(seen.get(unit, ())) < len(NEAR) or any(seen[unit])]
+
+    def lost_both_ways(self, guard: Guard, among: Sequence[Unit]) -> list[Unit]:
+        """Return the units that lost more than the slack with both near factors."""
+        tried = {unit: self.of(unit, guard) for unit in among}
+        return [u for u, gains in tried.items() if all(gains.get(one, 0.0) < -self.slack for one in NEAR)]
+
+    def leading(
+        self, before: float, guard: Guard, among: Sequence[Unit], least: float, inert: bool = False
+    ) -> list[Unit]:
+        """Return the units that gained at least `least` with the factor `before`, best first.
+
+        Units that never changed a reward are left out, except with `inert`.
+        """
+        gains = {unit: self.of(unit, guard).get(before) for unit in (among if inert else self.moving(among))}
+        kept = [(gain, unit) for unit, gain in gains.items() if gain is not None and gain >= least]
+        return [unit for _, unit in sorted(kept, key=lambda one: -one[0])]
+
+    def best_under(self, guards: Sequence[Guard]) -> list[Part]:
+        """Return the units that gained under any of the guards, each with its best factor, best first."""
+        best: dict[Unit, tuple[float, float]] = {}
+        for (unit, held), gains in self._by_key.items():
+            factor = max(gains, key=gains.__getitem__)
+            if held in guards and gains[factor] > best.get(unit, (0.0, 1.0))[0]:
+                best[unit] = gains[factor], factor
+        return [(unit, best[unit][1]) for unit in sorted(best, key=lambda unit: -best[unit][0])]
+
+    def leaders(self, guard: Guard) -> list[tuple[float, Part]]:
+        """Return the best unit of each site under a guard with its gain and factor, best first."""
+        found: dict[SiteId, tuple[float, Part]] = {}
+        for unit, gains in self.under(guard).items():
+            gain, factor = max((gain, factor) for factor, gain in gains.items())
+            site = unit.operands[0].site
+            if gain > found.get(site, (0.0,))[0]:
+                found[site] = gain, (unit, factor)
+        return sorted(found.values(), key=lambda one: -one[0])

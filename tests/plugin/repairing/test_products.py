@@ -1,0 +1,59 @@
+"""Of the constants of one product a search moves one: a factor on any of them is the same mutant."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from pytest_tarl.repairing.products import one_of_each
+from tarl_lint.api import analyse
+
+NODE = """\
+import rospy
+from std_msgs.msg import Float64
+
+GAIN, MASS, LIMIT, COUNT = 2.0, 3.0, 0.8, 3
+
+
+class Keeper:
+    def __init__(self):
+        self.kp = 1.5
+        self.out = rospy.Publisher("/out", Float64, queue_size=1)
+        rospy.Subscriber("/in", Float64, self.on_in)
+
+    def on_in(self, msg):
+        self.out.publish({use})
+
+
+if __name__ == "__main__":
+    rospy.init_node("keeper")
+    Keeper()
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("use", "same"),
+    [
+        ("GAIN * MASS * msg.data", ["MASS"]),
+        ("-(GAIN * (msg.data * MASS)) * 9.81", ["MASS", "9.81"]),
+        ("GAIN * msg.data / MASS", []),
+        ("GAIN / MASS * self.kp * msg.data", ["self.kp"]),
+        ("GAIN * msg.data + MASS * msg.data", []),
+        ("GAIN * (msg.data + MASS)", []),
+        ("GAIN * (MASS * msg.data + LIMIT * 0.5)", ["0.5"]),
+        ("GAIN * max(-LIMIT, min(LIMIT, msg.data))", []),
+        ("GAIN * abs(MASS * msg.data)", []),
+        ("0.0 * GAIN + msg.data * 0.0", []),
+    ],
+)
+def test_a_factor_of_a_product_stands_for_the_others(use: str, same: list[str], tmp_path: Path) -> None:
+    path = tmp_path / "keeper.py"
+    path.write_text(NODE.format(use=use))
+    analysis = analyse([path], root=tmp_path)
+    operands = list(dict.fromkeys(o for step in analysis.sites for o in analysis.operands(step.site)))
+    operands.sort(key=lambda one: (one.literal, one.span))
+    kept, others = one_of_each(analysis, operands)
+    assert [one.code for one in others] == same
+    assert sorted(map(id, [*kept, *others])) == sorted(map(id, operands))
