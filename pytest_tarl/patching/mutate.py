@@ -198,7 +198,7 @@ class Conditions:
             raise RepairError(
                 f"Sensor {sensor.name!r} cannot be read at {site.text!r} before its first message."
             )
-        return f"({reading.code} or 0.0)" if reading.absent else reading.code
+        return f"{reading.code} or 0.0" if reading.absent else reading.code
 
     def _reading(self, conjunct: Conjunct, source: Document, site: SiteId, place: ast.AST) -> Reading:
         sensor = conjunct.sensor

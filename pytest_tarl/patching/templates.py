@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pytest_tarl.errors import SettingsError
-from pytest_tarl.patching.expressions import ATOM, TERM, enclosed
+from pytest_tarl.patching.expressions import ARITHMETIC, ATOM, TERM, enclosed
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -28,6 +28,7 @@ SCALES = (
 OPERATORS = ("op", "closed", "back")  # of a comparison: its operator, with/without equality, and the way back
 _KEYS = {"summary", "on", "cost", "lines", "expression", "state", "parameters", "example"}
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
+LEADING = {"*": TERM, "+": ARITHMETIC}  # precedence that the first operand of an operator needs
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +114,8 @@ def filled(text: str, values: Mapping[str, str]) -> str:
             return code
         before, after = text[: match.start()].rstrip()[-1:], text[match.end() :].lstrip()[:1]
         free = before in ("", "(", ",") and after in ("", ")", ",")
-        return code if free else enclosed(code, TERM if before in ("", "(", ",") and after == "*" else ATOM)
+        first = before in ("", "(", ",")
+        return code if free else enclosed(code, LEADING.get(after, ATOM) if first else ATOM)
 
     return _PLACEHOLDER.sub(put, text)
 

@@ -18,6 +18,7 @@ from pytest_tarl.repairing.other_values import Others, OtherValues
 from pytest_tarl.repairing.placing import Placing
 from pytest_tarl.repairing.ranges import Ranged, over_the_range
 from pytest_tarl.repairing.regression_tests import NOTHING_BESIDE, Beside, beside
+from pytest_tarl.repairing.smoothing import smoothed
 from pytest_tarl.searching import candidates
 from pytest_tarl.searching.accept import SEEDS, TOO_LITTLE, Acceptance, Outcome, World, accept, risk_of
 from pytest_tarl.searching.plainness import oddness
@@ -149,6 +150,10 @@ class Examiner:
         if problem:
             self._refuse(Refused(candidate, problem))
             return self.ledger.enter(Tried(candidate, problem, ()))
+        for nicer in smoothed(self.order, candidate):
+            examined = self._examined(nicer, trials)
+            if isinstance(examined, Accepted):
+                return examined
         if self.ledger.tests(candidate) >= SHARE and not self.others.bracketed(candidate):
             self.waiting.append(candidate)
             return Tried(candidate, "never tested", ())

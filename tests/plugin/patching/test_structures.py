@@ -168,3 +168,14 @@ def test_a_value_that_is_not_always_evaluated_gets_no_name_before(statement: str
     form = Form(template(SHIPPED / "rate_limit.toml"))
     with pytest.raises(RepairError):
         form_edits(source, source.find(span(before, at)), form, {"step": 0.1}, "", "")
+
+
+@pytest.mark.parametrize(
+    ("expression", "written"),
+    [("margin", "margin + (self.length or 0.0)"), ("2.0 * gap", "2.0 * gap + (self.length or 0.0)")],
+)
+def test_a_sensor_that_may_be_missing_is_in_one_pair_of_parentheses(expression: str, written: str) -> None:
+    source = document("node.py", f"close = gap < {expression}\n")
+    node = source.find(span(source.text, expression))
+    edits = form_edits(source, node, Form(template(SHIPPED / "sum.toml")), {}, "", "self.length or 0.0")
+    assert apply_edits(source, edits) == f"close = gap < {written}\n"

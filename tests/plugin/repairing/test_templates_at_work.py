@@ -127,6 +127,7 @@ MENDED: dict[str, tuple[str, Callable[[], Command]]] = {
     "rate_limit": (VALUE, lambda: kept(rate_limit)),
     "scale": (VALUE, lambda: lambda value, slope: 2 * value * (1.0 + 0.6 * slope)),
     "sign": (VALUE, lambda: lambda value, _: -2 * value),
+    "sum": (VALUE, lambda: lambda value, slope: 2 * value + slope),
     "swapped_axes": (PAIR, lambda: lambda value, slope: slope),
 }
 

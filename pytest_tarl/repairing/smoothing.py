@@ -1,0 +1,87 @@
+"""A change that grows with a sensor, in place of one that jumps where a condition on the sensor becomes true.
+
+`margin + self.length` reads better than `margin * 1.5 if self.length >= 0.3 else margin`, and holds for other lengths.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isfinite
+
+from pytest_tarl.learning.tables import Sample
+from pytest_tarl.model import Conjunct
+from pytest_tarl.patching.mutate import Mutation
+from pytest_tarl.patching.structures import Form
+from pytest_tarl.patching.templates import Template, templates
+from pytest_tarl.repairing.request import Order
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate, effective_value
+from pytest_tarl.sensors import Sensor
+
+SUM, SCALE = "sum", "scale"
+ALIKE = 2.0  # ratio of the change of a constant to the sensor's value, up to which a plain sum is tried
+REST = 0.9  # share of the recorded steps in which the sensor must be about zero
+
+
+def smoothed(order: Order, candidate: Candidate) -> Iterator[Candidate]:
+    """Yield candidates without a condition that add the sensor to the constant, or scale the constant by it.
+
+    Only for one constant, under one condition on a number that is about zero in the designed world.
+    """
+    if len(candidate.guard.conjuncts) != 1 or len(candidate.mutations) != 1:
+        return
+    (conjunct,), (mutation,) = candidate.guard.conjuncts, candidate.mutations
+    value, sensor = mutation.operand.value, conjunct.sensor
+    if not value or isinstance(value, bool) or mutation.form is not None or not _continuous(sensor):
+        return
+    typical = _mean_where(order, conjunct)
+    if not typical or not _rests_at_zero(order, sensor):
+        return
+    known = {one.name: one for one in templates(order.root)}
+    ratio = (effective_value(mutation) - value) / typical
+    if SUM in known and 1 / ALIKE <= ratio <= ALIKE:
+        yield _formed(mutation, Form(known[SUM], sensor=sensor))
+    if SCALE in known:
+        share = float(f"{ratio / value:.2g}")
+        yield _formed(
+            mutation, Form(known[SCALE], defaults=((_parameter(known[SCALE]), share),), sensor=sensor)
+        )
+
+
+def _continuous(sensor: Sensor) -> bool:
+    return sensor.numeric and not sensor.angle and sensor.guardable
+
+
+def _formed(mutation: Mutation, form: Form) -> Candidate:
+    return Candidate((Mutation(mutation.operand, True, form=form),), ALWAYS)
+
+
+def _parameter(template: Template) -> str:
+    return template.parameters[0].name
+
+
+def _mean_where(order: Order, conjunct: Conjunct) -> float | None:
+    """Return a sensor's mean over the compared steps in which a condition on it holds."""
+    bins = [
+        ((low + high) / 2, count)
+        for low, high, count in _bins(order, order.online.recorded.sample, conjunct.sensor)
+        if conjunct.low <= low and high <= conjunct.high and isfinite(high - low)
+    ]
+    steps = sum(count for _, count in bins)
+    return sum(middle * count for middle, count in bins) / steps if steps else None
+
+
+def _rests_at_zero(order: Order, sensor: Sensor) -> bool:
+    """Tell whether a sensor is about zero in nearly all recorded steps."""
+    bins = list(_bins(order, order.fixture.sample, sensor))
+    near = sum(count for low, high, count in bins if low <= 0.0 < high)
+    return near >= REST * sum(count for _, _, count in bins) > 0.0
+
+
+def _bins(order: Order, world: Sample, sensor: Sensor) -> Iterator[tuple[float, float, float]]:
+    """Yield the ends of the sensor's bin and the number of steps of every entry of the chain."""
+    names = [one.name for one in order.comparison.sensors]
+    at = names.index(sensor.name)
+    for cell, count in zip(world.chain.cell.tolist(), world.chain.count.tolist(), strict=True):
+        low, high = sensor.interval(world.cells[cell][at], world.cells[cell][at])
+        yield low, high, count

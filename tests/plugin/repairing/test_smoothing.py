@@ -1,0 +1,72 @@
+"""In place of a jump at a value of a sensor, the sensor itself is added to the constant or scales it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pytest_tarl.model import Conjunct, Guard
+from pytest_tarl.patching.mutate import Mutation, form_values
+from pytest_tarl.repairing.smoothing import smoothed
+from pytest_tarl.searching.candidates import ALWAYS
+from pytest_tarl.searching.search import Candidate
+from pytest_tarl.sensors import Sensor
+from tests.plugin.searching.test_search import operand
+
+TOOL = Sensor("tool", topic="/tool", field="data", low=0, high=1, bins=10)
+NAMED = replace(operand(4, "MARGIN", 0.5), definition=operand(1, "0.5", 0.5).span)
+LONG = Guard((Conjunct(TOOL, 0.3, inf),))
+
+
+def order(designed: int, drifted: int, sensor: Sensor = TOOL) -> Any:
+    """Return an order in which the sensor is always in one bin of each world."""
+
+    def world(place: int) -> Any:
+        chain = SimpleNamespace(cell=np.zeros(3, int), count=np.full(3, 5.0))
+        return SimpleNamespace(cells=[(place,)], chain=chain)
+
+    return SimpleNamespace(
+        root=Path("nowhere"),
+        comparison=SimpleNamespace(sensors=(sensor,)),
+        fixture=SimpleNamespace(sample=world(designed)),
+        online=SimpleNamespace(recorded=SimpleNamespace(sample=world(drifted))),
+    )
+
+
+def names(found: list[Candidate]) -> list[str]:
+    return [one.mutations[0].form.template.name for one in found if one.mutations[0].form is not None]
+
+
+def test_a_sensor_is_added_where_it_is_about_as_large_as_the_change() -> None:
+    found = list(smoothed(order(0, 3), Candidate((Mutation(NAMED, 1.5),), LONG)))  # 0.5 → 0.75 at 0.35
+    assert names(found) == ["sum", "scale"]
+    assert all(one.guard == ALWAYS for one in found)
+    assert form_values(found[1].mutations[0]) == {"share": pytest.approx(0.25 / 0.5 / 0.35, rel=0.05)}
+
+
+@pytest.mark.parametrize("factor", [1.1, 0.5, 5.0])
+def test_a_change_of_another_size_or_direction_is_scaled_only(factor: float) -> None:
+    found = list(smoothed(order(0, 3), Candidate((Mutation(NAMED, factor),), LONG)))
+    assert names(found) == ["scale"]
+
+
+@pytest.mark.parametrize(
+    ("candidate", "designed"),
+    [
+        (Candidate((Mutation(NAMED, 1.5),), ALWAYS), 0),
+        (Candidate((Mutation(NAMED, 1.5),), LONG), 2),
+        (Candidate((Mutation(NAMED, 1.5), Mutation(operand(5, "2.0", 2.0), 3.0)), LONG), 0),
+        (Candidate((Mutation(operand(5, "0.0", 0.0), 1.2),), LONG), 0),
+        (Candidate((Mutation(operand(5, "True", True), value=False),), LONG), 0),
+    ],
+)
+def test_without_a_jump_or_a_sensor_that_rests_at_zero_there_is_nothing_to_smooth(
+    candidate: Candidate, designed: int
+) -> None:
+    assert list(smoothed(order(designed, 3), candidate)) == []
