@@ -27,7 +27,7 @@ from pytest_tarl.learning.sequential import Look, certain, concluded, planned
 from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled, tiled_batch
 from pytest_tarl.logged import read_log
-from pytest_tarl.model import Comparison, ListComparison, Region, Sizes, TaintList
+from pytest_tarl.model import Comparison, FormulaRow, ListComparison, Region, Sizes, TaintList
 from pytest_tarl.options import Options
 from pytest_tarl.recording import Progress, Recorded, Tell, mean_flows, run_episodes, sarsa_tables
 from pytest_tarl.rollout import Rollout
@@ -82,6 +82,7 @@ def run_online(
     chosen = _rows(difference.region, near_half, offline.cells)
     lists = _compared(_current(fixture, plan), tables, chosen)
     ranked = localize.prior((one.slices for one in lists), changeable)
+    notes = (*side.notes, *recorded.notes, *remarks.early(recorded.sample, count))
     comparison = Comparison(
         test=fixture.test,
         drift=drift,
@@ -94,25 +95,23 @@ def run_online(
         paper_region=near_half,
         totals={"offline": tuple(offline.total.tolist()), "online": tuple(online.total.tolist())},
         culprits=localize.culprits(ranked, {}, (), difference.verdict.loss),
-        notes=(
-            *side.notes,
-            *recorded.notes,
-            *remarks.early(recorded.sample, count),
-            *remarks.of_comparison(fixture, plan, offline, online, difference, options),
-        ),
+        notes=(*notes, *remarks.of_comparison(fixture, plan, offline, online, difference, options)),
         parts=parts.means(offline, online),
         lost=parts.lost(offline, online, options.alpha, seeds.generator(options.seed, "parts")),
         changes=difference.changes,
         stated={"offline": fixture.stated} if fixture.stated is not None else {},
-        formulas=judgements.rows(
-            [one.text for one in designation.requirements.formulas],
-            {"offline": offline.judgements, "online": online.judgements},
-        ),
+        formulas=_formulas(designation, offline, online),
         sizes=_sizes(designation, drift, recorded.sample.seeds),
         purpose=designation.purpose,
         permanent=drift is not None and designation.drifts[drift].permanent,
     )
     return Online(comparison, recorded, learned)
+
+
+def _formulas(designation: Designation, offline: Sample, online: Sample) -> tuple[FormulaRow, ...]:
+    """Return the designation's formulas with their results in both worlds."""
+    texts = [one.text for one in designation.requirements.formulas]
+    return judgements.rows(texts, {"offline": offline.judgements, "online": online.judgements})
 
 
 def _lent(tables: Sequence[Tables], offline: Sample, without: Sequence[int]) -> list[Tables]:

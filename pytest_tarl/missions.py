@@ -3,32 +3,30 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pytest_tarl.comparing import Online, run_online
-from pytest_tarl.corrected_verdicts import corrected
+from pytest_tarl.accounts import Account, Compared
+from pytest_tarl.comparing import run_online
 from pytest_tarl.design import AS_WRITTEN, fixture_path, replaced
 from pytest_tarl.designation import Designation
 from pytest_tarl.errors import AnalysisError, FixtureError, SettingsError
 from pytest_tarl.files import slug, write_atomically
 from pytest_tarl.instrumentation.sites import Plan, plan
-from pytest_tarl.keeping import by_hand, keep
 from pytest_tarl.learning import fixture as fixtures
 from pytest_tarl.learning.binning import learned_edges
 from pytest_tarl.learning.drift import tolerated
 from pytest_tarl.learning.fixture import Fixture
-from pytest_tarl.model import Comparison, Repair
+from pytest_tarl.model import Repair
 from pytest_tarl.modules_of_tests import Digests, digests, remark
 from pytest_tarl.options import Options
 from pytest_tarl.recording import Progress, Tell, read_values, record
 from pytest_tarl.repairing.repair import repair
 from pytest_tarl.repairing.request import Neighbour, Order
 from pytest_tarl.repeating import Instruments
-from pytest_tarl.report import ci, guarantees, table, terminal, words
-from pytest_tarl.report.table import Row
+from pytest_tarl.report import guarantees
 from pytest_tarl.rollout import Rollout
 from pytest_tarl.sensors import Sensor, declared, with_edges
 from pytest_tarl.unrecorded_nodes import silent_files
@@ -36,20 +34,6 @@ from tarl_lint.api import Analysis, analyse
 
 RolloutWith = Callable[[Instruments, tuple[Sensor, ...]], Rollout]
 IGNORED = "# Commit only the recorded utility.\n*\n!.gitignore\n!utility/\n!utility/**\nutility/.*\n"
-
-
-@dataclass(frozen=True)
-class Account:
-    """The report of a mode: summary lines, the test's failure, the patch to apply, and CI annotations."""
-
-    lines: tuple[str, ...]
-    problem: str = ""
-    patch: Path | None = None
-    interrupted: bool = False
-    properties: tuple[tuple[str, str], ...] = ()
-    annotation: str = ""
-    row: Row = ()
-    unrecorded: bool = False  # whether the test has no recording to compare with
 
 
 @dataclass(frozen=True)
@@ -258,7 +242,8 @@ class Mission:
             *self._design_lost(fixture),
         )
         told = replace(comparison, target=self.target, flags=self.options.flags, notes=notes)
-        return Compared(self, told, online, episodes, interrupted)
+        name = f"{slug(self.test)}-{slug(self.drift or 'online')}"
+        return Compared(name, self.root, self.width, told, online, episodes, interrupted)
 
     def _design_lost(self, fixture: Fixture) -> Iterator[str]:
         """Return a note if a scenario replaces the design instead of changing it."""
@@ -317,45 +302,6 @@ class Mission:
         if not ignore.exists():
             with suppress(OSError):  # writing the other files reports the same problem
                 write_atomically(ignore, IGNORED.encode())
-
-
-@dataclass(frozen=True)
-class Compared:
-    """A finished comparison, ready to be reported as it is or corrected over all tests."""
-
-    mission: Mission
-    comparison: Comparison
-    online: Online
-    episodes: Mapping[str, int]
-    interrupted: bool = False
-
-    def told(self) -> Account:
-        """Write result, sample and page, and return the report."""
-        mission, comparison = self.mission, self.comparison
-        name = f"{slug(mission.test)}-{slug(mission.drift or 'online')}"
-        kept = keep(comparison, self.online, self.episodes, mission.root, name)
-        lines = terminal.lines(comparison, width=mission.width, root=mission.root, page=kept.page)
-        notes = [*kept.missing, *kept.unwritten, *by_hand(comparison.repair)]
-        degraded = comparison.verdict.result == "degraded"
-        written = comparison.repair.patch if comparison.repair else ""
-        return Account(
-            lines=(*lines, *notes),
-            problem=f"degraded: {words.verdict_sentence(comparison)}" if degraded else "",
-            patch=mission.root / written if written else None,
-            properties=(
-                *ci.properties(comparison),
-                *(("tarl_unwritten", one.strip()) for one in kept.unwritten),
-            ),
-            annotation=ci.annotation(comparison, mission.root),
-            row=table.row(comparison),
-            interrupted=self.interrupted,
-        )
-
-
-def jointly(compared: Sequence[Compared], alpha: float) -> list[Compared]:
-    """Return the runs with verdicts corrected over all of them."""
-    judged = corrected([one.comparison for one in compared], alpha)
-    return [replace(one, comparison=comparison) for one, comparison in zip(compared, judged, strict=True)]
 
 
 @contextmanager

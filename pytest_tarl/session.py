@@ -32,7 +32,8 @@ from pytest_tarl.summary import Summary, attach
 if TYPE_CHECKING:
     from _pytest.terminal import TerminalReporter
 
-    from pytest_tarl.missions import Account, Compared, Other
+    from pytest_tarl.accounts import Account, Compared
+    from pytest_tarl.missions import Other
     from pytest_tarl.repairing.merge_patches import Joined
     from pytest_tarl.rollout import Rollout
 
@@ -126,7 +127,7 @@ class TarlSession:
 
     def _tell(self) -> None:
         """Log the tests that have run; with --tarl-holm, only once all of them have."""
-        from pytest_tarl.missions import Compared, jointly
+        from pytest_tarl.accounts import Compared, jointly
 
         ended, self._ended = self._ended, []
         if self.options.holm:
@@ -173,7 +174,8 @@ class TarlSession:
         return joined(patches, self.config.invocation_params.dir)
 
     def _run(self, item: pytest.Function) -> Account | Compared:
-        from pytest_tarl.missions import Account, Mission, NoFixtureError
+        from pytest_tarl.accounts import Account
+        from pytest_tarl.missions import Mission, NoFixtureError
 
         marked = designated(item)
         if marked is None:
@@ -283,7 +285,7 @@ class _Ended:
         item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
 
     def _report(self) -> pytest.TestReport:
-        from pytest_tarl.missions import Account
+        from pytest_tarl.accounts import Account
 
         report = pytest.TestReport.from_item_and_call(self.item, self.call)
         account, error = self.outcome, self.call.excinfo.value if self.call.excinfo else None

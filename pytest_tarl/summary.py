@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import pytest
     from _pytest.terminal import TerminalReporter
 
-    from pytest_tarl.missions import Account
+    from pytest_tarl.accounts import Account
 
 ACCOUNT = "tarl_account"  # attribute of a report; plain values, so that xdist carries it
 

@@ -64,23 +64,35 @@ def form_edits(
         states[name] = free(f"{name}_{_short(statement, node)}", taken)
         taken.add(states[name])
         fill[name] = keeper.prefix + states[name]
-    found = list(_written(source, statement, node, form, fill, condition))
+    found = _written(_Place(source, statement, node, form, condition), fill)
     if keeper is not None:
         found += _state_edits(keeper, [(states[name], initial) for name, initial in made.state])
     return found
 
 
-def _written(
-    source: Document,
-    statement: ast.stmt,
-    node: ast.expr,
-    form: Form,
-    fill: Mapping[str, str],
-    condition: str,
-) -> list[Edit]:
-    made, code = form.template, source.source(node)
+@dataclass(frozen=True)
+class _Place:
+    """An expression that a form changes, in its statement; `condition` is the guard as Python, or empty."""
+
+    source: Document
+    statement: ast.stmt
+    node: ast.expr
+    form: Form
+    condition: str
+
+    def named(self, name: str, fill: Mapping[str, str]) -> tuple[list[str], str]:
+        """Return the lines that a form needs for a value of this name, and what stands for the value after them."""
+        fill = {**fill, "x": name}
+        new = filled(self.form.template.expression, fill)
+        lines = [filled(line, fill) for line in self.form.template.lines]
+        return lines, choice(self.condition, new, name) if self.condition else new
+
+
+def _written(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
+    source, node, made = place.source, place.node, place.form.template
+    code = source.source(node)
     if made.on == "pair":
-        return _swapped(source, node, form, condition)
+        return _swapped(source, node, place.form, place.condition)
     if made.on == "comparison":
         left, op, right = _compared(code)
         if not op:
@@ -89,62 +101,42 @@ def _written(
         fill = {**fill, "left": left, "op": op, "right": right, "closed": _CLOSED[op], "back": back}
     again = made.uses("x") > 1 or bool(made.lines)
     if again and made.on != "comparison" and not isinstance(node, ast.Name | ast.Attribute):
-        if _target(statement) is not None and statement.value is node:  # type: ignore[attr-defined]
-            return _behind(source, statement, node, form, fill, condition)
-        return _ahead(source, statement, node, form, fill, condition)
-    fill = {**fill, "x": code}
-    if made.lines and not _can_stand_before(source, statement):
+        if _target(place.statement) is not None and place.statement.value is node:  # type: ignore[attr-defined]
+            return _behind(place, fill)
+        return _ahead(place, fill)
+    if made.lines and not _can_stand_before(source, place.statement):
         raise RepairError(f"{source.path}:{node.lineno}: no line can be inserted before this one.")
-    start, indent = source.start(statement), source.indentation(statement)
-    before = [Edit(start, start, f"{filled(line, fill)}\n{indent}") for line in made.lines]
-    new = filled(made.expression, fill)
-    text = choice(condition, new, code) if condition else new
+    lines, text = place.named(code, fill)
+    start, indent = source.start(place.statement), source.indentation(place.statement)
+    before = [Edit(start, start, f"{line}\n{indent}") for line in lines]
     return [*before, Edit(source.start(node), source.end(node), fitted(source, node, text))]
 
 
-def _behind(
-    source: Document,
-    statement: ast.stmt,
-    node: ast.expr,
-    form: Form,
-    fill: Mapping[str, str],
-    condition: str,
-) -> list[Edit]:
+def _behind(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
     """Change a value after the statement that assigns it to a name."""
+    source, statement = place.source, place.statement
     target = _target(statement)
-    if target is None or statement.value is not node or not source.alone(statement):  # type: ignore[attr-defined]
-        raise RepairError(f"{source.path}:{node.lineno}: the value is not assigned to a name.")
+    if target is None or statement.value is not place.node or not source.alone(statement):  # type: ignore[attr-defined]
+        raise RepairError(f"{source.path}:{place.node.lineno}: the value is not assigned to a name.")
     name = source.source(target)
-    fill = {**fill, "x": name}
-    new = filled(form.template.expression, fill)
-    lines = [filled(line, fill) for line in form.template.lines]
-    lines.append(f"{name} = {choice(condition, new, name) if condition else new}")
+    lines, text = place.named(name, fill)
     indent, end = source.indentation(statement), source.line_end(statement)
-    return [Edit(end, end, "".join(f"\n{indent}{line}" for line in lines))]
+    return [Edit(end, end, "".join(f"\n{indent}{line}" for line in (*lines, f"{name} = {text}")))]
 
 
-def _ahead(
-    source: Document,
-    statement: ast.stmt,
-    node: ast.expr,
-    form: Form,
-    fill: Mapping[str, str],
-    condition: str,
-) -> list[Edit]:
+def _ahead(place: _Place, fill: Mapping[str, str]) -> list[Edit]:
     """Assign an unnamed value, as in `return a * b`, to a new name before the statement and change it there."""
+    source, statement, node = place.source, place.statement, place.node
     if not _can_stand_before(source, statement) or not _always_evaluated(source, statement, node):
         raise RepairError(
             f"{source.path}:{node.lineno}: the value cannot be assigned to a name before this line."
         )
     code = source.source(node)
     name = free(_short(statement, node), set(names(source)))
-    fill = {**fill, "x": name}
-    lines = [f"{name} = ({code})" if "\n" in code else f"{name} = {code}"]
-    lines += [filled(line, fill) for line in form.template.lines]
-    new = filled(form.template.expression, fill)
-    text = choice(condition, new, name) if condition else new
+    lines, text = place.named(name, fill)
     start, indent = source.start(statement), source.indentation(statement)
-    before = "".join(f"{line}\n{indent}" for line in lines)
+    first = f"{name} = ({code})" if "\n" in code else f"{name} = {code}"
+    before = "".join(f"{line}\n{indent}" for line in (first, *lines))
     return [
         Edit(start, start, before),
         Edit(source.start(node), source.end(node), fitted(source, node, text)),
