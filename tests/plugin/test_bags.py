@@ -61,7 +61,7 @@ def test_missions_in_a_drifted_world_are_degraded_in_every_format(
     told.stdout.no_fnmatch_line("*--tarl-repair*")
 
 
-def test_missions_in_the_designed_world_pass_even_a_single_one(deployed: pytest.Pytester) -> None:
+def test_missions_in_the_nominal_world_pass_even_a_single_one(deployed: pytest.Pytester) -> None:
     online(deployed, *some(deployed, ".mcap", 1.0)).assert_outcomes(passed=1, deselected=1)
     assert result(deployed)["verdict"]["result"] == "no difference"
     online(deployed, deployed.path / "mission0.mcap").assert_outcomes(passed=1, deselected=1)
@@ -69,7 +69,7 @@ def test_missions_in_the_designed_world_pass_even_a_single_one(deployed: pytest.
 
 
 @pytest.mark.parametrize(("ending", "share"), [(".bag", 0.6), (".mcap", 0.6), (".db3", 0.9)])
-def test_of_a_bag_that_was_cut_off_the_beginning_counts_and_it_is_said(
+def test_a_truncated_bag_is_used_up_to_the_damage_with_a_note(
     deployed: pytest.Pytester, ending: str, share: float
 ) -> None:
     (bag,) = some(deployed, ending, 1.0, 1)
@@ -89,7 +89,7 @@ def test_a_recording_without_its_metadata_is_read_from_its_files(deployed: pytes
     told.stdout.fnmatch_lines(["*killed was cut off: its first * s with 50 messages count*"])
 
 
-def test_a_bag_of_which_nothing_can_be_read_takes_no_part(deployed: pytest.Pytester) -> None:
+def test_an_unreadable_bag_is_skipped(deployed: pytest.Pytester) -> None:
     (bag,) = some(deployed, ".bag", 1.0, 1)
     torn = deployed.path / "torn.bag"
     torn.write_bytes(bag.read_bytes()[:40])
@@ -114,7 +114,7 @@ def test_a_sensor_topic_that_is_missing_or_of_another_type_is_named(deployed: py
     assert "single.mcap has std_msgs/msg/Float32 on /level" in text
 
 
-def test_topics_that_only_the_node_listens_to_may_be_missing_or_of_another_type(
+def test_subscribed_topics_may_be_missing_or_of_another_type(
     deployed: pytest.Pytester,
 ) -> None:
     listens = 'rospy.Subscriber("/level", Float64, on_level)'
@@ -129,7 +129,7 @@ def test_topics_that_only_the_node_listens_to_may_be_missing_or_of_another_type(
     assert "/lamp was not replayed: the bag has std_msgs/msg/Bool there, the node subscribes to it as" in text
 
 
-def test_what_the_node_says_itself_is_not_replayed_but_the_monitor_may_read_it(
+def test_the_nodes_own_topics_are_not_replayed_but_readable_by_the_monitor(
     deployed: pytest.Pytester,
 ) -> None:
     changed(deployed, "test_tank", MONITOR, "    monitor=Watch,\n")
@@ -148,7 +148,9 @@ def test_what_the_node_says_itself_is_not_replayed_but_the_monitor_may_read_it(
     assert found["sites"][0]["online"] != 0  # the node ran
 
 
-def test_without_a_monitor_the_judge_is_asked_and_without_both_it_is_said(deployed: pytest.Pytester) -> None:
+def test_without_a_monitor_the_judge_is_used_and_without_both_there_is_an_error(
+    deployed: pytest.Pytester,
+) -> None:
     judge = "    judge=lambda before, after: -abs(1.0 - after['level']),\n"
     changed(deployed, "test_tank", MONITOR, judge)
     bags = some(deployed, ".bag", CLOGGED)
@@ -158,7 +160,7 @@ def test_without_a_monitor_the_judge_is_asked_and_without_both_it_is_said(deploy
     online(deployed, *bags).stdout.fnmatch_lines(["*A bag holds no rewards: give the marker monitor=*"])
 
 
-def test_a_test_that_never_steps_cannot_be_given_a_bag(deployed: pytest.Pytester) -> None:
+def test_a_test_that_never_steps_cannot_replay_a_bag(deployed: pytest.Pytester) -> None:
     changed(deployed, "test_tank", "range(25)", "range(0)")
     told = online(deployed, *some(deployed, ".bag", 1.0, 1))
     told.stdout.fnmatch_lines(["*mission0.bag was not replayed: the test ended before its first tarl.step*"])
@@ -175,12 +177,12 @@ def test_bags_give_the_same_result_in_workers(deployed: pytest.Pytester) -> None
 @pytest.mark.parametrize(
     "flag", ["--tarl-repair", "--tarl-drift=clogged", "--tarl-episodes=5", "--tarl-ros=real"]
 )
-def test_what_needs_a_world_to_run_again_excludes_bags(deployed: pytest.Pytester, flag: str) -> None:
+def test_options_that_run_the_world_exclude_bags(deployed: pytest.Pytester, flag: str) -> None:
     told = online(deployed, deployed.path / "m.bag", also=[flag])
     told.stderr.fnmatch_lines([f"*--tarl-bag*{flag.partition('=')[0]}*"])
 
 
-def test_a_bag_that_is_not_there_or_is_none_is_said(deployed: pytest.Pytester) -> None:
+def test_a_missing_or_invalid_bag_is_refused(deployed: pytest.Pytester) -> None:
     online(deployed, deployed.path / "m.bag").stdout.fnmatch_lines(["*m.bag: no such bag*"])
     online(deployed, deployed.path / "keeper.py").stdout.fnmatch_lines(
         ["*keeper.py is not a bag: --tarl-bag takes*"]

@@ -12,7 +12,7 @@ TINY = 1e-300
 
 @dataclass(frozen=True)
 class World:
-    """Signals at the instants 0, 1, …, end; what lies outside is what was at the nearest end."""
+    """Signals at the instants 0, 1, …, end; outside, they have the value at the nearest end."""
 
     signals: Mapping[str, Sequence[float]]
     end: int
@@ -84,7 +84,7 @@ def boolean(kind: str, a: float, b: float) -> float:
 
 
 def true(tree: Tree, world: World) -> list[bool]:
-    """Return whether a formula holds at every instant: no robustness, no trick with equality."""
+    """Return whether a formula holds, for every instant, without using robustness."""
     kind = tree[0]
     times = range(world.end + 1)
     if kind in ("<", "<=", ">", ">=", "==", "!="):
@@ -125,7 +125,7 @@ def true(tree: Tree, world: World) -> list[bool]:
 
 
 def text(tree: Tree, unit: str, size: float = 1) -> str:
-    """Write a formula as a user does; bounds are numbers of instants, which are `size` units apart."""
+    """Return a formula in the user's syntax; bounds are numbers of instants, which are `size` units apart."""
     kind = tree[0]
     if kind in ("<", "<=", ">", ">=", "==", "!="):
         return f"({tree[1]} {kind} {tree[2]:g})"

@@ -1,4 +1,4 @@
-"""What formulas mean, held against the definition on made formulas and signals."""
+"""The semantics of formulas, compared with the definition on generated formulas and signals."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def nested(inner: st.SearchStrategy[oracle.Tree]) -> st.SearchStrategy[oracle.Tr
 
 
 trees = st.recursive(comparisons, nested, max_leaves=5)
-# `since` and timed `until` have a left side that counts up to the very nanosecond
+# the left side of `since` and timed `until` counts to the exact nanosecond
 untied = trees.filter(
     lambda tree: not {"since", "until["} & set(re.findall(r"since|until\[", oracle.text(tree, "")))
 )
@@ -42,7 +42,7 @@ untied = trees.filter(
 
 @st.composite
 def worlds(draw: st.DrawFn) -> oracle.World:
-    """Draw signals that change now and then, at instants of their own."""
+    """Draw signals that each change at their own instants."""
     end = draw(st.integers(0, 8))
     signals = {}
     for name in NAMES:
@@ -62,7 +62,7 @@ def samples(world: oracle.World, apart: int = 1) -> dict[str, Samples]:
 
 
 def read(tree: oracle.Tree, unit: str = "ns", size: float = 1) -> Formula | None:
-    """Read a formula that can be judged; those that cannot have tests of their own."""
+    """Parse a formula; None if it can never be judged, which other tests cover."""
     try:
         return formula("here", oracle.text(tree, unit, size), NAMES)
     except SettingsError as problem:
@@ -73,7 +73,7 @@ def read(tree: oracle.Tree, unit: str = "ns", size: float = 1) -> Formula | None
 
 @settings(max_examples=400, deadline=None)
 @given(trees, worlds())
-def test_robustness_is_what_the_definition_says(tree: oracle.Tree, world: oracle.World) -> None:
+def test_robustness_equals_the_definition(tree: oracle.Tree, world: oracle.World) -> None:
     read_formula = read(tree)
     if read_formula is not None:
         found = robustness(course(read_formula, samples(world)), world.end)
@@ -82,7 +82,7 @@ def test_robustness_is_what_the_definition_says(tree: oracle.Tree, world: oracle
 
 @settings(max_examples=200, deadline=None)
 @given(untied, worlds(), st.sampled_from([("s", 0.5), ("ms", 250), ("", 2)]))
-def test_time_between_changes_makes_no_difference(
+def test_robustness_does_not_depend_on_the_time_scale(
     tree: oracle.Tree, world: oracle.World, scale: tuple[str, float]
 ) -> None:
     unit, size = scale
@@ -104,7 +104,7 @@ def test_the_sign_of_robustness_is_truth(tree: oracle.Tree, world: oracle.World)
 
 @settings(max_examples=300, deadline=None)
 @given(trees, worlds())
-def test_running_robustness_is_that_of_what_was_known(tree: oracle.Tree, world: oracle.World) -> None:
+def test_running_robustness_equals_robustness_of_each_prefix(tree: oracle.Tree, world: oracle.World) -> None:
     read_formula = read(tree)
     if read_formula is None:
         return
@@ -118,7 +118,7 @@ def test_running_robustness_is_that_of_what_was_known(tree: oracle.Tree, world: 
 
 @settings(max_examples=300, deadline=None)
 @given(trees, worlds(), worlds())
-def test_what_is_lost_is_lost_whatever_follows(
+def test_a_lost_formula_is_violated_by_every_continuation(
     tree: oracle.Tree, world: oracle.World, following: oracle.World
 ) -> None:
     read_formula = read(tree)

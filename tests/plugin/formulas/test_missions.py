@@ -1,4 +1,4 @@
-"""Formulas over missions that were not run here: bags and logs."""
+"""Formulas over recorded missions: bags and logs."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def rows(tank: pytest.Pytester) -> dict[str, dict[str, Any]]:
 
 
 @pytest.mark.parametrize("more", ["", 'reward="robustness",'])
-def test_bags_are_judged_by_what_they_hold_and_what_the_monitor_observes(
+def test_bags_are_judged_by_their_topics_and_the_monitors_observations(
     tank: pytest.Pytester, more: str
 ) -> None:
     required(tank, more)
@@ -58,7 +58,7 @@ def test_bags_are_judged_by_what_they_hold_and_what_the_monitor_observes(
     assert found[KEEPS]["online"]["violated"] == 0
 
 
-def test_a_bag_without_an_observed_signal_is_told(tank: pytest.Pytester) -> None:
+def test_a_bag_without_an_observed_signal_is_reported(tank: pytest.Pytester) -> None:
     required(tank)
     changed(
         tank,
@@ -77,7 +77,7 @@ UPPER = "always (level < 0.6)"
 
 @pytest.fixture
 def observed(tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The project recorded with formulas, and missions of it observed: 0.6 is reached by some of them."""
+    """A project recorded with formulas, and observed missions, some of which reach 0.6."""
     valve = 'Signal("flow", topic="/valve", field="data")'
     asked = (
         f'requires=["{UPPER} or eventually (level > 0)", "always (flow > -1)"], signals=[{valve}, "unheard"],'
@@ -91,7 +91,7 @@ def observed(tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tank.path / ".tarl/missions.log"
 
 
-def test_logs_are_judged_by_every_change_that_was_written_down(tank: pytest.Pytester, observed: Path) -> None:
+def test_logs_are_judged_by_every_recorded_change(tank: pytest.Pytester, observed: Path) -> None:
     changed(tank, "test_tank", f"{UPPER} or eventually (level > 0)", UPPER)
     told = tank.runpytest("-q", "--tarl-online", f"--tarl-log={observed}")
     found = rows(tank)
@@ -103,7 +103,9 @@ def test_logs_are_judged_by_every_change_that_was_written_down(tank: pytest.Pyte
     )
 
 
-def test_a_formula_over_what_no_log_holds_is_left_out_and_told(tank: pytest.Pytester, observed: Path) -> None:
+def test_a_formula_over_signals_missing_in_logs_is_skipped_with_a_note(
+    tank: pytest.Pytester, observed: Path
+) -> None:
     changed(tank, "test_tank", "always (flow > -1)", "always (unheard > 0)")
     told = tank.runpytest("-q", "--tarl-online", f"--tarl-log={observed}")
     text = " ".join(told.stdout.str().split())

@@ -1,4 +1,4 @@
-"""Signals that a test observes need no declaration: their names stand in its source."""
+"""Signals that a test observes need no declaration: their names are read from its source."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def project(folder: Path, **files: str) -> Path:
     return folder
 
 
-def test_names_are_read_from_the_test_and_what_it_imports(tmp_path: Path) -> None:
+def test_names_are_read_from_the_test_and_its_imports(tmp_path: Path) -> None:
     project(
         tmp_path,
         test_robot=TEST,
@@ -56,7 +56,7 @@ def test_names_are_read_from_the_test_and_what_it_imports(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     "call", ["tarl.observe(**values)", "tarl.observe(**{name: 1})", "tarl.observe(**{**a})"]
 )
-def test_names_that_are_computed_are_noticed(tmp_path: Path, call: str) -> None:
+def test_computed_names_are_detected(tmp_path: Path, call: str) -> None:
     project(tmp_path, test_robot=f"def test_drives(tarl):\n    {call}\n")
     assert said("test_robot.py::test_drives", tmp_path).computed
 
@@ -64,13 +64,13 @@ def test_names_that_are_computed_are_noticed(tmp_path: Path, call: str) -> None:
 @pytest.mark.parametrize(
     "text", ["def test_drives(tarl): pass", "tarl.observe(", "", "tarl.observe(gap=1)\0"]
 )
-def test_a_source_that_says_nothing_or_is_none_says_nothing(tmp_path: Path, text: str) -> None:
+def test_an_empty_or_invalid_source_observes_nothing(tmp_path: Path, text: str) -> None:
     project(tmp_path, test_robot=text)
     assert said("test_robot.py::test_drives", tmp_path) == NOTHING_SAID
     assert said("gone.py::test_drives", tmp_path) == NOTHING_SAID
 
 
-def test_the_source_is_read_and_never_run(tmp_path: Path) -> None:
+def test_the_source_is_parsed_but_never_run(tmp_path: Path) -> None:
     project(
         tmp_path, test_robot=f"open({str(tmp_path / 'ran')!r}, 'w')\ndef test_drives(tarl): tarl.observe(a=1)"
     )

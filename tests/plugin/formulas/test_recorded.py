@@ -1,4 +1,4 @@
-"""Formulas over many episodes: in the fixture, in comparisons, as the reward."""
+"""Formulas over many episodes: in recordings, in comparisons, as the reward."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def recorded(tank: pytest.Pytester) -> Path:
     return path
 
 
-def test_the_fixture_keeps_robustness_by_episode(tank: pytest.Pytester) -> None:
+def test_the_recording_contains_robustness_by_episode(tank: pytest.Pytester) -> None:
     required(tank)
     tank.runpytest("-q", *RECORD).assert_outcomes(passed=1, deselected=1)
     judged = fixtures.load(recorded(tank)).sample.judgements
@@ -49,7 +49,7 @@ def test_the_fixture_keeps_robustness_by_episode(tank: pytest.Pytester) -> None:
     assert np.isnan(judged.lost).all()
 
 
-def test_workers_give_the_same_bytes(tank: pytest.Pytester) -> None:
+def test_workers_give_an_identical_recording(tank: pytest.Pytester) -> None:
     required(tank)
     tank.runpytest("-q", *RECORD).assert_outcomes(passed=1, deselected=1)
     alone = recorded(tank).read_bytes()
@@ -57,7 +57,7 @@ def test_workers_give_the_same_bytes(tank: pytest.Pytester) -> None:
     assert recorded(tank).read_bytes() == alone
 
 
-def test_a_fixture_without_formulas_is_as_before(tank: pytest.Pytester) -> None:
+def test_a_recording_without_formulas_is_unchanged(tank: pytest.Pytester) -> None:
     tank.runpytest("-q", *RECORD).assert_outcomes(passed=1, deselected=1)
     with np.load(recorded(tank), allow_pickle=False) as archive:
         header = json.loads(archive[fixtures.HEADER].tobytes().decode())
@@ -66,7 +66,7 @@ def test_a_fixture_without_formulas_is_as_before(tank: pytest.Pytester) -> None:
     assert fixtures.load(recorded(tank)).sample.judgements is None
 
 
-def test_a_comparison_has_a_row_a_formula(tank: pytest.Pytester) -> None:
+def test_a_comparison_has_one_row_per_formula(tank: pytest.Pytester) -> None:
     required(tank)
     tank.runpytest("-q", *RECORD)
     result = tank.runpytest("-q", *ONLINE)
@@ -85,7 +85,7 @@ def test_a_comparison_has_a_row_a_formula(tank: pytest.Pytester) -> None:
     assert "eventually[0:2.4] (level &gt; 0.9)" in page.read_text()
 
 
-def test_a_formula_that_fails_off_line_keeps_the_fixture_from_being_written(tank: pytest.Pytester) -> None:
+def test_a_formula_violated_while_recording_prevents_the_recording(tank: pytest.Pytester) -> None:
     required(tank)
     changed(tank, "test_tank", "[0:2.4]", "[0:0.2]")
     result = tank.runpytest("-q", *RECORD)
@@ -96,7 +96,7 @@ def test_a_formula_that_fails_off_line_keeps_the_fixture_from_being_written(tank
     assert not list(tank.path.glob(".tarl/utility/*.npz"))
 
 
-def test_a_formula_that_no_episode_is_long_enough_for_is_told(tank: pytest.Pytester) -> None:
+def test_a_formula_too_long_for_every_episode_is_reported(tank: pytest.Pytester) -> None:
     required(tank)
     changed(tank, "test_tank", "[0:2.4]", "[20:24]")
     result = tank.runpytest("-q", *RECORD)
@@ -132,7 +132,7 @@ def test_the_rewards_of_steps_add_up_within_the_cap(values: list[float], cap: fl
     assert sum(rewards) == pytest.approx(max(-cap, min(cap, final)), abs=1e-9)
 
 
-def test_episodes_that_could_not_be_judged_do_not_count() -> None:
+def test_unjudged_episodes_are_ignored() -> None:
     judge = Judge(("x",), [formula("here", "always[3:4] (x > 0)", ("x",))])
     judge.give("x", 2.0, 0)
     short, long = judge.conclude(10**9), judge.conclude(4 * 10**9)

@@ -1,4 +1,4 @@
-"""Requirements as formulas, as a user meets them: markers, `tarl.require`, the message of a violation."""
+"""Requirements as formulas, end to end: markers, `tarl.require`, messages of violations."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_a_formula_that_holds_is_silent(pytester: pytest.Pytester, marker: str) 
     result.assert_outcomes(passed=1)
 
 
-def test_a_violation_tells_formula_time_and_signals(pytester: pytest.Pytester) -> None:
+def test_a_violation_names_formula_time_and_signals(pytester: pytest.Pytester) -> None:
     result = run(pytester, 'requires=["always (gap > 0.5)", "always (wet < 0)"], signals=["gap"]')
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(
@@ -75,13 +75,13 @@ def test_a_violation_tells_formula_time_and_signals(pytester: pytest.Pytester) -
     result.stdout.no_fnmatch_line("*episode.py*")
 
 
-def test_a_deadline_is_lost_when_it_passes_and_not_before(pytester: pytest.Pytester) -> None:
+def test_a_deadline_is_violated_when_it_passes_and_not_before(pytester: pytest.Pytester) -> None:
     result = run(pytester, 'requires=["eventually[0:1.5] (wet > 0)"]', "tarl.reward(1.0)")
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["requirement violated at 1.5 s: eventually[[]0:1.5] (wet > 0) *"])
 
 
-def test_a_body_that_fails_by_itself_tells_its_own_reason(pytester: pytest.Pytester) -> None:
+def test_a_failing_test_body_is_reported_with_its_own_reason(pytester: pytest.Pytester) -> None:
     result = run(
         pytester, 'requires=["always (gap > 0.9)"], signals=["gap"]', f"{OBSERVE}; assert gap > 0.8, 'own'"
     )
@@ -97,7 +97,7 @@ def test_require_adds_a_formula(pytester: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(["requirement violated at 2.7 s: always (gap > 0.5) *"])
 
 
-def test_require_finds_its_signals_without_any_word_in_the_marker(pytester: pytest.Pytester) -> None:
+def test_require_finds_its_signals_without_the_marker(pytester: pytest.Pytester) -> None:
     result = run(pytester, "", f'{OBSERVE}; step == 4 and tarl.require("always (gap > 0.5)")')
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["requirement violated at 2.7 s: always (gap > 0.5) *"])
@@ -240,16 +240,14 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize(("marker", "body", "sentence"), MISTAKES.values(), ids=MISTAKES)
-def test_a_mistake_is_told_in_a_sentence(
-    pytester: pytest.Pytester, marker: str, body: str, sentence: str
-) -> None:
+def test_a_mistake_gives_a_sentence(pytester: pytest.Pytester, marker: str, body: str, sentence: str) -> None:
     result = run(pytester, marker, body)
     assert result.parseoutcomes().keys() & {"failed", "errors", "error"}
     assert sentence in told(result)
     assert "Traceback" not in result.stdout.str()
 
 
-def test_time_must_pass(pytester: pytest.Pytester) -> None:
+def test_an_episode_without_virtual_time_is_an_error(pytester: pytest.Pytester) -> None:
     body = "\n".join(BODY.splitlines()).replace("tarl.step(0.1 if step % 2 else 0.3)", "")
     pytester.makefile(
         ".py",
@@ -259,7 +257,7 @@ def test_time_must_pass(pytester: pytest.Pytester) -> None:
     assert "No virtual time passed" in told(pytester.runpytest("-q", "-p", "no:asyncio"))
 
 
-def test_without_rtamt_a_sentence_says_how_to_get_it(
+def test_without_rtamt_a_sentence_gives_the_install_command(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from pytest_tarl.formulas import parsing
@@ -270,7 +268,7 @@ def test_without_rtamt_a_sentence_says_how_to_get_it(
     assert install_command("stl") in told(run(pytester, 'requires=["always wet"]'))
 
 
-def test_on_a_newer_python_a_sentence_says_which_ones_do(
+def test_on_a_newer_python_a_sentence_names_the_supported_versions(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from pytest_tarl.formulas import parsing

@@ -1,4 +1,4 @@
-"""Run CPython's own tests of a module, plain and with every statement of the module recorded.
+"""Run CPython's own tests of a module, unmodified and with every statement of the module recorded.
 
 `python law_of_stdlib.py MODULE… ` prints one JSON object: module → [plain result, recorded result, sites, events].
 """
@@ -51,7 +51,7 @@ def forget(*modules: str) -> None:
 
 
 def outcome(module: str) -> list[Any]:
-    """Import the module and its tests afresh and run them: [tests run, what failed, what was skipped]."""
+    """Re-import the module and its tests and run them; return [number of tests, failed, skipped]."""
     tests = f"test.test_{module.replace('.', '_')}"
     forget(module, tests)
     result = unittest.TestResult()

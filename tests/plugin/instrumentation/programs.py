@@ -1,4 +1,4 @@
-"""Run a program as it is and with every statement recorded, and compare all that somebody could notice."""
+"""Run a program unmodified and with every statement recorded, and compare everything observable."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MODES = [False, True]
 
 @dataclass
 class Outcome:
-    """Everything that somebody could notice about a run, and what was recorded in it."""
+    """Everything observable about a run, and its recorded events."""
 
     values: dict[str, str] = field(default_factory=dict)
     error: str = ""
@@ -52,7 +52,7 @@ def compiled(source: str, sites: dict[Offset, int] | None, *, inline: bool, **op
 def run(
     source: str, sites: dict[Offset, int] | None = None, *, inline: bool = False, trace: bool = False
 ) -> Outcome:
-    """Execute a program, instrumented when there are sites."""
+    """Execute a program, instrumented if there are sites."""
     outcome, buffer = Outcome(), []
 
     def hook(number, value):

@@ -15,12 +15,12 @@ def _bytecode_is_written(monkeypatch):
     monkeypatch.setattr("sys.dont_write_bytecode", False)
 
 
-def test_code_survives_the_process(tmp_path):
+def test_code_is_loaded_in_another_process(tmp_path):
     CodeCache(tmp_path / "cache").store(NAME, CODE)
     assert CodeCache(tmp_path / "cache").load(NAME) == CODE
 
 
-def test_what_was_never_stored_is_not_there(tmp_path):
+def test_a_missing_entry_gives_none(tmp_path):
     assert CodeCache(tmp_path).load(NAME) is None
 
 
@@ -40,27 +40,27 @@ def test_names_differ_by_place_and_by_everything_that_code_depends_on():
         lambda data: b"x" + data,
     ],
 )
-def test_a_damaged_entry_is_as_none(tmp_path, damage):
+def test_a_damaged_entry_gives_none(tmp_path, damage):
     CodeCache(tmp_path).store(NAME, CODE)
     entry = tmp_path / NAME
     entry.write_bytes(damage(entry.read_bytes()))
     assert CodeCache(tmp_path).load(NAME) is None
 
 
-def test_a_place_that_cannot_be_written_costs_no_more_than_a_compilation(tmp_path):
+def test_an_unwritable_cache_only_costs_a_compilation(tmp_path):
     (tmp_path / "cache").write_text("a file in the way")
     cache = CodeCache(tmp_path / "cache")
     cache.store(NAME, CODE)
     assert cache.load(NAME) is CODE
 
 
-def test_nothing_is_written_where_python_writes_no_bytecode(tmp_path, monkeypatch):
+def test_nothing_is_written_if_python_writes_no_bytecode(tmp_path, monkeypatch):
     monkeypatch.setattr("sys.dont_write_bytecode", True)
     CodeCache(tmp_path / "cache").store(NAME, CODE)
     assert not (tmp_path / "cache").exists()
 
 
-def test_no_temporary_file_stays_and_old_entries_of_a_file_go(tmp_path):
+def test_temporary_files_and_old_entries_are_removed(tmp_path):
     cache = CodeCache(tmp_path)
     other = entry_name(Path("other.py"), ("text",))
     cache.store(other, CODE)
@@ -71,7 +71,7 @@ def test_no_temporary_file_stays_and_old_entries_of_a_file_go(tmp_path):
     assert other in names
 
 
-def test_memory_is_bounded():
+def test_entries_in_memory_are_bounded():
     cache = CodeCache(None)
     for number in range(REMEMBERED + 1):
         cache.store(str(number), CODE)

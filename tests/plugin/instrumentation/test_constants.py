@@ -1,4 +1,4 @@
-"""What a program is recorded with shows nowhere in it."""
+"""The hook and the buffer are invisible to the program."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def executed(tmp_path: Path, *, record: bool) -> types.ModuleType:
     plan = {file: sites} if record else {}
     with NodeImports(tmp_path, plan, recorder.hook, bind=recorder.bind) as imports:
         module = imports.run_script(file, "node")
-        del sys.modules["node"]  # a later test may import another one
+        del sys.modules["node"]  # a later test may import another module of this name
     assert bool(recorder.finish().site.size) is record
     return module
 
@@ -73,7 +73,7 @@ def function(source: str, recorder: Recorder) -> Any:
     return space["f"]
 
 
-def test_code_can_be_a_key_is_equal_to_itself_alone_and_is_shown_without_events():
+def test_code_is_hashable_equal_only_to_itself_and_shown_without_events():
     source = "def f(x):\n    y = x * 2\n    return y\n"
     recorder = Recorder()
     one, same, other = (function(source, to) for to in (recorder, recorder, Recorder()))
@@ -86,7 +86,7 @@ def test_code_can_be_a_key_is_equal_to_itself_alone_and_is_shown_without_events(
     assert len(str(one.__code__.co_consts)) < 300
 
 
-def test_a_function_that_is_pickled_with_its_code_computes_the_same_elsewhere_and_records_nothing():
+def test_a_pickled_function_computes_the_same_and_records_nothing():
     cloudpickle = pytest.importorskip("cloudpickle")
     recorder = Recorder()
     f = function("def f(x):\n    y = x * 2.0\n    z = y + len('ab')\n    return z\n", recorder)
@@ -105,6 +105,6 @@ def test_entries_are_compared_by_identity(kind):
     assert len({one, other}) == 2
 
 
-def test_constants_of_the_program_stay_the_objects_that_they_were():
+def test_constants_of_the_program_stay_the_same_objects():
     code = compile("x = (b'a', 'b', 1.5)\ndef f():\n    return 2j, b'c'\n", "<program>", "exec")
     assert bound(code, lambda _number, value: value) is code

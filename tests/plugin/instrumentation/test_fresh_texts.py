@@ -1,4 +1,4 @@
-"""What a node imports is run anew in each episode, wherever it lies, or else somebody hears of it."""
+"""A node's imports are re-executed in each episode, wherever they are; otherwise the user is warned."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def as_found() -> Iterator[None]:
 
 
 def laid_out(top: Path, places: list[str], forms: list[str]) -> list[Path]:
-    """Write a chain of modules, each importing the next; the last one holds the constant."""
+    """Write a chain of modules, each importing the next; the last one defines the constant."""
     folders = {name: top / name for name in PLACES} | {"package": top / "workspace" / "src" / "other"}
     for folder in folders.values():
         folder.mkdir(parents=True, exist_ok=True)
@@ -66,7 +66,7 @@ def ran(root: Path, node: Path, overlay: dict[Path, str]) -> tuple[Any, tuple[Pa
 
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
-def test_an_edited_file_is_what_runs_wherever_the_modules_between_it_and_the_node_lie(
+def test_an_edited_file_runs_through_any_chain_of_imports(
     data: st.DataObject,
 ) -> None:
     places = data.draw(st.lists(st.sampled_from(PLACES), min_size=1, max_size=4), "places")
@@ -81,7 +81,7 @@ def test_an_edited_file_is_what_runs_wherever_the_modules_between_it_and_the_nod
         assert ran(top / "tests", node, {leaf: leaf.read_text()}) == (1, ())
 
 
-def test_a_helper_that_somebody_else_keeps_is_told(tmp_path: Path) -> None:
+def test_a_helper_kept_by_another_module_is_reported(tmp_path: Path) -> None:
     node, leaf = laid_out(tmp_path, ["workspace"], [])
     kept: list[Any] = []
 
@@ -101,14 +101,14 @@ def test_a_helper_that_somebody_else_keeps_is_told(tmp_path: Path) -> None:
     assert (out, older) == (1, (leaf,))
 
 
-def test_a_file_that_the_test_imported_before_is_told_when_it_is_edited(tmp_path: Path) -> None:
+def test_an_edited_file_imported_before_by_the_test_is_reported(tmp_path: Path) -> None:
     node, leaf = laid_out(tmp_path, ["workspace"], [])
     importlib.import_module(leaf.stem)
     with pytest.warns(UserWarning, match="was imported"):
         assert ran(tmp_path / "tests", node, {leaf: LEAF.format(2)}) == (1, (leaf,))
 
 
-def test_an_edited_file_that_no_episode_needs_is_no_error(tmp_path: Path) -> None:
+def test_an_unused_edited_file_is_not_an_error(tmp_path: Path) -> None:
     node, leaf = laid_out(tmp_path, ["workspace"], [])
     node.write_text("out = 7\n")
     assert ran(tmp_path / "tests", node, {leaf: LEAF.format(2)}) == (7, ())
@@ -126,7 +126,7 @@ def test_an_edited_file_that_no_episode_needs_is_no_error(tmp_path: Path) -> Non
         (("ws/src/pkg/scripts/__init__.py",), "ws/src/pkg"),
     ],
 )
-def test_the_workspace_of_a_node(tmp_path: Path, marks: tuple[str, ...], expected: str) -> None:
+def test_the_workspace_of_a_node_is_found(tmp_path: Path, marks: tuple[str, ...], expected: str) -> None:
     file = tmp_path / "ws/src/pkg/scripts/node.py"
     file.parent.mkdir(parents=True)
     file.touch()

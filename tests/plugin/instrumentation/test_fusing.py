@@ -1,4 +1,4 @@
-"""Runs of arithmetic are recorded in one go, and nobody can tell."""
+"""Runs of arithmetic are recorded with one call, without an observable difference."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ out = []
 
 
 class Spy(list[Any]):
-    """The buffer of a recorder that counts how it is written to."""
+    """A recorder's buffer that counts its method calls."""
 
     def __init__(self) -> None:
         self.calls: list[str] = []
@@ -51,7 +51,7 @@ class Spy(list[Any]):
 
 
 def written(source: str, call: str) -> tuple[list[str], list[Any]]:
-    """Return how the buffer was written to by a call, and what is in it then."""
+    """Return the methods that a call of the function used on the buffer, and the buffer's contents."""
     spy = Spy()
 
     def hook(number: int, value: Any) -> Any:
@@ -69,14 +69,14 @@ def written(source: str, call: str) -> tuple[list[str], list[Any]]:
     return spy.calls, list(spy)
 
 
-def test_a_run_that_begins_with_floats_is_written_in_one_go():
+def test_a_run_of_floats_is_recorded_with_one_call():
     calls, entries = written(RUN, "f(1.0)")
     assert calls == ["append", "append", "extend", "hook"]  # the head of the function, the run, the return
     assert entries[2:10] == [3, 3.0, 4, 1.5, 5, 4.0, 6, -0.5]
 
 
 @pytest.mark.parametrize("call", ["f(1)", "f(1.0, k=2)"])
-def test_any_other_kind_is_recorded_statement_by_statement(call):
+def test_other_types_are_recorded_statement_by_statement(call):
     assert "extend" not in written(RUN, call)[0]
 
 
@@ -98,7 +98,7 @@ NOT_FUSED = {
 
 
 @pytest.mark.parametrize("kind", NOT_FUSED)
-def test_is_not_fused(kind):
+def test_these_statements_are_not_fused(kind):
     assert "extend" not in written(NOT_FUSED[kind], "f(1.0)")[0]
 
 
@@ -119,7 +119,7 @@ FUSED = {
 
 
 @pytest.mark.parametrize("kind", FUSED)
-def test_is_fused(kind):
+def test_these_statements_are_fused(kind):
     calls, entries = written(FUSED[kind], "f(2.0)")
     assert calls.count("extend") == 1
     assert {-2.0, 2.0, -4.0} <= {entry for entry in entries if type(entry) is float}
@@ -144,7 +144,7 @@ def test_is_fused(kind):
         "__import__('fractions').Fraction(1, 3)",
     ],
 )
-def test_any_value_does_what_it_did(value):
+def test_fused_code_behaves_the_same_for_any_value(value):
     assert_same(f"{VALUES}{RUN}\ny = f({value})\nz = f(1.0, {value})", trace=True)
 
 
@@ -171,7 +171,7 @@ ARGUMENTS = st.sampled_from(["1.0", "-2.5", "0.0", "3", "None", "1e308", "Odd(2.
 
 @settings(max_examples=150, suppress_health_check=list(HealthCheck))
 @given(st.lists(LINES, min_size=3, max_size=9), ARGUMENTS, ARGUMENTS)
-def test_arithmetic_that_nobody_wrote_does_the_same(lines, first, second):
+def test_generated_arithmetic_behaves_the_same(lines, first, second):
     body = "\n".join(f"    {line}" for line in lines)
     program = f"def f(self, x, y):\n{body}\n    return x, y\nf.k = 0.5\ng = out.append\n"
     assert_same(f"{VALUES}{program}z = f(f, 1.0, 2.0)\nz = f(f, {first}, {second})", trace=True)

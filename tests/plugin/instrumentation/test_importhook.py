@@ -74,7 +74,7 @@ def test_a_script_and_what_it_imports_are_recorded(project):
     assert recorded(recorder) == [(2, 10.0), (0, 20.0), (1, 20.0)]
 
 
-def test_without_bind_the_hook_alone_is_enough(project):
+def test_the_hook_works_without_bind(project):
     events: list[Any] = []
     plan = {project / "node.py": SITES}
 
@@ -87,7 +87,7 @@ def test_without_bind_the_hook_alone_is_enough(project):
     assert events == [(0, 20.0), (1, 20.0)]
 
 
-def test_every_episode_begins_with_fresh_modules_and_leaves_the_interpreter_as_it_was(project):
+def test_every_episode_has_new_modules_and_restores_the_interpreter(project):
     main, path, finders = sys.modules["__main__"], list(sys.path), list(sys.meta_path)
     known = set(sys.modules)
     for _ in range(2):
@@ -100,7 +100,7 @@ def test_every_episode_begins_with_fresh_modules_and_leaves_the_interpreter_as_i
     assert set(sys.modules) - known <= {"pickle"}
 
 
-def test_helpers_without_sites_are_fresh_too_and_those_of_the_test_stay(project, monkeypatch):
+def test_helpers_without_sites_are_reloaded_and_those_of_the_test_kept(project, monkeypatch):
     (project / "world.py").write_text("tide = []\n")
     monkeypatch.syspath_prepend(project)
     with imports(project, Recorder(), plan={}) as node:
@@ -114,7 +114,7 @@ def test_helpers_without_sites_are_fresh_too_and_those_of_the_test_stay(project,
         del sys.modules["world"]
 
 
-def test_a_test_may_import_its_node_inside_the_episode(project, monkeypatch):
+def test_a_test_can_import_its_node_inside_the_episode(project, monkeypatch):
     monkeypatch.syspath_prepend(project)
     recorder = Recorder()
     with imports(project, recorder):
@@ -177,7 +177,7 @@ class Pair(NamedTuple):
 
 @contextlib.contextmanager
 def library(project: Path, recorder: Recorder) -> Iterator[Any]:
-    """Import a module of which every statement is recorded."""
+    """Import a module with every statement recorded."""
     file = project / "numbers_of_a_robot.py"
     file.write_text(LIBRARY)
     every = {
@@ -189,7 +189,7 @@ def library(project: Path, recorder: Recorder) -> Iterator[Any]:
         yield importlib.import_module(file.stem)
 
 
-def test_functions_classes_and_their_objects_are_pickled_as_ever(project, monkeypatch):
+def test_functions_classes_and_instances_can_be_pickled(project, monkeypatch):
     monkeypatch.syspath_prepend(project)
     recorder = Recorder()
     with library(project, recorder) as module:
@@ -210,7 +210,7 @@ def test_functions_classes_and_their_objects_are_pickled_as_ever(project, monkey
             assert pickle.loads(pickle.dumps(module.Pose.Part(3.0), protocol)).n == 1.5
         in_recorded = pickle.dumps([module.Pose(1.5), module.Pair(1.0), module.half])
     assert len(recorder.finish().site) > 10
-    plain = importlib.import_module("numbers_of_a_robot")  # what was stored is read by the program as it is
+    plain = importlib.import_module("numbers_of_a_robot")  # the unmodified program loads the stored objects
     try:
         assert pickle.loads(in_recorded) == [plain.Pose(1.5), plain.Pair(1.0), plain.half]
     finally:
@@ -223,7 +223,7 @@ def test_doctests_of_a_recorded_module_pass(project, monkeypatch):
         assert doctest.testmod(module) == (0, 3)
 
 
-def test_modules_in_packages_are_found_and_forgotten(project, monkeypatch):
+def test_modules_in_packages_are_instrumented_and_removed(project, monkeypatch):
     package = project / "robot"
     package.mkdir()
     (package / "__init__.py").write_text("name = 'r2'\n")
@@ -262,7 +262,7 @@ def test_an_overlay_replaces_the_text_and_sites_keep_their_lines(project):
     assert not [entry for entry in (project / ".tarl" / "cache").iterdir() if entry.name.startswith("node-")]
 
 
-def test_an_overlay_of_an_import_is_what_the_node_gets(project):
+def test_the_node_imports_the_overlay_of_a_module(project):
     recorder = Recorder()
     with imports(project, recorder, overlay={project / "gains.py": GAINS.replace("10.0", "7.0")}) as node:
         assert node.run_script(project / "node.py").out == 14.0
@@ -278,20 +278,20 @@ def test_errors_point_at_the_lines_of_the_text_that_runs(project):
     assert (last.lineno, last.line) == (12, "vel = gain(data) / (data - 1.5)")
 
 
-def test_a_syntax_error_is_raised_as_an_import_raises_it(project):
+def test_a_syntax_error_is_raised_as_by_an_import(project):
     (project / "node.py").write_text("x = (\n")
     with imports(project, Recorder()) as node, pytest.raises(SyntaxError) as caught:
         node.run_script(project / "node.py")
     assert caught.value.filename == str(project / "node.py")
 
 
-def test_warnings_of_the_compiler_are_left_to_the_developers_own_runs(project):
+def test_compiler_warnings_are_suppressed(project):
     (project / "node.py").write_text("x = 1 is 1\n")
     with imports(project, Recorder()) as node:
         assert node.run_script(project / "node.py").x
 
 
-def test_a_file_that_the_test_imported_before_is_named(project, monkeypatch):
+def test_a_warning_names_a_file_imported_before_by_the_test(project, monkeypatch):
     monkeypatch.syspath_prepend(project)
     gains = __import__("gains")
     try:
@@ -307,7 +307,7 @@ def test_a_file_that_the_test_imported_before_is_named(project, monkeypatch):
         del sys.modules["gains"]
 
 
-def test_no_warning_when_the_script_runs_although_the_test_imported_it_too(project, monkeypatch):
+def test_no_warning_if_the_script_runs_even_if_the_test_imported_it(project, monkeypatch):
     monkeypatch.syspath_prepend(project)
     node_module = __import__("node")
     plan = {project / "node.py": SITES}
@@ -319,7 +319,7 @@ def test_no_warning_when_the_script_runs_although_the_test_imported_it_too(proje
         del sys.modules["node"], sys.modules["gains"]
 
 
-def test_columns_are_characters_and_encodings_are_obeyed(project):
+def test_columns_count_characters_in_any_encoding(project):
     text = "# -*- coding: latin-1 -*-\nü = 'é'; größe = 2.0; x = größe * 2\n"
     (project / "node.py").write_bytes(text.encode("latin-1"))
     recorder = Recorder()
@@ -330,7 +330,7 @@ def test_columns_are_characters_and_encodings_are_obeyed(project):
     assert recorded(recorder) == [(0, 2.0), (1, 4.0)]
 
 
-def test_positions_at_which_nothing_stands_are_told(project):
+def test_positions_without_a_statement_are_reported(project):
     plan = {project / "node.py": {(12, 5): 0, (99, 1): 1}}
     for _ in range(2):
         with imports(project, Recorder(), plan=plan) as node:
@@ -356,7 +356,7 @@ def test_code_comes_from_the_cache_until_text_or_sites_change(project):
     assert len(list(cache.iterdir())) == 3
 
 
-def test_a_script_without_a_plan_runs_as_it_is(project):
+def test_a_script_without_a_plan_runs_unchanged(project):
     recorder = Recorder()
     with imports(project, recorder, plan={}) as node:
         module = node.run_script(project / "node.py")
@@ -365,7 +365,7 @@ def test_a_script_without_a_plan_runs_as_it_is(project):
     assert recorded(recorder) == []
 
 
-def test_no_import_is_searched_for_twice(project, monkeypatch):
+def test_imports_are_searched_once(project, monkeypatch):
     asked: list[str] = []
 
     class Listener:
@@ -382,7 +382,7 @@ def test_no_import_is_searched_for_twice(project, monkeypatch):
 
 @pytest.fixture
 def package(project: Path) -> Path:
-    """`robot.arm.driver`, which imports from beside and from above it."""
+    """`robot.arm.driver`, which imports from its own and the parent package."""
     (project / "src" / "robot" / "arm").mkdir(parents=True)
     (project / "src" / "robot" / "__init__.py").write_text("")
     (project / "src" / "robot" / "arm" / "__init__.py").write_text("")
@@ -401,7 +401,7 @@ def package(project: Path) -> Path:
 LIMIT = {(5, 5): 0}
 
 
-def test_a_script_of_a_package_knows_its_package(project, package):
+def test_a_script_in_a_package_supports_relative_imports(project, package):
     plan = {package.parent.parent / "limits.py": LIMIT}
     for _ in range(2):
         recorder = Recorder()
@@ -413,7 +413,7 @@ def test_a_script_of_a_package_knows_its_package(project, package):
     assert not [name for name in sys.modules if name.startswith("robot")]
 
 
-def test_an_entry_point_is_called_in_a_module_of_its_own_name(project, package):
+def test_an_entry_point_runs_in_its_module_under_its_own_name(project, package):
     plan = {package.parent.parent / "limits.py": LIMIT, package: {(7, 5): 1}}
     for _ in range(2):
         recorder = Recorder()
@@ -424,7 +424,7 @@ def test_an_entry_point_is_called_in_a_module_of_its_own_name(project, package):
     assert not [name for name in sys.modules if name.startswith("robot")]
 
 
-def test_what_an_entry_point_returns_is_the_exit_status(project):
+def test_the_result_of_an_entry_point_is_the_exit_status(project):
     (project / "fails.py").write_text(
         "class App:\n    @staticmethod\n    def run():\n        return 'no motor'\n"
     )

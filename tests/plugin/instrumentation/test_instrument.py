@@ -24,7 +24,7 @@ from tests.plugin.instrumentation.programs import (
     run,
 )
 
-# What is recorded, statement by statement: (source, events as (line, value))
+# Recorded events by statement: (source, events as (line, value))
 
 RECORDED = {
     "assignment": ("x = 1.5", [(1, 1.5)]),
@@ -63,14 +63,14 @@ RECORDED = {
 
 @pytest.mark.parametrize("inline", MODES)
 @pytest.mark.parametrize("kind", RECORDED)
-def test_records(kind, inline):
+def test_each_statement_records_these_events(kind, inline):
     source, events = RECORDED[kind]
     found = [(n, v) for n, v in recorded(source, inline=inline) if not callable(v)]
     assert found == events
 
 
 @pytest.mark.parametrize("inline", MODES)
-def test_a_generator_records_what_it_yields_and_what_it_is_sent(inline):
+def test_a_generator_records_yielded_and_sent_values(inline):
     source = """
     def gen():
         x = yield 1.0
@@ -84,7 +84,7 @@ def test_a_generator_records_what_it_yields_and_what_it_is_sent(inline):
 
 
 @pytest.mark.parametrize("inline", MODES)
-def test_coroutines_and_async_generators(inline):
+def test_coroutines_and_async_generators_are_recorded(inline):
     source = """
     import asyncio
     async def numbers(n):
@@ -123,7 +123,7 @@ MESSAGES = [
 
 @pytest.mark.parametrize("inline", MODES)
 @pytest.mark.parametrize(("source", "message"), MESSAGES)
-def test_the_head_of_a_function_records_the_message_that_it_receives(source, message, inline):
+def test_the_head_of_a_function_records_its_message(source, message, inline):
     heads = {
         (node.lineno, node.col_offset): 1
         for node in ast.walk(ast.parse(source))
@@ -133,7 +133,7 @@ def test_the_head_of_a_function_records_the_message_that_it_receives(source, mes
 
 
 @pytest.mark.parametrize("inline", MODES)
-def test_a_lambda_and_a_parameter_can_receive_too(inline):
+def test_lambdas_and_parameters_record_messages_too(inline):
     source = "f = lambda m: m + 1\ndef g(self, a, b): pass\nx = f(2.0)\ng(0, 1.0, 4.0)"
     outcome = run(source, {(1, 4): 1, (1, 14): 2, (2, 15): 3}, inline=inline)
     assert outcome.events == [(1, 2.0), (2, 3.0), (3, 4.0)]
@@ -161,7 +161,7 @@ pub, v = Pub(), 2.0
 
 @pytest.mark.parametrize("inline", MODES)
 @pytest.mark.parametrize("call", PUBLISHES)
-def test_a_publish_is_recorded_with_0_before_it_happens_and_after_its_arguments(call, inline):
+def test_a_publish_call_records_0_after_its_arguments_and_before_the_call(call, inline):
     line = PUBLISHER.count("\n") + 1
     column = call.index("pub.publish") if "lambda" in call else 0
     tree = instrument(ast.parse(PUBLISHER + call), {(line, column): 7}, inline=inline)
@@ -176,7 +176,7 @@ def test_a_publish_is_recorded_with_0_before_it_happens_and_after_its_arguments(
 
 
 @pytest.mark.parametrize("inline", MODES)
-def test_other_calls_are_publishes_when_the_plan_says_so(inline):
+def test_the_plan_can_declare_other_calls_as_publishing(inline):
     events: list[Any] = []
     tree = instrument(ast.parse("send(5.0)\n"), {(1, 0): 3}, publishes={3}, inline=inline)
     code = bound(code_of(tree, FILE), lambda n, v: events.append((n, v)) or v, [])
@@ -184,7 +184,7 @@ def test_other_calls_are_publishes_when_the_plan_says_so(inline):
     assert events == [(3, 0.0), 5.0]
 
 
-# Nobody notices
+# No observable difference
 
 PROGRAMS = {
     "truth is asked once": """
@@ -375,12 +375,12 @@ Later.__value__
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_same_values_errors_and_lines(name):
+def test_values_errors_and_line_events_are_unchanged(name):
     assert_same(PROGRAMS[name], trace=True)
 
 
 def monitored(source: str, sites: dict[Offset, int] | None, *, inline: bool) -> list[tuple[str, str, int]]:
-    """Return what tools on `sys.monitoring` (coverage.py, debuggers) are told of a program."""
+    """Return the events of a program that tools on `sys.monitoring` (coverage.py, debuggers) get."""
     monitoring, seen = sys.monitoring, list[tuple[str, str, int]]()
     kinds = monitoring.events
     monitoring.use_tool_id(monitoring.DEBUGGER_ID, "test")
@@ -405,7 +405,7 @@ def monitored(source: str, sites: dict[Offset, int] | None, *, inline: bool) -> 
 
 @pytest.mark.skipif(sys.version_info < (3, 12), reason="sys.monitoring came with Python 3.12")
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_monitoring_is_told_the_same(name):
+def test_monitoring_events_are_unchanged(name):
     source = PROGRAMS[name]
     for inline in MODES:
         sites = everywhere(ast.parse(source))
@@ -413,7 +413,7 @@ def test_monitoring_is_told_the_same(name):
 
 
 @pytest.mark.parametrize("inline", MODES)
-def test_code_that_looks_at_itself_sees_the_original(inline):
+def test_introspection_sees_the_original_code(inline):
     source = textwrap.dedent(
         '''
         import inspect
@@ -442,12 +442,12 @@ def test_positions_where_nothing_can_be_recorded_are_not_placed():
     assert placed == {(1, 0)}
 
 
-def test_without_sites_the_tree_stays_as_it_is():
+def test_without_sites_the_tree_is_unchanged():
     source = PROGRAMS["finally, else and return"]
     assert ast.dump(instrument(ast.parse(source), {})) == ast.dump(ast.parse(source))
 
 
-# Programs that nobody wrote
+# Generated programs
 
 NAMES = st.sampled_from("abc")
 SIMPLE = st.sampled_from(["a", "b", "c", "1", "2.5", "0", "-3", "'s'", "[1, 2]", "(a, b)", "None"])
@@ -537,7 +537,7 @@ def is_program(source: str) -> bool:
 
 @settings(max_examples=200, suppress_health_check=list(HealthCheck))
 @given(st.lists(STATEMENTS, min_size=1, max_size=6))
-def test_programs_that_nobody_wrote_do_the_same(statements):
+def test_generated_programs_behave_the_same(statements):
     source = PRELUDE + "\n".join(statements) + "\n"
     assume(is_program(source))
     assert_same(source, trace=False)

@@ -60,7 +60,7 @@ needs_tests = pytest.mark.skipif(
 
 
 def assert_lawful(*modules: str) -> None:
-    """Run CPython's own tests of modules as they are and recorded: the same tests fail and are skipped."""
+    """Run CPython's own tests of modules, unmodified and recorded: the same tests fail and are skipped."""
     done = subprocess.run(
         [sys.executable, str(SCRIPT), *modules], capture_output=True, text=True, check=False
     )
@@ -81,5 +81,5 @@ def test_the_standard_library_passes_its_own_tests_with_every_statement_recorded
 @needs_tests
 @pytest.mark.skipif(not os.environ.get("TARL_SLOW"), reason="takes minutes; set TARL_SLOW=1")
 @pytest.mark.parametrize("module", SLOW)
-def test_more_of_the_standard_library_passes_its_own_tests(module):
+def test_further_modules_of_the_standard_library_pass_their_own_tests(module):
     assert_lawful(module)

@@ -20,7 +20,7 @@ from pytest_tarl.instrumentation.magnitude import LIMIT, SAMPLE, magnitude
 
 
 class Vector3:
-    """As rospy generates messages: slots."""
+    """A message like rospy's: slots."""
 
     __slots__ = ("x", "y", "z")
     _slot_types = ("float64", "float64", "float64")
@@ -44,7 +44,7 @@ class Stamped:
 
 
 class Point:
-    """As rclpy generates messages: checked properties over slots with an underscore."""
+    """A message like rclpy's: checked properties over slots with an underscore."""
 
     __slots__ = ("_x", "_y")
 
@@ -105,20 +105,20 @@ class Pose:
         (Vector3, 0.0),
     ],
 )
-def test_flow_value(value, size):
+def test_each_value_has_this_magnitude(value, size):
     assert magnitude(value) == pytest.approx(size)
 
 
 @pytest.mark.parametrize(
     "nothing", [math.nan, math.inf, -math.inf, np.float64("inf"), Decimal("sNaN"), complex("nan")]
 )
-def test_no_measurement_counts_as_nothing_alone_and_among_others(nothing):
+def test_nan_and_infinity_count_as_0_alone_and_among_others(nothing):
     assert magnitude(nothing) == 0.0
     assert magnitude([nothing, 3.0, 4]) == pytest.approx(5.0)
     assert magnitude({"range": nothing, "angle": 2.0}) == pytest.approx(2.0)
 
 
-def test_no_measurement_in_arrays_counts_as_nothing():
+def test_nan_and_infinity_in_arrays_count_as_0():
     assert magnitude(np.array([np.inf, 3.0, np.nan, 4.0])) == pytest.approx(5.0)
     assert magnitude(array("d", [math.inf, 2.0])) == pytest.approx(2.0)
 
@@ -130,7 +130,7 @@ def test_huge_values_stay_below_the_limit(huge):
     assert magnitude(huge) == LIMIT
 
 
-def test_what_holds_itself_ends():
+def test_cyclic_containers_terminate():
     ring: list[object] = [3.0]
     ring.append(ring)
     table: dict[str, object] = {"v": 4.0, "ring": ring}
@@ -138,7 +138,7 @@ def test_what_holds_itself_ends():
     assert magnitude(table) == 5.0
 
 
-def test_deep_nesting_ends():
+def test_deep_nesting_terminates():
     deep: object = 1.0
     for _ in range(100_000):
         deep = [deep]
@@ -151,7 +151,7 @@ def test_long_sequences_are_sampled_and_scaled(make):
 
 
 class Refusing:
-    """Does everything wrong that an object can do."""
+    """Raises in every special method."""
 
     def __getattribute__(self, name):
         raise RuntimeError(name)
@@ -193,7 +193,7 @@ class Count(int):
         raise AssertionError("must not run")
 
 
-def test_objects_that_refuse_are_left_alone():
+def test_objects_that_raise_have_magnitude_0():
     assert magnitude(Refusing()) == 0.0
     assert magnitude([Refusing(), 2.0]) == 2.0
     moody = OfMoodyClass()
@@ -209,7 +209,7 @@ def test_methods_of_subclasses_do_not_run():
 
 
 @pytest.mark.parametrize("slots", [("x", "y"), ("x",), ()])
-def test_classes_are_not_kept_alive(slots):
+def test_the_cache_does_not_keep_classes_alive(slots):
     kind = type("Message", (), {"__slots__": (*slots, "__weakref__"), "x" if "x" not in slots else "z": 1.0})
     magnitude(kind())
     gone = weakref.ref(kind)
@@ -218,7 +218,7 @@ def test_classes_are_not_kept_alive(slots):
     assert gone() is None
 
 
-def test_a_mock_sees_nothing():
+def test_a_mock_records_no_access():
     mock = MagicMock()
     assert magnitude(mock) == 0.0
     assert mock.mock_calls == []
@@ -238,13 +238,13 @@ ANYTHING = st.recursive(
 
 
 @given(ANYTHING)
-def test_is_always_finite_and_never_negative(value):
+def test_magnitudes_are_finite_and_not_negative(value):
     size = magnitude(value)
     assert type(size) is float
     assert 0.0 <= size <= LIMIT
 
 
 @given(st.lists(st.floats(-1e6, 1e6)))
-def test_list_array_and_nesting_agree(numbers):
+def test_lists_arrays_and_nested_lists_agree(numbers):
     assert magnitude(numbers) == pytest.approx(magnitude(np.array(numbers)))
     assert magnitude([[one] for one in numbers]) == pytest.approx(magnitude(numbers))

@@ -36,7 +36,7 @@ def program(recorder: Recorder, **extra: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("threads", [False, True])
-def test_events_come_in_order_with_their_flow_values(threads):
+def test_events_are_in_order_with_their_flow_values(threads):
     recorder = Recorder(threads=threads)
     program(recorder)["work"]([0.5, 2])
     recorder.reward(1.0)
@@ -62,7 +62,7 @@ def test_a_step_ends_with_its_reward_and_late_events_belong_to_the_last_one():
     }
 
 
-def test_a_cell_holds_from_its_latch_to_the_next():
+def test_a_cell_applies_until_the_next_one():
     recorder = Recorder()
     recorder.hook(0, 0.0)
     recorder.latch((4, 1))
@@ -82,7 +82,7 @@ def test_a_cell_holds_from_its_latch_to_the_next():
     assert trace.step_cell.tolist() == [0, 0, -1]
 
 
-def test_nothing_recorded_is_an_empty_trace():
+def test_a_recorder_without_events_gives_an_empty_trace():
     trace = Recorder().finish()
     assert trace.cells == ()
     assert [len(column) for column in (trace.site, trace.flow, trace.event_cell, trace.event_step)] == [0] * 4
@@ -115,7 +115,7 @@ VALUES = [
 
 @pytest.mark.parametrize("value", VALUES, ids=lambda value: type(value).__name__)
 @pytest.mark.parametrize("threads", [False, True])
-def test_every_way_to_record_gives_the_same_flow_value_and_the_value_itself(value, threads):
+def test_all_hooks_record_the_same_flow_value_and_return_the_value(value, threads):
     recorder = Recorder(threads=threads)
     space: dict[str, Any] = {"value": value}
     source = "x = value\ny = [value][0]\nz = (lambda: value)()"
@@ -128,7 +128,7 @@ def test_every_way_to_record_gives_the_same_flow_value_and_the_value_itself(valu
     assert trace.flow.tolist() == [magnitude(value)] * 4
 
 
-def test_events_of_two_threads_stay_apart():
+def test_events_of_two_threads_are_separate():
     recorder = Recorder()
     started, go_on = threading.Event(), threading.Event()
 
@@ -154,7 +154,7 @@ def test_events_of_two_threads_stay_apart():
     assert np.all(np.diff(trace.thread) >= 0)
 
 
-def test_threads_are_put_into_the_steps_in_which_they_ran():
+def test_events_of_threads_belong_to_the_step_in_which_they_ran():
     recorder = Recorder()
     space = program(recorder)
     for step in range(2):
@@ -187,7 +187,7 @@ def test_greenlets_share_the_sequence_of_their_thread():
     assert trace.thread is None
 
 
-def test_profilers_of_threads_are_left_alone():
+def test_thread_profilers_stay_installed():
     def profile(*_: object) -> None: ...
 
     threading.setprofile(profile)
@@ -201,7 +201,7 @@ def test_profilers_of_threads_are_left_alone():
         threading.setprofile(None)  # type: ignore[arg-type]
 
 
-def test_threads_start_as_before_once_an_episode_is_over():
+def test_threading_is_restored_after_an_episode():
     names = [name for name in ("_start_new_thread", "_start_joinable_thread") if hasattr(threading, name)]
     before = [getattr(threading, name) for name in names]
     recorder = Recorder()
@@ -211,7 +211,7 @@ def test_threads_start_as_before_once_an_episode_is_over():
     assert [getattr(threading, name) for name in names] == before
 
 
-def test_a_thread_below_threading_has_a_sequence_of_its_own_too():
+def test_a_thread_started_by_the_thread_module_is_separate_too():
     before = _thread.start_new_thread
     recorder, done = Recorder(), threading.Event()
     space = program(recorder)
@@ -252,14 +252,14 @@ def test_a_long_episode_is_packed_between_its_steps_and_nothing_is_lost(monkeypa
     assert most <= 40 < all_of_it
 
 
-def test_a_recorder_that_nothing_is_bound_to_leaves_threading_alone():
+def test_an_unbound_recorder_does_not_change_threading():
     before = threading.getprofile()
     recorder = Recorder()
     assert threading.getprofile() is before
     recorder.finish()
 
 
-def test_a_half_event_is_dropped_and_the_others_keep_their_places():
+def test_an_incomplete_event_is_dropped_and_the_others_kept():
     site, flow, starts = paired([0, 1.0, 1, 2, 3.0, 3, 4.0, 4])
     assert site.tolist() == [0, 2, 3]
     assert flow.tolist() == [1.0, 3.0, 4.0]
@@ -281,7 +281,7 @@ def test_sizes_of_floats_are_their_magnitudes(values):
         )
     )
 )
-def test_columns_say_what_happened(story):
+def test_columns_contain_the_recorded_events(story):
     recorder = Recorder()
     expected, rewards, cell, told = [], [], -1, []
     for what, value in story:
@@ -312,7 +312,7 @@ def running(job: threading.Thread) -> threading.Thread:
 @pytest.mark.parametrize(
     ("module", "direct"), [("pytest_tarl.ros.watchdog", True), ("pytest_timeout", True), ("node", False)]
 )
-def test_threads_of_test_tools_cost_nothing_and_those_of_others_are_kept_apart(module, direct):
+def test_threads_of_test_tools_are_ignored_and_others_are_separate(module, direct):
     go_on = threading.Event()
 
     def job() -> None:
@@ -328,7 +328,7 @@ def test_threads_of_test_tools_cost_nothing_and_those_of_others_are_kept_apart(m
         thread.join()
 
 
-def test_a_thread_that_was_there_before_has_a_sequence_of_its_own():
+def test_a_thread_that_existed_before_is_separate():
     begin = threading.Event()
     spaces: list[dict[str, Any]] = []
 

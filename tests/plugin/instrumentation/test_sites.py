@@ -38,12 +38,12 @@ def codes(result: Plan, index: int = 0) -> list[str]:
     return [place.code for place in result.lists[index].sites]
 
 
-def test_context_steps_are_no_sites():
+def test_context_steps_are_not_sites():
     result = planned(flow(step(3, "register", "context"), step(10, "a"), step(12, "while b", "control")))
     assert codes(result) == ["a", "while b"]
 
 
-def test_a_list_keeps_the_order_of_its_flow_even_against_the_lines():
+def test_a_list_keeps_the_order_of_its_flow_regardless_of_lines():
     assert codes(planned(flow(step(30, "first"), step(10, "second"), step(20, "third")))) == [
         "first",
         "second",
@@ -51,7 +51,7 @@ def test_a_list_keeps_the_order_of_its_flow_even_against_the_lines():
     ]
 
 
-def test_flows_of_the_same_topics_share_one_list_without_doubles():
+def test_flows_of_the_same_topics_share_one_list_without_duplicates():
     left = flow(step(10, "a"), step(20, "left"), step(40, "d"))
     right = flow(step(10, "a"), step(15, "right"), step(30, "c"), step(40, "d"))
     result = planned(left, right)
@@ -59,12 +59,12 @@ def test_flows_of_the_same_topics_share_one_list_without_doubles():
     assert codes(result) == ["a", "right", "left", "c", "d"]
 
 
-def test_flows_that_disagree_about_the_order_still_give_every_step_once():
+def test_flows_with_conflicting_orders_give_every_step_once():
     result = planned(flow(step(10, "a"), step(20, "b")), flow(step(20, "b"), step(10, "a")))
     assert codes(result) == ["a", "b"]
 
 
-def test_there_is_one_list_for_each_pair_of_topics():
+def test_each_pair_of_topics_has_one_list():
     result = planned(
         flow(step(10, "a"), step(20, "b")),
         flow(step(10, "a"), step(30, "c"), sink=("/lights",)),
@@ -88,7 +88,7 @@ def test_lists_share_global_site_numbers():
         assert taint_list.sites == tuple(result.places[n] for n in members)
 
 
-def test_positions_are_by_file_and_lead_to_the_global_number():
+def test_positions_map_to_global_numbers_by_file():
     result = planned(flow(step(10, "a", path="helper.py"), step(10, "b"), step(12, "c")))
     assert result.positions == {"helper.py": {(10, 5): 0}, "node.py": {(10, 5): 1, (12, 5): 2}}
 
@@ -98,7 +98,7 @@ def test_a_site_that_carries_data_in_one_flow_is_a_data_site():
     assert [place.dependence for place in result.places] == ["data"]
 
 
-def test_publishing_sites_are_told_apart():
+def test_publishing_sites_are_marked():
     result = planned(flow(step(10, "a"), step(20, "pub.publish(a)", role="publish")))
     assert result.publishes == {1}
 
@@ -123,5 +123,5 @@ BEFORE = "a = 1\nb = 2\nc = 3\n"
         ("a = 1\nc = 3\n", {(1, 1): 0, (2, 1): 2}),
     ],
 )
-def test_sites_are_found_again_in_an_edited_text(after, expected):
+def test_sites_are_relocated_in_an_edited_text(after, expected):
     assert relocate({(1, 1): 0, (2, 1): 1, (3, 1): 2}, BEFORE, after) == expected

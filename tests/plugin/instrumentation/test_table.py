@@ -1,4 +1,4 @@
-"""Every kind of statement in every context: the table in docs/recording.md is what is recorded.
+"""Every kind of statement in every context is recorded as in the table in docs/recording.md.
 
 `python -m tests.plugin.instrumentation.test_table` prints the table as it should be.
 """
@@ -18,7 +18,7 @@ from pytest_tarl.instrumentation.recorder import Recorder
 
 PAGE = Path(__file__).parents[3] / "docs" / "recording.md"
 BEFORE = "x = 1.5"
-SITE = "«"  # where the site begins, unless with the statement
+SITE = "«"  # marks the beginning of the site, if it is not that of the statement
 CONTEXTS = {
     "module": "{}",
     "function": "def f():\n    {}\ndrive(f())",
@@ -73,11 +73,11 @@ STATEMENTS = {
 
 
 class Halt(Exception):  # noqa: N818 - what a statement of the table raises
-    """Nothing went wrong."""
+    """Raised by a statement of the table; ends its program as expected."""
 
 
 class Ready:
-    """A context manager of both kinds."""
+    """A synchronous and asynchronous context manager."""
 
     def __enter__(self) -> float:
         return 5.0
@@ -100,7 +100,7 @@ async def later(value: float) -> float:
 
 
 def drive(started: Any) -> None:
-    """Run what a call returned to its end."""
+    """Run the result of a call (a generator or coroutine) to its end."""
     if inspect.isgenerator(started):
         list(started)
     elif inspect.iscoroutine(started):
@@ -114,7 +114,7 @@ def drive(started: Any) -> None:
 
 
 def placed(statement: str, context: str) -> str:
-    """Return the program in which a statement stands."""
+    """Return a program that contains the statement."""
     inside, joint = CONTEXTS[context], "; " if context == "after `;`" else "\n"
     (line,) = (line for line in inside.splitlines() if "{}" in line)
     indent = " " * line.index("{}")
@@ -154,12 +154,12 @@ def table() -> list[str]:
     return lines
 
 
-def test_the_table_is_what_is_recorded() -> None:
+def test_the_table_in_the_docs_matches_the_recorder() -> None:
     page = PAGE.read_text("utf-8")
     assert [line for line in table() if line not in page.splitlines()] == []
 
 
-def test_wherever_a_statement_may_stand_it_is_recorded() -> None:
+def test_every_statement_is_recorded_in_every_context() -> None:
     assert {kind for kind, one in STATEMENTS.items() if recorded(one, "function") == "nothing"} == {
         "`import`"
     }

@@ -20,7 +20,7 @@ PATIENCE = 60.0  # seconds
 
 @pytest.fixture
 def scheduler(tank: pytest.Pytester) -> Iterator[str]:
-    """The address of a scheduler with two workers, started as their users start them."""
+    """Return the address of a scheduler with two workers, started by their commands."""
     with ExitStack() as running:
         address = tank.path / "scheduler.json"
 
@@ -46,7 +46,7 @@ def waited(file: Path) -> str:
         return str(client.scheduler.address)
 
 
-def test_a_cluster_records_the_same_fixture_even_when_a_process_on_it_dies(
+def test_a_cluster_gives_the_same_recording_even_if_a_process_dies(
     tank: pytest.Pytester, scheduler: str
 ) -> None:
     tank.runpytest_subprocess(*RECORD).assert_outcomes(passed=1)
@@ -62,9 +62,7 @@ def test_a_cluster_records_the_same_fixture_even_when_a_process_on_it_dies(
     assert columns_of(fixture_file(tank).read_bytes()) == columns_of(alone)
 
 
-def test_a_cluster_that_does_not_answer_is_named(
-    tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_unreachable_cluster_is_reported(tank: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pytest_tarl.workers.cluster.REACHED", 0.5)
     found = tank.runpytest(*RECORD, "--tarl-cluster=tcp://127.0.0.1:9")
     found.assert_outcomes(failed=1, deselected=1)

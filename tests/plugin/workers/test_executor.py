@@ -1,4 +1,4 @@
-"""Episodes in other processes: the same fixture, whatever happens to the workers."""
+"""Episodes in other processes give the same recording, whatever happens to the workers."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ def recorded(tank: pytest.Pytester, *flags: str) -> bytes:
     return fixture_file(tank).read_bytes()
 
 
-def test_the_fixture_is_the_same_whatever_the_number_of_workers(tank: pytest.Pytester) -> None:
+def test_the_recording_does_not_depend_on_the_number_of_workers(tank: pytest.Pytester) -> None:
     alone = recorded(tank)
     fixture_file(tank).unlink()
     assert recorded(tank, "--tarl-workers=3") == alone
 
 
 @pytest.mark.skipif(not SLOW, reason="runs a whole repair twice: set TARL_SLOW=1")
-def test_comparison_and_repair_on_workers_find_what_they_find_without(tank: pytest.Pytester) -> None:
+def test_comparison_and_repair_do_not_depend_on_workers(tank: pytest.Pytester) -> None:
     recorded(tank)
     tank.runpytest(*ONLINE, "--tarl-repair").assert_outcomes(failed=1, deselected=1)
     alone = result(tank)
@@ -40,7 +40,7 @@ def test_comparison_and_repair_on_workers_find_what_they_find_without(tank: pyte
     assert alone["repair"]["accepted"]
 
 
-def test_a_worker_that_dies_costs_its_episode_another_try(tank: pytest.Pytester) -> None:
+def test_the_episode_of_a_dead_worker_is_retried(tank: pytest.Pytester) -> None:
     alone = recorded(tank)
     dies_once = (
         "import os\n    from pathlib import Path\n"
@@ -65,7 +65,9 @@ def test_a_worker_that_dies_costs_its_episode_another_try(tank: pytest.Pytester)
     assert list(tank.path.glob("*.died"))
 
 
-def test_an_episode_that_kills_every_worker_is_named_and_the_old_fixture_stays(tank: pytest.Pytester) -> None:
+def test_an_episode_that_kills_every_worker_is_reported_and_the_old_recording_kept(
+    tank: pytest.Pytester,
+) -> None:
     before = recorded(tank)
     changed(
         tank,
@@ -81,7 +83,7 @@ def test_an_episode_that_kills_every_worker_is_named_and_the_old_fixture_stays(t
     assert fixture_file(tank).read_bytes() == before
 
 
-def test_what_a_test_says_in_a_worker_is_said_in_the_run(tank: pytest.Pytester) -> None:
+def test_errors_of_a_test_in_a_worker_are_reported_by_the_run(tank: pytest.Pytester) -> None:
     changed(tank, "test_tank", "tarl.reward(-abs(1.0 - level))", "pass")
     tank.runpytest(*RECORD, TWO).stdout.fnmatch_lines(["*The test never called tarl.reward*"])
 
@@ -93,12 +95,12 @@ def test_a_test_that_skips_itself_in_a_worker_is_skipped(tank: pytest.Pytester) 
     skipped.stdout.fnmatch_lines(["*no pump today*"])
 
 
-def test_what_keeps_a_worker_from_its_test_is_told(tank: pytest.Pytester) -> None:
+def test_the_reason_why_a_worker_cannot_prepare_its_test_is_reported(tank: pytest.Pytester) -> None:
     tank.makeconftest("import sys\nassert 'worker_main' not in sys.argv[0], 'not in a worker'\n")
     tank.runpytest(*RECORD, TWO).stdout.fnmatch_lines(["*not in a worker*"])
 
 
-def test_a_worker_has_the_fixtures_and_options_of_the_run_and_tears_down_in_the_end(
+def test_a_worker_has_the_fixtures_and_options_of_the_run_and_tears_down_at_the_end(
     tank: pytest.Pytester,
 ) -> None:
     tank.makeconftest(
@@ -118,7 +120,7 @@ def test_a_worker_has_the_fixtures_and_options_of_the_run_and_tears_down_in_the_
     assert "test_fills" in (tank.path / "out.xml").read_text()
 
 
-def test_with_xdist_each_of_its_workers_has_workers(tank: pytest.Pytester) -> None:
+def test_each_xdist_worker_has_its_own_workers(tank: pytest.Pytester) -> None:
     alone = recorded(tank)
     fixture_file(tank).unlink()
     tank.runpytest_subprocess(*RECORD, TWO, "-n2").assert_outcomes(passed=1)
@@ -126,7 +128,7 @@ def test_with_xdist_each_of_its_workers_has_workers(tank: pytest.Pytester) -> No
 
 
 def started(tank: pytest.Pytester, *flags: str) -> subprocess.Popen[bytes]:
-    """Start a recording in a process group of its own, as a terminal does."""
+    """Start a recording in its own process group, as a terminal does."""
     return subprocess.Popen(
         [sys.executable, "-m", "pytest", "-q", *RECORD, *flags],
         cwd=tank.path,
@@ -137,7 +139,7 @@ def started(tank: pytest.Pytester, *flags: str) -> subprocess.Popen[bytes]:
 
 
 def runs_in(process: Path, folder: Path) -> bool:
-    """Tell whether a process is alive and runs in a folder."""
+    """Return whether a process is alive and runs in a folder."""
     if process.name == str(os.getpid()):
         return False
     try:
@@ -147,7 +149,7 @@ def runs_in(process: Path, folder: Path) -> bool:
 
 
 def gone(folder: Path) -> bool:
-    """Tell whether no process is left in a folder, a while after."""
+    """Return whether all processes in a folder end within a while."""
     for _ in range(100):
         if not any(runs_in(process, folder) for process in Path("/proc").glob("[0-9]*")):
             return True
@@ -157,7 +159,7 @@ def gone(folder: Path) -> bool:
 
 @pytest.fixture
 def slow_tank(tank: pytest.Pytester) -> pytest.Pytester:
-    """A project whose fixture is there and whose next recording takes its time."""
+    """Return a project with a recording, whose next recording is slow."""
     recorded(tank)
     slowly = "    Path('begun').touch()\n    for _ in range(25):\n        time.sleep(0.02)"
     changed(tank, "test_tank", "import pytest\n", "import time\nfrom pathlib import Path\n\nimport pytest\n")
@@ -167,7 +169,7 @@ def slow_tank(tank: pytest.Pytester) -> pytest.Pytester:
 
 @pytest.mark.skipif(not Path("/proc/self/cwd").exists(), reason="looks for processes in /proc")
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL], ids=["Ctrl-C", "kill -9"])
-def test_a_run_that_is_ended_leaves_the_old_fixture_and_no_process(
+def test_an_aborted_run_keeps_the_old_recording_and_leaves_no_process(
     slow_tank: pytest.Pytester, how: signal.Signals
 ) -> None:
     before = fixture_file(slow_tank).read_bytes()
