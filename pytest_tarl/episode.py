@@ -250,7 +250,7 @@ class Tarl:
                 "tarl.reward(world.monitor())."
             )
         if self._faults.active:
-            return None  # silence is what the faults do
+            return None  # faults may silence sensors and nodes
         problem = self._situation.problem() or self._unmet()
         if problem is not None:
             return problem

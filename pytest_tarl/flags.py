@@ -1,4 +1,4 @@
-"""The flags that TARL adds to pytest: names, types, which of them start a TARL run, and what a misspelt one means."""
+"""The flags that TARL adds to pytest: names, types, which of them start a TARL run, and hints for misspelt ones."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ _FILES = {  # limit, usage and the statistic of cached files that the kernel may
 def available() -> int | None:
     """Return the bytes available without swapping; None if the system does not report it.
 
-    In a container, that is what its limit leaves, if this is less than the machine has.
+    In a container, the result is at most the unused part of the container's limit.
     """
     found = [one for one in (_of_machine(), *_of_groups()) if one is not None]
     return max(0, min(found)) if found else None
@@ -33,7 +33,7 @@ def _of_machine() -> int | None:
 
 
 def _of_groups() -> Iterator[int | None]:
-    """Yield what each control group of this process leaves it, the innermost first."""
+    """Yield the unused bytes of each control group of this process with a limit, innermost first."""
     try:
         lines = _OWN_GROUPS.read_text().splitlines()
     except OSError:

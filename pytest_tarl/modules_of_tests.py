@@ -11,8 +11,8 @@ import hashlib
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
-DIGITS = 12  # of a digest, in hexadecimal
-SHOWN = 3  # at most so many definitions of a file, and files, in a message
+DIGITS = 12  # hexadecimal digits of a digest
+SHOWN = 3  # most files in a message, and most definitions per file
 REST = ""  # the key of statements outside definitions
 
 Digests = Mapping[str, Mapping[str, str]]  # file, relative to the root → definition → digest

@@ -34,7 +34,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_load_initial_conftests(parser: pytest.Parser, args: list[str]) -> Generator[None]:
-    """Suggest the flag that a misspelt one means, once all plugins and conftest files have declared theirs."""
+    """Suggest a flag for a misspelt one, once all plugins and conftest files have declared their flags."""
     yield
     if any(word.startswith(PREFIX) for word in args):
         sentence = misspelt(parser.parse_known_and_unknown_args(args)[1])

@@ -32,8 +32,8 @@ class TooLargeError(ValueError):
 def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
     """Return the arrays by name.
 
-    Raises TooLargeError before anything is unpacked, DamagedError, and whatever else zip and npy headers can be damaged
-    to.
+    Raises TooLargeError, before anything is unpacked, and DamagedError; damaged zip and npy headers raise further
+    exceptions.
     """
     with ZipFile(io.BytesIO(content)) as archive:
         members = archive.infolist()
@@ -54,7 +54,7 @@ def read_arrays(content: bytes) -> dict[str, NDArray[Any]]:
 
 
 def numbers(arrays: Mapping[str, NDArray[Any]], name: str, *shape: int | None) -> NDArray[Any]:
-    """Return an array. Raise DamagedError if it is not there or of another shape; None stands for any length."""
+    """Return an array. Raise DamagedError if it is missing or has another shape; None stands for any length."""
     found = arrays.get(name)
     if found is None:
         raise DamagedError(f"it has no column {name!r}")

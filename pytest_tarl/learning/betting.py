@@ -1,7 +1,7 @@
 """Test by betting whether a mean is above a limit (Waudby-Smith & Ramdas 2023).
 
-Each episode is a bet against the claim that it is not. In a fair game, a bet that always stakes a fixed share of its
-wealth multiplies it by 1/risk with probability at most `risk`, whatever the distribution of the totals and the number
+Each episode is a bet against the claim that it is not. If the claim is true, a bet that always stakes a fixed share of
+its wealth ever multiplies it by 1/risk with probability at most `risk`, for any distribution of totals and any number
 of looks (Ville). Two bets share the wealth: a bold one, which wins soon if no episode is bad, and a careful one, which
 survives a few bad ones.
 """
@@ -17,7 +17,7 @@ from pytest_tarl.learning.bounds import mean_of
 
 BOLD, CAREFUL = 0.95, 0.5  # shares lost in the worst possible episode
 DOUBT = 1.5  # factor on the variance estimated from few episodes
-CERTAIN = 0.005  # approximate risk of giving up on a mean above the limit; it ends tests, it accepts nothing
+CERTAIN = 0.005  # approximate risk of giving up although the mean is above the limit; used only to refuse
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class Bet:
 
 
 def bet(margin: float, least: float, known: Sequence[float]) -> Bet:
-    """Return bets that grow fast if differences are as in `known`, shape (episodes,), which must not be bet on."""
+    """Return bets that grow fast if differences are as in `known`, shape (episodes,), which the test must not reuse."""
     counted = [max(one, least) for one in known]
     spread = DOUBT * variance(counted) if len(counted) > 1 else 0.0
     gap = max(fmean(counted) + margin, margin / 4)

@@ -12,8 +12,8 @@ jointly at the sum of their risks. Further assumptions:
                                                                 approximate (Welch) if one of them varies more
     detectable    -                                             approximate (normal)
 
-An acceptance asks whether a mean is above a limit, for values that have a lower end only: learning/betting.py, exact.
-No other module computes an interval or a quantile of its own (tests/plugin/learning/test_bounds_are_one_place.py).
+An acceptance test needs only a lower limit for a mean of values with a lower bound: learning/betting.py, exact.
+No other module computes an interval or a quantile (tests/plugin/learning/test_bounds_are_one_place.py).
 A search uses approximate bounds only to choose what to try and to rank, never to guarantee.
 
 "Exact" means at least the stated confidence, for any number of episodes that was fixed beforehand. If their number
@@ -38,7 +38,7 @@ from pytest_tarl.learning.tables import Floats
 from pytest_tarl.model import Bound
 
 POWER = 0.8  # power at the smallest detectable loss
-STAKE = 0.75  # share of the wealth that a bet may lose at once: the truncation c of Waudby-Smith & Ramdas
+STAKE = 0.75  # largest share of the wealth lost by a single bet: the truncation c of Waudby-Smith & Ramdas
 
 
 class Range(NamedTuple):
@@ -57,7 +57,7 @@ def rate(passed: int, episodes: int, confidence: float) -> Bound:
 
 
 def rate_low(passed: int, episodes: int, risk: float) -> float:
-    """Return the rate below which at least so many passes have a probability of at most `risk`."""
+    """Return the rate below which `passed` or more passes have a probability of at most `risk`."""
     if passed <= 0:
         return 0.0
     if passed == episodes:
@@ -100,7 +100,7 @@ def mean_of(
     """Return the one-sided bounds of a mean, each at the confidence; exact where the range is declared.
 
     With `anytime` they hold simultaneously after every episode. A bound from an early win may then exceed the observed
-    mean; it is clipped there. Raise ValueError if a total lies outside of the range.
+    mean; it is clipped there. Raise ValueError if a total lies outside the range.
     """
     values = np.asarray(totals, dtype=np.float64)
     if declared is None:

@@ -172,7 +172,7 @@ def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
 
 
 def outstanding(difference: Floats, significant: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return the significant cells whose difference is not small beside the largest, shape (cells,).
+    """Return the significant cells whose difference is at least MATERIAL of the largest one, shape (cells,).
 
     The designed mean per visit has an estimation error. If deployed episodes visit a cell more or less often, this
     error becomes significant with enough episodes, but it stays small.

@@ -13,8 +13,8 @@ from pytest_tarl.learning.tables import Floats, Ints, Sample
 from pytest_tarl.learning.tiles import tiled
 from pytest_tarl.sensors import Cell, Sensor
 
-NOVEL_VISITS = 3  # a cell unknown to the fit is novel from so many visits,
-NOVEL_EPISODES = 2  # in so many episodes
+NOVEL_VISITS = 3  # least visits for a cell unknown to the fit to count as novel ...
+NOVEL_EPISODES = 2  # ... and least episodes with such a visit
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Evidence:
     move: Floats  # per cell, like the next two
     reward: Floats
     novel: Floats
-    move_error: Floats  # rounding errors of the first two, which are 0 if no larger than it
+    move_error: Floats  # rounding error of `move` and `reward`, which are 0 if not above it
     reward_error: Floats
     slabs: tuple[Ints, ...]  # the cells of each slab
     totals: Floats
@@ -40,7 +40,7 @@ class Evidence:
         return (self.move, self.reward, self.novel, *slabs, self.totals)
 
     def covered(self, significant: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return the cells that lie in one of the chosen slabs, shape (cells,)."""
+        """Return the cells in the chosen slabs, boolean of shape (cells,)."""
         chosen = np.zeros(self.move.shape[1], dtype=bool)
         for slab in np.flatnonzero(significant).tolist():
             chosen[self.slabs[slab]] = True

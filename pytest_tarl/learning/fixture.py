@@ -273,7 +273,7 @@ def _judgements(header: Mapping[str, Any], columns: Mapping[str, np.ndarray[Any,
 
 
 def _check_header(header: Mapping[str, Any]) -> None:
-    """Raise DamagedError where the header tells something else than texts and numbers where they belong."""
+    """Raise DamagedError if a value in the header has the wrong type."""
     plain = [
         header["test"],
         header["learner"],

@@ -45,7 +45,7 @@ def _united(have: Sequence[Judgements | None], picked: Sequence[tuple[int, int]]
 
 
 def world(judged: Judgements | None, formula: str) -> FormulaWorld | None:
-    """Sum up a formula over the episodes in which it was judged; None if there is none."""
+    """Summarise a formula over the episodes that judged it; None if there is none."""
     if judged is None or formula not in judged.formulas:
         return None
     column = judged.formulas.index(formula)

@@ -50,9 +50,9 @@ def groups(cells: Sequence[Cell], without: Sequence[int]) -> tuple[tuple[Cell, .
 
 
 def projected(sample: Sample, without: Sequence[int]) -> Sample:
-    """Return the sample as it would be without some sensors; taint lists are left out."""
+    """Return the sample without some sensors and without taint lists."""
     cells, row = groups(sample.cells, without)
-    place = np.append(row, END)  # the last entry is where END goes
+    place = np.append(row, END)  # index -1 (END) maps to END
     chain = replace(sample.chain, cell=place[sample.chain.cell], next_cell=place[sample.chain.next_cell])
     return replace(sample, cells=cells, chain=chain, lists=())
 

@@ -57,7 +57,7 @@ class _Place:
 
     sample: Sample
     episode: Ints
-    cell: Ints  # the last entry is where END goes
+    cell: Ints  # new row of each cell; index -1 (END) maps to END
     part: Sequence[int]
     parts: int
 
@@ -90,7 +90,7 @@ class _Place:
         return _kept(moved)
 
     def flow(self, i: int, merged: Floats) -> None:
-        """Write the flows of a taint list to where its episodes are in the merged sample."""
+        """Write the flows of a taint list to the rows of its episodes in the merged sample."""
         kept = self.episode >= 0
         merged[self.episode[kept]] = self.sample.lists[i].flow[kept]
 
@@ -116,7 +116,7 @@ def _merge_list(places: Sequence[_Place], i: int, episodes: int) -> ListSample:
 
 
 def _kept(columns: Columns) -> Columns:
-    """Drop the rows of episodes that another sample holds."""
+    """Drop the rows of episodes that another sample contributes."""
     keep = columns.episode >= 0
     return type(columns)(*(getattr(columns, f.name)[keep] for f in fields(columns)))
 

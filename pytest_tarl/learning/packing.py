@@ -1,9 +1,9 @@
 """Pack columns of statistics into small arrays: integers unchanged, sums as logarithms minus a prediction.
 
-A sum z is kept as its sign and round(2¹⁶·log₂|z|): within 5.3e-6 of itself, whatever its size. In that form values
-that are proportional, as those of `delta` and `5 * delta`, differ by a constant, which deflate reduces to nothing. A
-sum of squares is close to the square of the sum over the count, so only the difference is kept, to 0.14 %. Packing
-what was unpacked gives the same arrays.
+A sum z is stored as its sign and round(2¹⁶·log₂|z|), with a relative error of at most 5.3e-6. In this form, values
+that are proportional, such as those of `delta` and `5 * delta`, differ by a constant, which deflate compresses well. A
+sum of squares is close to the squared sum divided by the count, so only the difference is stored, to 0.14 %. Packing
+unpacked arrays gives the same arrays.
 
 Samples compared with a recording pass through the same representation (`represented`): otherwise, where rewards are
 constant, rounding alone would distinguish the recorded world from the live one.
@@ -116,7 +116,7 @@ def unpacked_table(name: str, arrays: Mapping[str, NDArray[Any]]) -> Floats:
 
 
 def _visited(edges: Edges) -> tuple[Ints, Ints, Ints]:
-    """Return episode, state and count of every visit: each one is left by an edge, if only to the end."""
+    """Return episode, state and count of every visit; each visit has one outgoing edge, the last one to the end."""
     span = int(edges.state.max(initial=START)) + 1
     codes, inverse = np.unique(edges.episode * span + edges.state, return_inverse=True)
     count = sum_by(inverse, edges.count, codes.size).astype(np.int64)
@@ -124,7 +124,7 @@ def _visited(edges: Edges) -> tuple[Ints, Ints, Ints]:
 
 
 def _before(visits: Visits, width: int) -> Ints:
-    """Return by row the row before, where that is of the same cell in the same episode, else -1."""
+    """Return for each row the index of the previous row if it has the same cell and episode, else -1; shape (rows,)."""
     cell = np.where(visits.state > START, (visits.state - 1) // max(width, 1), -1)
     same = (np.diff(cell) == 0) & (np.diff(visits.episode) == 0)
     row = np.arange(cell.size, dtype=np.int64) - 1
@@ -132,14 +132,14 @@ def _before(visits: Visits, width: int) -> Ints:
 
 
 def _logarithms(values: Floats) -> Ints:
-    """Return round(2¹⁶·log₂|z|), 0 for zero; a square may be infinite, and stays it."""
+    """Return round(2¹⁶·log₂|z|), 0 for zero; infinite squares stay infinite."""
     size = np.abs(values)
     with np.errstate(divide="ignore"):
         return np.where(size > 0, np.rint(np.minimum(np.log2(size), 1024.0) * UNIT), 0).astype(np.int64)
 
 
 def _packed(values: Floats, foretold: Ints, step: int) -> tuple[Signs, Ints]:
-    """Return the signs, and how many steps each logarithm is from the foretold one."""
+    """Return the signs, and the distance of each logarithm from its prediction in steps."""
     signs = np.sign(values).astype(np.int8)
     away = np.rint((_logarithms(values) - foretold) / step).astype(np.int64)
     return signs, np.where(signs == 0, 0, away)
@@ -153,7 +153,7 @@ def _unpacked(column: tuple[Signs, Ints], foretold: Ints, step: int) -> tuple[Fl
 
 
 def _unpacked_in_turn(column: tuple[Signs, Ints], before: Ints) -> tuple[Floats, Ints]:
-    """Do the same where each value is foretold by the row before, 0 if there is none or that is zero."""
+    """Unpack values that are predicted by their previous row; the prediction is 0 without one or if it is zero."""
     signs, away = column
     starts = (before < 0) | (np.append(0, signs[:-1])[: signs.size] == 0)
     whole = np.cumsum(away)
@@ -176,7 +176,7 @@ def narrowed(whole: Ints) -> NDArray[Any]:
 
 
 def _stacked(name: str, columns: list[tuple[Signs, Ints]]) -> Arrays:
-    """Return signs, shape (columns, rows), and bytes by their place, shape (columns, 4, rows): many of them are 0."""
+    """Return signs, shape (columns, rows), and bytes by significance, shape (columns, 4, rows); many are 0."""
     signs = np.stack([one for one, _ in columns])
     away = np.stack([one for _, one in columns])
     folded = ((away << 1) ^ (away >> 63)).astype("<u4")

@@ -54,9 +54,9 @@ def max_statistic(
 ) -> Floats:
     """Return each column's p-value corrected over all columns, shape (columns,).
 
-    The first `first` rows are one group, the others the other. The statistic is the difference of the groups' means in
+    The first `first` rows form one group, the rest the other. The statistic is the difference of the groups' means in
     units of the column's standard deviation, which orders columns as the pooled t statistic does. A column is compared
-    with the maximum over those that do not differ more than it does (step-down). A column counts as constant if it
+    with the maximum over the columns that do not differ more (step-down). A column counts as constant if it
     varies by at most `error` of its largest entry.
     """
     deviation = columns - columns.mean(axis=0)
@@ -65,7 +65,7 @@ def max_statistic(
     p_values = np.ones(columns.shape[1])
     if not alive.size or not 0 < first < columns.shape[0]:
         return p_values
-    relative = deviation[:, alive] / extent[alive]  # squares of it neither overflow nor vanish
+    relative = deviation[:, alive] / extent[alive]  # scaled, so that squares neither overflow nor underflow
     standard = relative / np.sqrt((relative**2).mean(axis=0))
     statistic = np.abs(labels(columns.shape[0], first, generator, permutations) @ standard)
     order = np.argsort(statistic[0], kind="stable")

@@ -1,10 +1,10 @@
 """The Bellman residual of each step against the designed utility, in its two parts.
 
-Its expectation is zero where the world is the one in which the utility was fitted, so it locates the change itself,
+Its expectation is zero wherever the world is unchanged since the utility was fitted, so it locates the change itself,
 not cells upstream of it (performance-difference lemma, Kakade & Langford 2002).
 
-A residual below its own error is set to 0: for a constant reward, it only shows how sums are rounded (packing.py) and
-in which order they were computed.
+A residual below its own error is set to 0: for a constant reward, it only reflects the rounding of sums (packing.py)
+and the order of their computation.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from pytest_tarl.learning.utility import GAMMA_STEP
 class Residuals:
     """Per episode and cell, shape (episodes, cells): the two parts of the Bellman residual, visits to novel cells.
 
-    The errors bound what rounding may have added to each residual; sums of residuals have the sum of them.
+    The errors bound the rounding error of each residual; the error of a sum is the sum of the errors.
     """
 
     move: Floats
@@ -47,7 +47,7 @@ class Model:
     utility: Floats
     move: Floats  # mean of γU(x')-U(x) over the steps that are not the last
     reward: Floats
-    size: Floats  # mean |Σr| per step: what the error of `reward` is relative to
+    size: Floats  # mean |Σr| per step; the error of `reward` is relative to it
 
 
 def fitted(chain: Chain, cells: int, tiles: Tiles | None = None) -> Model:

@@ -1,4 +1,4 @@
-"""The paper's way to the utility, event by event: SARSA, and its relatives expected SARSA and TD(λ)."""
+"""Learn the utility event by event as in the paper: SARSA, and its relatives expected SARSA and TD(λ)."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Learner:
         self._seen = set[int]()
 
     def learn(self, sequence: EventSequence, cells: Sequence[Cell]) -> None:
-        """Follow one sequence whose states count the given cells."""
+        """Learn from one sequence of events whose cells are numbered as in the given ones."""
         states = self._numbered(sequence.state, cells).tolist()
         self._seen.update(states)
         self._follow(states, sequence.reward.tolist(), self._full)
@@ -57,7 +57,7 @@ class Learner:
         """Update internal counts after a sequence."""
 
     def _numbered(self, state: Ints, cells: Sequence[Cell]) -> Ints:
-        """Number states by the order in which their cells were first met."""
+        """Number states in the order in which their cells first occurred."""
         row = np.array([self._row.setdefault(cell, len(self._row)) for cell in cells], dtype=np.int64)
         more = [0.0] * (1 + len(self._row) * self.sites - len(self._full))
         self._full += more
@@ -79,14 +79,14 @@ class Sarsa(Learner):
 
 
 class ExpectedSarsa(Learner):
-    """Learn q(c) ← q(c) + α[ρ + γΣP(c'|c)q(c') - q(c)], P being what followed in the episodes before and in this one.
+    """Learn q(c) ← q(c) + α[ρ + γΣP(c'|c)q(c') - q(c)] with the transition frequencies P of all episodes so far.
 
-    Sutton & Barto 2018, §6.6, for the choice among sites and cells that the program and its world make.
+    Sutton & Barto 2018, §6.6, where program and world choose the next site and cell.
     """
 
     def __init__(self, sites: int, gamma: float = GAMMA_EVENT, alpha: float = ALPHA) -> None:
         super().__init__(sites, gamma, alpha)
-        self._followers: dict[int, dict[int, int]] = {}  # state → next state → how often
+        self._followers: dict[int, dict[int, int]] = {}  # state → next state → number of transitions
 
     def _follow(self, states: Sequence[int], rewards: Sequence[float], q: list[float]) -> None:
         chances = {
@@ -145,6 +145,6 @@ def _added(first: Mapping[int, int], second: Mapping[int, int]) -> dict[int, int
 
 
 def _shares(counts: Mapping[int, int]) -> list[tuple[int, float]]:
-    """Return the next states and how likely they are; the end, which is worth nothing, is left out."""
+    """Return the next states and their probabilities, without the end, whose utility is 0."""
     whole = sum(counts.values())
     return [(then, count / whole) for then, count in counts.items() if then != END]

@@ -21,7 +21,7 @@ Steps = NDArray[np.int32]
 class EventSequence:
     """The events of one thread in a taint list, after the start; columns of shape (events + 1,).
 
-    `reward` holds what an event is given in full (it is the last of its step), `scaled` is r·|f|.
+    `reward` is r for the last event of a step and 0 for others; `scaled` is r·|f|.
     """
 
     state: Ints
@@ -33,10 +33,10 @@ class EventSequence:
 def event_sequences(trace: Trace, members: Sequence[int]) -> tuple[EventSequence, ...]:
     """Return the events of a taint list whose n-th site has the global number `members[n]`, -1 for none.
 
-    One sequence per thread, at least one: what two threads did in one step has no order. A step's reward goes to its
-    last event, in equal shares where several threads have one; that of a step without events to those of the latest
-    earlier step, else to the first start. So rewards sum to the episode's total. Events before the first cell are
-    left out.
+    One sequence per thread, at least one, because events of two threads in one step have no order. A step's reward goes
+    to its last event, in equal shares if several threads have one. The reward of a step without events goes to the
+    latest earlier step with events, else to the first start. So rewards sum to the episode's total. Events before the
+    first cell are dropped.
     """
     index = _places(trace, members)
     known = (index >= 0) & (trace.event_cell >= 0)
@@ -59,7 +59,7 @@ def event_sequences(trace: Trace, members: Sequence[int]) -> tuple[EventSequence
 
 
 def _begun(unclaimed: float, state: Ints, given: Floats, scaled: Floats, flow: Floats) -> EventSequence:
-    """Put the start, which has the reward of the steps before any event, in front of the events."""
+    """Prepend the start, which gets the reward of the steps before any event."""
     whole = np.empty(state.size + 1, np.int64)
     whole[0], whole[1:] = START, state
     columns = [np.empty(state.size + 1) for _ in range(3)]
@@ -69,7 +69,7 @@ def _begun(unclaimed: float, state: Ints, given: Floats, scaled: Floats, flow: F
 
 
 def _places(trace: Trace, members: Sequence[int]) -> Steps:
-    """Return the place in the taint list of every event's site, -1 where it has none; shape (events,)."""
+    """Return the index of every event's site in the taint list, -1 if it is not in it; shape (events,)."""
     place = np.full(max([*members, int(trace.site.max(initial=-1)), 0]) + 1, -1, dtype=np.int32)
     for n, site in enumerate(members):
         if site >= 0:
@@ -78,7 +78,7 @@ def _places(trace: Trace, members: Sequence[int]) -> Steps:
 
 
 def _given(step: Steps, thread: Steps | None, reward: Floats) -> tuple[float, Floats]:
-    """Return the reward of the steps before any event, and what each event is given, shape (events,)."""
+    """Return the reward of the steps before any event, and the reward of each event, shape (events,)."""
     given = np.zeros(step.size)
     last = np.ones(step.size, dtype=bool)
     np.not_equal(step[1:], step[:-1], out=last[:-1])

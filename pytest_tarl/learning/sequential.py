@@ -1,7 +1,7 @@
 """Group-sequential testing: looks at which a comparison may end early, with shared risk (alpha spending).
 
-Of the risk α, α·t² is spent by the time that a share t of the episodes has run (Lan & DeMets 1983). The looks add up to
-α whatever the dependence between them, so an early end costs no false alarms.
+Of the risk α, α·t² is spent once a share t of the episodes has run (Lan & DeMets 1983). The looks add up to
+α under any dependence between them, so ending early does not increase false alarms.
 """
 
 from __future__ import annotations

@@ -15,11 +15,11 @@ from pytest_tarl.learning.roots import root
 from pytest_tarl.learning.tables import Floats, Ints
 from pytest_tarl.seeds import generator
 
-COARSE = 30  # halvings: the p-values of shuffles are known less well than floats
+COARSE = 30  # halvings; p-values from shuffles are less precise than floats
 LEAST_PERMUTATIONS = 999
-PER_RISK = 20  # permutations beyond a p-value at the risk that is asked for
+PER_RISK = 20  # permutations expected beyond the statistic at the requested risk
 MOST_PERMUTATIONS = 40_000
-AT_ONCE = 2_000  # shuffles that are drawn together: a few MB
+AT_ONCE = 2_000  # shuffles drawn together, which take a few MB
 
 
 def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
@@ -33,7 +33,7 @@ def shifts(offline: Floats, online: Floats, risk: float) -> tuple[float, float]:
     drawn = _drawn(offline.size + online.size, online.size, shuffles)
 
     def refuted(shift: float, sign: float) -> bool:
-        """Return whether the on-line group, moved so far from the same mean, is too low (or too high) for one world."""
+        """Return whether the deployed group, shifted by this amount, is significantly too low (or too high)."""
         pooled = sign * np.concatenate((after + shift, before))
         return _studentised_p(pooled - pooled.mean(), online.size, drawn) <= risk
 

@@ -49,7 +49,7 @@ def sample(trace: Trace, seed: int, passed: bool, lists: Sequence[Sequence[int]]
 
 
 def _relabelled(trace: Trace, cells: Sequence[Cell]) -> Trace:
-    """Number the trace's cells as in `cells`, which must hold them all."""
+    """Return the trace with its cells numbered as in `cells`, which must contain all of them."""
     index = {cell: i for i, cell in enumerate(cells)}
     place = np.array([*(index[cell] for cell in trace.cells), -1], dtype=np.int32)
     return replace(
@@ -81,9 +81,9 @@ def total_reward(reward: Floats) -> float:
 
 
 def total_rewards(reward: Floats, ends: Ints) -> Floats:
-    """Return `total_reward` of each of several episodes, to the last bit; `ends` has one entry more than these.
+    """Return the exact `total_reward` of each episode; `ends` has shape (episodes + 1,).
 
-    Those of equal length are added up together: numpy adds each row of a matrix as it adds the row alone.
+    Episodes of equal length are summed together; numpy sums each row of a matrix to the same bits as the row alone.
     """
     lengths = np.diff(ends)
     found = np.zeros(lengths.size)
@@ -95,12 +95,12 @@ def total_rewards(reward: Floats, ends: Ints) -> Floats:
 
 
 def summed(index: Ints, column: Floats, size: int) -> Floats:
-    """Return the sum at each index, 0 if all of it cancels out; shape (size,)."""
+    """Return the sum at each index, exactly 0 if it cancels out; shape (size,)."""
     return _cancelled(sum_by(index, column, size), sum_by(index, np.abs(column), size))
 
 
 def _cancelled(sums: Floats, sizes: Floats) -> Floats:
-    """Set to 0 what rounding left of values that cancel out, as those of `x - before` on a way back do."""
+    """Set sums to 0 that are only rounding errors of cancelling values, such as `x - before` over a round trip."""
     return np.where(np.abs(sums) > CANCELLED * sizes, sums, 0.0)
 
 
@@ -139,7 +139,7 @@ def _joined(columns: Sequence[NDArray[Any]]) -> NDArray[Any]:
 
 
 def _followers(state: Ints) -> Ints:
-    """Return the state after each one, at last the end."""
+    """Return the state after each event, the end for the last one."""
     following = np.empty_like(state)
     following[:-1], following[-1:] = state[1:], END
     return following
@@ -152,9 +152,9 @@ def _flows(state: Ints, flow: Floats, width: int) -> Floats:
 
 
 def _unique_pairs(first: Ints, second: Ints, inverse: bool = True) -> tuple[tuple[Ints, Ints], Ints, Ints]:
-    """Return the distinct (first, second) pairs in order, each row's pair where asked for, and each pair's count.
+    """Return the distinct (first, second) pairs in order, the index of each row's pair if requested, and the counts.
 
-    By counting where few pairs are possible, which is much faster than by sorting.
+    If few pairs are possible, a table of counts is used, which is much faster than sorting.
     """
     span = int(max(first.max(initial=0), second.max(initial=0))) + 2
     codes = first * span

@@ -12,12 +12,12 @@ from statistics import NormalDist, fmean, variance
 
 import numpy as np
 
-FEW_DEGREES = 20  # of freedom
+FEW_DEGREES = 20  # degrees of freedom below which the density is integrated
 
 
 def difference_bounds(first: Sequence[float], second: Sequence[float], risk: float) -> tuple[float, float]:
     """Return the one-sided lower and upper bounds of mean(first) - mean(second), each at `risk` (Welch)."""
-    unit = max(map(abs, (*first, *second))) or 1.0  # squares of so many units neither overflow nor vanish
+    unit = max(map(abs, (*first, *second))) or 1.0  # scaled, so that squares neither overflow nor underflow
     parts = [_spread([value / unit for value in group]) for group in (first, second)]
     spread = sqrt(sum(parts))
     freedom = [part**2 / max(len(group) - 1, 1) for part, group in zip(parts, (first, second), strict=True)]
@@ -36,7 +36,7 @@ def mean_bounds(values: Sequence[float], confidence: float) -> tuple[float, floa
 def student_quantile(probability: float, degrees: float) -> float:
     """Return a quantile of Student's t above the median; for many degrees by Abramowitz & Stegun 26.7.5.
 
-    For few, where that expansion is far too low, by adding up the density over θ = atan(t / √degrees): cosᵈ⁻¹θ.
+    For few degrees, where this expansion is far too low, integrate the density over θ = atan(t / √degrees): cosᵈ⁻¹θ.
     """
     if degrees < FEW_DEGREES:
         angle = np.linspace(0.0, np.pi / 2, 20_001)

@@ -1,7 +1,7 @@
 """Columns of recorded episodes: one row per (episode, transition) or (episode, state).
 
 States of a taint list with `width` sites are numbered 0 for the start of an episode and 1 + cell·width + n for site n
-in a cell; `END` is where an episode goes after its last event.
+in a cell. `END` is the state after the last event of an episode.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class ListSample:
 
     @property
     def mean_flow(self) -> float:
-        """Return F, the mean |f| per event; 1 where nothing flowed."""
+        """Return F, the mean |f| per event; 1 if it is zero."""
         events = self.visits.count[self.visits.state != START].sum()
         mean = float(self.flow.sum()) / events if events else 0.0
         return mean or 1.0
@@ -76,7 +76,7 @@ class ListSample:
 class Judgements:
     """Results of formulas; columns of shape (episodes, formulas).
 
-    Robustness is NaN if a formula was not judged, `lost` is when it was lost, in s, NaN if it was not.
+    Robustness is NaN if a formula was not judged. `lost` is the time of the violation in s, NaN without one.
     """
 
     formulas: tuple[str, ...]  # sorted
@@ -96,7 +96,7 @@ class Sample:
     part_names: tuple[str, ...]
     chain: Chain
     lists: tuple[ListSample, ...]
-    judgements: Judgements | None = None  # where there are formulas
+    judgements: Judgements | None = None  # None without formulas
 
     @property
     def episodes(self) -> int:

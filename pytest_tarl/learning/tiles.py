@@ -1,8 +1,8 @@
 """The parametric utility: tile coding (Sutton & Barto 2018, §9.5.4), solved by least squares (Bradtke & Barto 1996).
 
-A sensor with `tilings=T` is covered by T grids of tiles, each T bins wide and shifted by one bin against the next. A
-cell's utility is the sum of the weights of the T tiles that it lies in, one a grid, so near cells share what they
-learn. Sensors without tilings are taken as they are. It is fitted to the same counts as the table.
+A sensor with `tilings=T` has T grids of tiles; each tile is T bins wide, and each grid is shifted by one bin. A
+cell's utility is the sum of the weights of the T tiles that contain it, one per grid, so near cells share what they
+learn. Sensors without tilings keep their bins. The weights are fitted to the same counts as the table.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from pytest_tarl.learning.tables import END, START, Chain, Floats, Ints, ListSam
 from pytest_tarl.learning.utility import GAMMA_EVENT, GAMMA_STEP, batch, chain_utility, gradients
 from pytest_tarl.sensors import Cell, Sensor
 
-RIDGE = 1e-6  # of the mean number of visits, added to each weight's own: tilings alone do not tell all weights apart
-DENSE = 1500  # weights up to which the equations are solved at once
+RIDGE = 1e-6  # times the mean number of visits, added to the diagonal because tilings do not determine all weights
+DENSE = 1500  # most weights for a direct solution
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Tiles:
 
 
 def tiled(cells: Sequence[Cell], sensors: Sequence[Sensor]) -> Tiles | None:
-    """Return the tiles of the cells, None if no sensor has tilings and a table it is."""
+    """Return the tiles of the cells, None if no sensor has tilings."""
     grids = max((sensor.tilings for sensor in sensors), default=0)
     if not grids or not cells:
         return None
@@ -42,7 +42,7 @@ def tiled(cells: Sequence[Cell], sensors: Sequence[Sensor]) -> Tiles | None:
 
 
 def _grid(table: Ints, sensors: Sequence[Sensor], grid: int) -> Ints:
-    """Return the tile of each cell in one grid; dimensions are shifted by odd multiples, lest tiles line up."""
+    """Return the tile of each cell in one grid; dimensions shift by odd multiples so that tiles do not line up."""
     columns = []
     for d, sensor in enumerate(sensors):
         column = table[:, d]
@@ -64,7 +64,7 @@ def tiled_chain(chain: Chain, cells: int, tiles: Tiles | None, gamma: float = GA
 def tiled_batch(
     recorded: ListSample, cells: int, scale: float, tiles: Tiles | None, gamma: float = GAMMA_EVENT
 ) -> Floats:
-    """Return q(x, n), shape (cells, sites); each site has tiles of its own. NaN if never visited at all."""
+    """Return q(x, n), shape (cells, sites), NaN if never visited; each site has its own tiles."""
     if tiles is None:
         return batch(recorded, cells, scale, gamma)
     edges, visits, width = recorded.edges, recorded.visits, recorded.width
@@ -74,12 +74,12 @@ def tiled_batch(
     of = 1 + (tiles.of[:, None, :] + site[None, :, None]).reshape(cells * width, -1)
     of = np.concatenate((np.full((1, of.shape[1]), START), of))
     solved = _fitted(edges.state, edges.next_state, edges.count, reward, of, gamma)
-    solved[sum_by(edges.state, edges.count, states) == 0] = np.nan  # a slice shows what was executed
+    solved[sum_by(edges.state, edges.count, states) == 0] = np.nan  # slices show executed code only
     return solved[START + 1 :].reshape(cells, width)
 
 
 def expected(cell: Ints, count: Ints, brought: Floats, cells: int, tiles: Tiles | None) -> Floats:
-    """Return what one visit brings on average in each cell, shape (cells,); `brought` is summed over the `count`."""
+    """Return the mean contribution of a visit in each cell, shape (cells,); `brought` sums it over `count` visits."""
     total, visits = sum_by(cell, brought, cells), sum_by(cell, count, cells)
     if tiles is None:
         with np.errstate(invalid="ignore", divide="ignore"):

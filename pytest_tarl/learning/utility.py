@@ -1,8 +1,8 @@
 """Compute the utility of being at a site in a cell from the statistics.
 
 The learning signal is ρ = r·[last event of its step] + r·|f|/F (the reward-scaled flow value of Lyons &
-Zahra 2020); F is the mean |f| of the off-line recording. `batch` gives the fixed point that SARSA converges
-to, q = (I - γP)⁻¹ρ̄, straight from the counts.
+Zahra 2020); F is the mean |f| of the recording. `batch` computes the fixed point to which SARSA converges,
+q = (I - γP)⁻¹ρ̄, directly from the counts.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from pytest_tarl.learning.tables import START, Chain, Floats, Ints, ListSample, 
 
 GAMMA_EVENT = 0.95
 GAMMA_STEP = 0.97
-DENSE = 150  # states up to which the equations are solved at once
-PRECISE = 1e-12  # of the largest utility: the change in one sweep at which solving by sweeps ends
-STEPS = 300  # of the biconjugate gradients, which are left to the sweeps where they do not get there by then
+DENSE = 150  # most states for a direct solution
+PRECISE = 1e-12  # sweeps end when utilities change by less than this share of the largest one
+STEPS = 300  # most steps of biconjugate gradients; sweeps finish the solution in any case
 
 
 def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamma: float) -> Floats:
@@ -40,14 +40,14 @@ def fixed_point(state: Ints, next_state: Ints, count: Ints, reward: Floats, gamm
 
 
 def _united(start: Ints, end: Ints, weight: Floats) -> tuple[Ints, Ints, Floats]:
-    """Add up the weights of transitions that several episodes have made."""
+    """Sum the weights of equal transitions over all episodes."""
     span = int(end.max(initial=0)) + 1
     codes, place = np.unique(start * span + end, return_inverse=True)
     return codes // span, codes % span, sum_by(place, weight, codes.size)
 
 
 def _solved(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
-    """Solve q = ρ̄ + Wq at once, W being the sum of the weights of the transitions."""
+    """Solve q = ρ̄ + Wq directly, where W holds the weights of the transitions."""
     system = np.eye(mean.size)
     np.subtract.at(system, (start, end), weight)
     return np.linalg.solve(system, mean).astype(np.float64, copy=False)
@@ -56,8 +56,8 @@ def _solved(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
 def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
     """Solve the same by stabilised biconjugate gradients (van der Vorst 1992), then by sweeps, which contract by γ.
 
-    It takes memory for the transitions only, not for all pairs of states. The sweeps finish what the gradients began:
-    one or two where these converged, as many as it takes where they broke down.
+    This needs memory for the transitions only, not for all pairs of states. The sweeps complete the solution:
+    one or two if the gradients converged, more if they broke down.
     """
 
     def ahead(values: Floats) -> Floats:
@@ -72,7 +72,7 @@ def _approached(start: Ints, end: Ints, weight: Floats, mean: Floats) -> Floats:
 
 
 def gradients(system: Callable[[Floats], Floats], right: Floats) -> Floats:
-    """Return the x nearest to a solution of system(x) = right that biconjugate gradients reach, from x = right."""
+    """Return the best approximate solution of system(x) = right found by biconjugate gradients from x = right."""
     best = solution = right.copy()
     shadow = residual = right - system(solution)
     direction = residual.copy()

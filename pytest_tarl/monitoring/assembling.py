@@ -55,13 +55,13 @@ class Assembly:
 
     expected: Expected
     path: Path
-    begun: Progress  # how far it had been read when it was opened, and whether its missions count now
+    begun: Progress  # progress when the log was opened, and whether its missions count now
     place: int
     missions: int = 0
     unfinished: int = 0
-    _last: Spot | None = None  # the record with which the latest mission ended, or what else is done with
-    _latest: Spot | None = None  # the record that was read last
-    _mission: tuple[float, list[Steps]] | None = None  # when the one began that has not ended, and its steps
+    _last: Spot | None = None  # the last record of the latest mission, or a later one that belongs to none
+    _latest: Spot | None = None  # the last record read
+    _mission: tuple[float, list[Steps]] | None = None  # start time and steps of the unfinished mission
     _table: Table = field(default_factory=lambda: Table([], np.array([-1]), ()))
     _text: bytes = (
         b""  # the cells of the table as they stand in the log, where they were read from a mission at once
@@ -73,7 +73,7 @@ class Assembly:
         return advanced(self.begun, self._last, self.missions, self.unfinished)
 
     def of_block(self, block: Block) -> Iterator[Mission]:
-        """Yield the missions that end with a record of the block; it is left at a record that is none."""
+        """Yield the missions that end in the block; stop at an invalid record."""
         while block.left():
             if self._mission is None and self._latest == self._last and not self.begun.refused:
                 for found in block.at_once():
@@ -114,13 +114,13 @@ class Assembly:
         return Mission(passed, time, steps, new, self.begun, spot, self.missions, self.unfinished)
 
     def _take(self, record: Record, before: Spot | None) -> None:
-        """Take a record with which no mission ends that counts; `before` is the record before it, if it was read."""
+        """Process a record that ends no counted mission; `before` is the previous record, if it was read."""
         kind, last, refused = record["kind"], self._latest, self.begun.refused
         torn, self._mission = self._mission is not None and kind != "end", None
         if kind == "mission":
             self._mission = _time(record["time"]), []
             if not torn and (before is None or before == self._last):
-                return  # it begins where the last one ended
+                return  # a mission begins where the last one ended
             last = before
         elif kind == "start":
             self.begun = self.begun._replace(refused=self.expected.problem(record, self.path))

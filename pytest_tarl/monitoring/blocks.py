@@ -13,7 +13,7 @@ from pytest_tarl.observing.frames import HEAD, LARGEST, Record, unpack_head
 BLOCK = 1 << 15  # bytes read at once, about 200 records
 _DECODED = json.JSONDecoder().raw_decode
 _TEXTS = b"".join(rb'"%s":"[^"\n]*",' % name for name in (b"site", b"flow", b"cell", b"step", b"thread"))
-# A mission that an observer wrote at once: the records mission, steps and end
+# A mission in consecutive records, as short ones are written: mission, steps and end
 _AT_ONCE = re.compile(
     rb'\{"kind":"mission","time":([0-9.e+-]+)\}\n'
     rb'\{"kind":"steps","cells":(\[[^"\n]*\]),'
@@ -21,19 +21,19 @@ _AT_ONCE = re.compile(
     + rb'"step_cell":"([^"\n]*)","reward":"([^"\n]*)",.*\}\n'
     rb'\{"kind":"end","passed":(true|false),.*\}\n'
 )
-RECORDS = 3  # of such a mission
+RECORDS = 3  # records of such a mission
 
 
 Spot = tuple[int, int, int]  # offset of a record in its log, and length and checksum of its payload
 
 
-# A mission that was written at once: its time and cells as JSON, cells and rewards of its steps as base64, whether it
+# A mission in consecutive records: time and cells as JSON, cells and rewards of its steps as base64, whether it
 # passed as JSON, and the spot of its last record
 AtOnce = tuple[bytes, bytes, bytes, bytes, bytes, Spot]
 
 
 class Block:
-    """Consecutive records of a log, read one after the other or, where a mission was written at once, together."""
+    """Consecutive records of a log, read one by one or, for missions in consecutive records, three at a time."""
 
     def __init__(self, texts: list[bytes], spots: list[Spot]) -> None:
         self._texts = texts
@@ -46,11 +46,11 @@ class Block:
         self._at = 0
 
     def left(self) -> bool:
-        """Return whether a record is left."""
+        """Return whether any record is left."""
         return self._number < len(self._texts)
 
     def at_once(self) -> Iterator[AtOnce]:
-        """Take the missions that come next, up to the first one that was not written at once."""
+        """Return the next missions, up to the first one that is not in consecutive records."""
         match, lines = _AT_ONCE.match, self._lines
         while (found := match(lines, self._at)) is not None:
             self._at = found.end()
@@ -59,7 +59,7 @@ class Block:
             yield time, cells, cell, reward, passed, self._spots[self._number - 1]
 
     def record(self) -> Record:
-        """Take the next record. Raise ValueError if it is none."""
+        """Return the next record. Raise ValueError if it is invalid."""
         text = self._texts[self._number]
         found: Record = _DECODED(text.decode())[0]
         self._number += 1
@@ -67,18 +67,18 @@ class Block:
         return found
 
     def spot(self) -> Spot:
-        """Return where the record that was taken last is."""
+        """Return the spot of the last record returned."""
         return self._spots[self._number - 1]
 
 
 def end_of(spot: Spot) -> int:
-    """Return where the record after this one begins."""
+    """Return the offset of the next record."""
     begin, length, _ = spot
     return begin + HEAD + length
 
 
 def next_block(file: BinaryIO, place: int, size: int = BLOCK) -> Block:
-    """Return the records from `place` on, of about `size` bytes; none if no whole one is there."""
+    """Return about `size` bytes of records from `place` on; none if there is no complete one."""
     file.seek(place)
     data = file.read(max(size, HEAD))
     texts: list[bytes] = []
@@ -88,7 +88,7 @@ def next_block(file: BinaryIO, place: int, size: int = BLOCK) -> Block:
         length, checksum = unpack_head(data, at)
         begin = at + HEAD
         if length > most - at and not spots and length <= LARGEST:
-            data += file.read(begin + length - len(data))  # one record that is larger than a block
+            data += file.read(begin + length - len(data))  # a record larger than a block
         payload = data[begin : begin + length]
         if len(payload) < length or length > LARGEST or zlib.crc32(payload) != checksum:
             break

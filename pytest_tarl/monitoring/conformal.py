@@ -1,13 +1,13 @@
 """Conformal test martingales: test whether new missions are exchangeable with held-out recorded ones.
 
-The pool begins with the scores of the held-out recorded missions, and every new mission joins it after it was judged.
-So the smoothed rank of a new score in the pool is uniform and independent of all ranks before, exactly, as long as the
-missions are exchangeable (Vovk, Gammerman & Shafer 2005, theorem 8.1), however few recorded missions there are. A fixed
+The pool starts with the scores of the held-out recorded missions, and every new mission joins it after its test.
+So the smoothed rank of a new score in the pool is exactly uniform and independent of all earlier ranks, as long as the
+missions are exchangeable (Vovk, Gammerman & Shafer 2005, theorem 8.1), for any number of recorded missions. A fixed
 pool would not work: the chance composition of its few missions would accumulate as evidence.
 
 Scores are rounded to bins, whose edges come from the other half of the recorded missions, so binning is a fixed
-function of a score. The pool is then a row of counts: small, whatever the number of missions, and exact, since ties are
-broken at random. A bet is a function of the rank p that is never negative and has integral 1 over [0, 1].
+function of a score. The pool is then a row of counts: of fixed size for any number of missions, and exact, because ties
+are broken at random. A bet is a non-negative function of the rank p with integral 1 over [0, 1].
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from numpy.typing import NDArray
 from pytest_tarl.learning.tables import Floats, Ints
 
 BINS = 64
-TAIL = 8  # bins beyond the fitted scores on either side; each twice as wide as the previous one
-TOGETHER = 64  # missions ranked at once; a multiple of 8 below 256
+TAIL = 8  # bins beyond the fitted scores on either side, each twice as wide as the previous one
+TOGETHER = 64  # missions ranked together; a multiple of 8 below 256
 CLOSE = 1e-4  # share of a score's unit below which values count as equal
 
 
 def edges(fitted: NDArray[np.float64], unit: float) -> Floats:
-    """Return the edges of the bins, shape (BINS - 1,), from scores that are not judged themselves.
+    """Return the edges of the bins, shape (BINS - 1,), from scores that are not in the pool.
 
     They lie midway between neighbouring values, so that no rounding of a value moves it into another bin. `unit` is
-    the size of what was summed up to these scores; infinite edges are of bins that stay empty.
+    the magnitude of the terms summed in these scores; bins with infinite edges stay empty.
     """
     unit = unit or 1.0
     values = np.unique(np.rint(fitted / (CLOSE * unit))) * (CLOSE * unit)
@@ -48,7 +48,7 @@ def ranks(pool: Ints, bins: Ints, draws: Floats) -> tuple[Floats, Floats]:
     """Return the smoothed ranks p and 1 - p of new scores, shape (missions, scores), both above 0.
 
     `pool` holds the counts before the first of these missions, shape (scores, BINS), `bins` those of the new scores, -1
-    where a mission has none; each joins the pool after it was ranked. `draws` are uniform on (0, 1], one a mission. At
+    if a mission has none; each joins the pool after its ranking. `draws` are uniform on (0, 1], one per mission. At
     most TOGETHER missions.
     """
     has, score = bins >= 0, np.arange(bins.shape[1])
@@ -66,7 +66,7 @@ def ranks(pool: Ints, bins: Ints, draws: Floats) -> tuple[Floats, Floats]:
 
 
 def _earlier(bins: Ints) -> tuple[Ints, Ints]:
-    """Return how many of the missions before each one have the same bin and how many a smaller one, by score."""
+    """Return the numbers of earlier missions with the same bin and with a smaller bin, for each mission and score."""
     count, scores = bins.shape
     mine = np.full((scores, TOGETHER), BINS, np.int8)
     mine[:, :count] = bins.T
@@ -76,7 +76,7 @@ def _earlier(bins: Ints) -> tuple[Ints, Ints]:
 
 
 def _counted(found: NDArray[np.bool_]) -> Ints:
-    """Return how many of the last axis are true, transposed: eight bytes at a time, whose sums stay below 256."""
+    """Count true values along the last axis, transposed; adds eight bytes at a time, whose sums stay below 256."""
     words = found.view(np.uint64)
     total = words[..., 0].copy()
     for place in range(1, words.shape[-1]):
@@ -85,7 +85,7 @@ def _counted(found: NDArray[np.bool_]) -> Ints:
 
 
 def joined(pool: Ints, bins: Ints) -> Ints:
-    """Return the pool with these scores in it."""
+    """Return the pool with these scores added."""
     score = np.broadcast_to(np.arange(bins.shape[1]), bins.shape)
     has = bins >= 0
     added = np.bincount(score[has] * BINS + bins[has], minlength=pool.size)
@@ -93,10 +93,11 @@ def joined(pool: Ints, bins: Ints) -> Ints:
 
 
 def factors(low: Floats, high: Floats, found: Floats) -> None:
-    """Write what each bet's stake is multiplied by, shape (missions, bets, scores), from ranks (missions, scores).
+    """Write the factor on each bet's stake, shape (missions, bets, scores), from ranks of shape (missions, scores).
 
-    εp^(ε-1) bets on small ranks, the same of 1 - p on large ones and of the distance to the nearer end on both; the
-    lines 1 ± (1 - 2p)/2 bet on small shifts. Powers are made of square roots.
+    εp^(ε-1) bets on small ranks, the same function of 1 - p on large ones, and of the distance to the nearer end on
+    both; the lines 1 ± (1 - 2p)/2 bet on small shifts. Powers are computed with square roots, which round the same on
+    all platforms.
     """
     for place, rank in ((0, low), (4, high)):
         root = np.sqrt(rank)

@@ -40,7 +40,7 @@ def schema() -> dict[str, Any]:
 
 
 def document(watch: Watch, status: Status) -> dict[str, Any]:
-    """Return the account as plain values; evidence as log10, whose alarm is at -log10(alpha)."""
+    """Return the status as plain values; evidence is given as log10, with the alarm at -log10(alpha)."""
     words = Vocabulary(watch.fixture.sensors, {*watch.fixture.sample.cells, *status.new})
     lead = status.lead
     return {

@@ -1,9 +1,9 @@
 """Find the changed cells: the e-BH procedure over one e-value per cell, valid at any time.
 
 Evidence about several cells comes in several filtrations: each cell's ranks are independent of each other, but not
-given those of all cells. An e-process stays one in a finer filtration after its running maximum was adjusted (Choe &
-Ramdas 2024), so that is done before cells are compared; then e-BH (Wang & Ramdas 2022) keeps the share of wrongly
-named cells at α or less in expectation, however they depend on each other and whenever one looks.
+given those of all cells. With its running maximum adjusted, an e-process remains one in a finer filtration (Choe &
+Ramdas 2024), so this is done before cells are compared; then e-BH (Wang & Ramdas 2022) keeps the share of wrongly
+named cells at α or less in expectation, under any dependence and at any time.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pytest_tarl.learning.tables import Floats
 
 
 def adjusted(log_peak: NDArray[np.float64]) -> Floats:
-    """Return log2 of the adjusted running maximum x, (x - 1 - ln x) / ln² x, from log2 of it; 0 at the least.
+    """Return log2 of the adjusted running maximum, (x - 1 - ln x) / ln² x, from log2 of x, which is at least 0.
 
     This is the mean of the adjusters k·x^(1-k) over k in (0, 1): an adjuster F has ∫ F(x)/x² dx ≤ 1 over [1, ∞).
     """

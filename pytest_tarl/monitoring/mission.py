@@ -15,7 +15,7 @@ from pytest_tarl.sensors import Cell
 
 
 class Progress(NamedTuple):
-    """How far a log was read: up to `offset`, where the record at `last` ends, whose length and checksum is `mark`.
+    """Progress in a log: it was read up to `offset`, the end of the record at `last` with length and checksum `mark`.
 
     The log is identified by its first record, even after renaming. `refused` is a sentence on why missions at the
     offset are not comparable with the recording.
@@ -28,26 +28,26 @@ class Progress(NamedTuple):
     mark: str
     refused: str = ""
     missions: int = 0
-    unfinished: int = 0  # missions without an end before the next one began
+    unfinished: int = 0  # missions without an end
 
 
 @dataclass(frozen=True)
 class Table:
-    """The cells that a record's steps refer to: their rows, -1 at last, and those that the fixture does not know."""
+    """The cells of a record's steps: their rows, with -1 as the last, and the cells unknown to the recording."""
 
     cells: list[Any]
     rows: Ints
-    new: Sequence[Cell | None]  # None where the fixture knows the cell; empty where it knows all
+    new: Sequence[Cell | None]  # None for known cells; empty if all are known
 
 
-# Some steps of a mission as they stand in the log: cells and rewards are little-endian columns, int32 and float64
+# Steps of a mission as stored in the log: cells and rewards are little-endian columns of int32 and float64
 Steps = tuple[Table, bytes, bytes]
 
 
 class Mission(NamedTuple):
-    """A mission that has ended, its cells that the fixture does not know, and how far its log was read with it.
+    """A finished mission, its cells that the recording does not know, and the progress in its log.
 
-    That is since `begun`, when the log was opened, up to the record at `last`.
+    The progress counts from `begun`, when the log was opened, to the record at `last`.
     """
 
     passed: bool
@@ -61,12 +61,12 @@ class Mission(NamedTuple):
 
     @property
     def progress(self) -> Progress:
-        """Return how far its log was read with it."""
+        """Return the progress in its log after this mission."""
         return advanced(self.begun, self.last, self.missions, self.unfinished)
 
 
 def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int) -> Progress:
-    """Return how far a log was read since `begun`, with the record at `last`; None if with none."""
+    """Return the progress in a log from `begun` to the record at `last`; None if no record was read."""
     counted = begun._replace(missions=missions, unfinished=unfinished)
     if last is None:
         return counted
@@ -74,13 +74,13 @@ def advanced(begun: Progress, last: Spot | None, missions: int, unfinished: int)
 
 
 def mark(spot: Spot) -> str:
-    """Return what a record is known by."""
+    """Return the identification of a record."""
     _, length, checksum = spot
     return f"{length}:{checksum}"
 
 
 def columns(missions: Sequence[Mission]) -> tuple[Ints, Ints, Floats]:
-    """Return the mission of every step of all missions, by its place, the row of its cell, and its reward."""
+    """Return mission index, cell row and reward of every step of all missions, each of shape (steps,)."""
     pieces = [one for mission in missions for one in mission.steps]
     reward = np.frombuffer(b"".join([rewards for _, _, rewards in pieces]), "<f8").astype(np.float64)
     owner = np.repeat(np.arange(len(missions)), [len(mission.steps) for mission in missions])
@@ -92,6 +92,6 @@ def columns(missions: Sequence[Mission]) -> tuple[Ints, Ints, Floats]:
 
 
 def latest(missions: Sequence[Mission]) -> dict[str, Progress]:
-    """Return how far each log was read with its last mission, by its first record."""
+    """Return the progress in each log after its last mission, by the log's first record."""
     last = {one.begun.log: one for one in missions}
     return {log: one.progress for log, one in last.items()}

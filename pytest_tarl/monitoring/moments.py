@@ -17,7 +17,7 @@ class Moments:
     times: list[float] = field(default_factory=list)
 
     def add(self, first: int, times: Sequence[float]) -> None:
-        """Note when missions began, the first of which has that number; they come in the order of their numbers."""
+        """Store the start times of consecutive missions, the first of which has this number."""
         number = first + -first % self.stride
         while number < first + len(times):
             self.times.append(times[number - first])
@@ -27,6 +27,6 @@ class Moments:
             number += self.stride - number % self.stride
 
     def at(self, number: int) -> float | None:
-        """Return when the latest kept mission up to this one began."""
+        """Return the start time of the latest stored mission up to this one."""
         place = bisect_right(range(0, len(self.times) * self.stride, self.stride), number) - 1
         return self.times[place] if place >= 0 else None

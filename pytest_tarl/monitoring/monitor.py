@@ -23,9 +23,9 @@ from pytest_tarl.monitoring.stated import Bound, bounds
 from pytest_tarl.seeds import generator
 from pytest_tarl.sensors import Cell
 
-PORTION = 512  # missions scored at once
+PORTION = 512  # missions scored together
 MOST_NEW = 256  # most new cells counted
-DRAWS = 4096  # random numbers drawn at once
+DRAWS = 4096  # random numbers drawn together
 
 
 @dataclass
@@ -36,7 +36,7 @@ class Counts:
     passed: int = 0
     without_steps: int = 0
     without_rewards: int = 0
-    beyond_range: int = 0  # totals outside of the declared range
+    beyond_range: int = 0  # totals outside the declared range
 
 
 @dataclass
@@ -51,7 +51,7 @@ class Monitor:
     pool: Ints
     counts: Counts = field(default_factory=Counts)
     moments: Moments = field(default_factory=Moments)
-    new: dict[Cell, int] = field(default_factory=dict)  # missions in cells that no off-line episode was in
+    new: dict[Cell, int] = field(default_factory=dict)  # cell not in the recording → missions there
     drawn: tuple[int, NDArray[np.float64]] = (-1, np.empty(0))
 
     def observe(self, missions: Missions) -> None:
@@ -59,7 +59,7 @@ class Monitor:
         self.take(sampled(self.scale, missions), missions.time, missions.new)
 
     def take(self, sample: Sample, time: Floats, new: Sequence[Cell] = ()) -> None:
-        """Take missions over the scale's cells and one more for all others, the `new` ones; total NaN: unknown."""
+        """Update with missions over the scale's cells plus one for others, the `new` ones; unknown totals are NaN."""
         bins = binned(self.scale, sample)
         self.moments.add(self.counts.missions, time.tolist())
         for begin in range(0, sample.episodes, conformal.TOGETHER):
@@ -68,7 +68,7 @@ class Monitor:
         self._count(sample, new)
 
     def _judge(self, passed: NDArray[np.bool_], total: Floats, bins: Ints) -> None:
-        """Update the processes with some missions and add these to the pool."""
+        """Update the processes with some missions and add them to the pool."""
         first, count = self.counts.missions, len(bins)
         taken = np.concatenate((*(_told(bound, total) for bound in self.bounds), bins >= 0), axis=1)
         factors = np.empty((count, restarts.BETS, self.processes.count))
@@ -83,7 +83,7 @@ class Monitor:
         self.counts.passed += int(passed.sum())
 
     def _draws(self, first: int, count: int) -> Floats:
-        """Return the numbers on (0, 1] by which ties of some missions are broken; a function of seed and mission."""
+        """Return numbers in (0, 1] that break ties of some missions; a function of seed and mission number."""
         found = []
         for which in range(first // DRAWS, (first + count - 1) // DRAWS + 1):
             if self.drawn[0] != which:
@@ -105,20 +105,20 @@ class Monitor:
 
 
 def _told(bound: Bound, total: Floats) -> NDArray[np.bool_]:
-    """Return which missions say something of a bound, shape (missions, 1)."""
+    """Return which missions provide an observation for a bound, boolean of shape (missions, 1)."""
     testable = e_process.testable(float(bound.share(bound.least)))
     return (testable & (np.isfinite(total) | (bound.what == "success")))[:, None]
 
 
 def _against(bound: Bound, passed: NDArray[np.bool_], total: Floats) -> Floats:
-    """Return what stakes against a bound are multiplied by, shape (missions, bets)."""
+    """Return the factors on stakes against a bound, shape (missions, bets)."""
     least = float(bound.share(bound.least))
     observed = passed.astype(np.float64) if bound.what == "success" else total
     return e_process.factors(least, bound.share(observed)) if e_process.testable(least) else np.ones((1, 1))
 
 
 def begun(fixture: Fixture, *, alpha: float, seed: int) -> Monitor:
-    """Return a monitor that has seen no mission. Raise FixtureError if the fixture holds too few episodes."""
+    """Return a new monitor. Raise FixtureError if the recording has too few episodes."""
     how, held_out = scale(fixture)
     stated = bounds(fixture)
     scores = held_out.shape[1]

@@ -36,9 +36,9 @@ def run(library: str, look: Look, period: float) -> None:
 
 
 def array(messages: Any, stamp: Any, watch: Watch, status: Status, *, bytes_level: bool) -> Any:
-    """Return the account as a message: WARN where the world changed, ERROR where a bound is broken.
+    """Return the status as a message: WARN if the world changed, ERROR if a bound is violated.
 
-    `bytes_level` tells whether a level is a byte, as in ROS 2, or a number, as in ROS 1.
+    `bytes_level` is true if levels are bytes, as in ROS 2, and false if they are numbers, as in ROS 1.
     """
     level = ERROR if status.below else WARN if status.drifted else OK
     entry = messages.DiagnosticStatus()
@@ -54,7 +54,7 @@ def array(messages: Any, stamp: Any, watch: Watch, status: Status, *, bytes_leve
 
 
 def values(watch: Watch, status: Status) -> list[tuple[str, str]]:
-    """Return the account by key; evidence as log10, whose alarm is at -log10(alpha)."""
+    """Return the status by key; evidence is given as log10, with the alarm at -log10(alpha)."""
     found = [
         ("missions", str(status.missions)),
         ("passed", str(status.passed)),

@@ -31,8 +31,8 @@ class LogReader:
     def missions(self) -> Iterator[Mission]:
         """Yield the missions that ended since the last call.
 
-        A rotated log is read to its end before the one that took its name. Missions that were not taken come again,
-        where `known` was kept up to date.
+        A rotated log is read to its end before the log with its old name. Missions that were not consumed are
+        yielded again, provided that `known` is kept up to date.
         """
         if self._ahead:
             self.close()
@@ -46,11 +46,11 @@ class LogReader:
 
     @property
     def progress(self) -> Progress | None:
-        """Return how far the log was read, None if it is not open."""
+        """Return the progress in the log, None if it is not open."""
         return None if self._open is None else self._open[1].progress
 
     def close(self) -> None:
-        """Close the file; reading goes on where `known` says."""
+        """Close the file; reading resumes at the progress in `known`."""
         if self._open is not None:
             file, assembly = self._open
             file.close()
@@ -78,7 +78,7 @@ class LogReader:
         return self._open
 
     def _begun(self, file: BinaryIO) -> Progress | None:
-        """Find out which log this is and where to go on. Return None if there is nothing to read."""
+        """Identify the log and its progress. Return None if there is nothing to read."""
         magic = file.read(len(MAGIC))
         if not MAGIC.startswith(magic):
             self.problem = f"{self.path} is not a log of `tarl observe` of this version: name such a log."
@@ -86,7 +86,7 @@ class LogReader:
         self.problem = ""
         first = next_record(file) if magic == MAGIC else None
         if first is None:
-            return None  # nothing was written yet
+            return None  # the log is still empty
         log = hashlib.sha256(first).hexdigest()[:16]
         if log in self.owners:
             self.problem = (
@@ -104,7 +104,7 @@ class LogReader:
         return begun
 
     def _rotated(self, file: BinaryIO, assembly: Assembly) -> bool:
-        """Return whether another file has the log's name by now, or the log got shorter than what was read of it."""
+        """Return whether another file has taken the log's name, or the log is shorter than the part already read."""
         mine = os.fstat(file.fileno())
         try:
             there = self.path.stat()
@@ -114,7 +114,7 @@ class LogReader:
         return other or mine.st_size < assembly.progress.offset
 
     def _read(self, file: BinaryIO, assembly: Assembly) -> Iterator[Mission]:
-        """Yield missions up to the last whole record."""
+        """Yield missions up to the last complete record."""
         while (block := next_block(file, assembly.place)).left():
             yield from assembly.of_block(block)
             self.problem = assembly.begun.refused

@@ -1,17 +1,17 @@
-"""Many e-processes side by side, each a mixture over bets and over the mission before which it was started.
+"""Many e-processes in parallel, each a mixture over bets and over start times (restarts before each mission).
 
-One bet k multiplies its stake by a factor f ≥ 0 of mean at most 1. Started before observation τ it is worth
+One bet k multiplies its stake by a factor f ≥ 0 of mean at most 1. If started before observation τ, its value is
 ∏_{t ≥ τ} f_t, and 1 before. The mixture over k and τ with weights that sum to 1 is again an e-process (Shin, Ramdas &
-Rinaldo 2023, e-detectors): by Ville's inequality it exceeds 1/α ever with probability at most α. A restart before
-every observation costs nothing beyond one product, since
+Rinaldo 2023, e-detectors): by Ville's inequality, it ever exceeds 1/α with probability at most α. A restart before
+every observation costs only one product, since
 
     Σ_{τ ≤ t} w_τ ∏_{s=τ..t} f_s = (Σ_{τ < t} w_τ ∏_{s=τ..t-1} f_s + w_t) · f_t.
 
 Half of the weight is on a change before the first observation; the rest falls geometrically from one octave of τ to
-the next, by 2^(-1/8), so that a change after 100,000 quiet missions pays 15 units of log evidence and not all of it.
+the next, by 2^(-1/8), so that a change after 100,000 quiet missions loses only 15 units of log evidence.
 
-Only sums, products and square roots are used, which IEEE 754 rounds the same everywhere: the same observations give
-the same bits, in whatever portions they come.
+Only sums, products and square roots are used, which IEEE 754 rounds the same everywhere: equal observations give
+equal bits, however they are divided into portions.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ from numpy.typing import NDArray
 
 from pytest_tarl.learning.tables import Floats, Ints
 
-BETS = 12  # in each process
+BETS = 12  # bets per process
 LARGE = 600  # binary orders of magnitude at which stakes are scaled down; one factor is below 2^70
-LOOK = 4  # missions between two looks at that, by their numbers, so that portions change nothing
+LOOK = 4  # check for LARGE when a mission's number is a multiple of this, so that portions do not matter
 
 
 @dataclass
 class Processes:
-    """The state of some e-processes, one a column; `stake`, `best` and `since` have shape (bets, processes).
+    """The state of several e-processes, one per column; `stake`, `best` and `since` have shape (bets, processes).
 
     `stake` is Σ_τ w_τ ∏f and `best` the largest term of that sum, both divided by 2^exponent; `since` is the mission
-    before which that largest term was started. `age` counts the observations of a process; `peak` is the largest
-    log2 of its evidence so far, `alarm` the mission with which that reached `threshold`, -1 where none did.
+    before which the largest term started. `age` counts the observations of a process; `peak` is the largest
+    log2 of its evidence so far, `alarm` the mission at which it reached `threshold`, -1 for none.
     """
 
     stake: Floats
@@ -48,7 +48,7 @@ class Processes:
 
     @property
     def count(self) -> int:
-        """Return how many processes there are."""
+        """Return the number of processes."""
         return len(self.age)
 
 
@@ -68,16 +68,16 @@ def begun(threshold: Floats) -> Processes:
 
 
 def reserve(age: NDArray[np.int64]) -> Floats:
-    """Return the weight of all restarts that are still to come after so many observations: 1, then ½·age^(-1/8)."""
+    """Return the total weight of restarts after `age` observations: 1 for none, then ½·age^(-1/8)."""
     root = np.sqrt(np.sqrt(np.sqrt(np.maximum(age, 1).astype(np.float64))))
     return np.where(age > 0, 0.5 / root, 1.0)
 
 
 def advance(processes: Processes, taken: NDArray[np.bool_], factors: Floats, first: int) -> None:
-    """Take some missions one after the other, the first of which has the number `first`.
+    """Update with consecutive missions, the first of which has the number `first`.
 
-    `taken` tells which processes observed something in which mission, shape (missions, processes); `factors`, shape
-    (missions, bets, processes), is what their stakes are multiplied by, and 1 where nothing was observed.
+    `taken`, shape (missions, processes), is true if a mission has an observation for a process. `factors`, shape
+    (missions, bets, processes), multiply the stakes; they are 1 without an observation.
     """
     rows = np.flatnonzero(taken.any(axis=0))
     if not rows.size:
@@ -99,7 +99,7 @@ def advance(processes: Processes, taken: NDArray[np.bool_], factors: Floats, fir
 def _multiplied(
     processes: Processes, rows: Ints, weight: Floats, factors: Floats, first: int
 ) -> tuple[Floats, Ints]:
-    """Update stakes, mission by mission; return their sums and the exponents after each, shape (missions, rows).
+    """Update stakes mission by mission; return their sums and exponents after each, shape (missions, rows).
 
     Rows of `stake` and `best` are the state before each mission and after the last one, all bets of all processes.
     """
@@ -130,12 +130,12 @@ def _multiplied(
 
 
 def log_evidence(processes: Processes) -> Floats:
-    """Return log2 of the evidence of every process as it is now, shape (processes,)."""
+    """Return log2 of the current evidence of every process, shape (processes,)."""
     left = np.ldexp(reserve(processes.age), -processes.exponent)
     found: Floats = np.log2(np.add.reduce(processes.stake, axis=0) / BETS + left) + processes.exponent
     return found
 
 
 def onset(processes: Processes, row: int) -> int:
-    """Return the mission before which the restart was made that explains most of a process's evidence."""
+    """Return the mission before which the restart with most of a process's evidence was made."""
     return int(processes.since[int(np.argmax(processes.best[:, row])), row])

@@ -23,36 +23,36 @@ from pytest_tarl.monitoring.conformal import BINS, edges
 from pytest_tarl.sensors import Cell
 
 WHOLE = ("success", "total", "residual", "unknown", "steps")  # scores of a mission, before those of its cells
-FEWEST = 2  # episodes in either half of a fixture
+FEWEST = 2  # least episodes in each half of a recording
 
 
 @dataclass(frozen=True)
 class Missions:
-    """Some missions in the order in which they count; step columns have shape (steps,).
+    """Missions in order; step columns have shape (steps,).
 
-    `cell` is a row of the scale's cells, one more than the last for any other cell, and -1 where sensors had told
-    nothing yet. A mission may have no steps.
+    `cell` is a row of the scale's cells, one more than the last for any other cell, and -1 before all sensors had a
+    value. A mission may have no steps.
     """
 
     passed: NDArray[np.bool_]
-    time: Floats  # seconds since 1970 at which each began, shape (missions,)
-    mission: Ints  # of each step
+    time: Floats  # start of each mission in seconds since 1970, shape (missions,)
+    mission: Ints  # index of each step's mission
     cell: Ints
     reward: Floats
-    new: tuple[Cell, ...] = ()  # cells that are none of the scale's, once for each mission that was in them
+    new: tuple[Cell, ...] = ()  # cells not in the scale, once for each mission that visited them
 
     @property
     def count(self) -> int:
-        """Return how many missions there are."""
+        """Return the number of missions."""
         return len(self.passed)
 
 
 @dataclass(frozen=True)
 class Scale:
-    """How missions are scored: the fitted model, its cells, and the bins of every score, shape (scores, BINS - 1)."""
+    """The scoring of missions: fitted model, its cells, and edges of every score's bins, shape (scores, BINS - 1)."""
 
     cells: tuple[Cell, ...]
-    known: NDArray[np.bool_]  # cells that the model was fitted in, and one False for all others
+    known: NDArray[np.bool_]  # which cells the model was fitted in, plus False for all others
     model: Model
     edges: Floats
 
@@ -63,9 +63,9 @@ class Scale:
 
 
 def scale(fixture: Fixture) -> tuple[Scale, Ints]:
-    """Return how missions are scored, and the bins of the held-out episodes, shape (episodes, scores).
+    """Return the scoring of missions, and the bins of the held-out episodes, shape (episodes, scores).
 
-    Raise FixtureError if a half of the episodes holds too few.
+    Raise FixtureError if one half has too few episodes.
     """
     sample = fixture.sample
     fit = np.array([in_fit(seed) for seed in sample.seeds])
@@ -80,7 +80,7 @@ def scale(fixture: Fixture) -> tuple[Scale, Ints]:
     model = fitted(chain, count, tiled(sample.cells, fixture.sensors))
     model = Model(*(np.append(getattr(model, one.name), np.nan) for one in fields(Model)))
     bare = Scale(sample.cells, ~np.isnan(model.utility), model, np.empty((0, BINS - 1)))
-    wide = replace(sample, cells=(*sample.cells, ()))  # as on-line missions, so that sums are taken alike
+    wide = replace(sample, cells=(*sample.cells, ()))  # same layout as new missions, so that sums round alike
     values = _values(bare, wide)
     units = _units(chain, int(fit.sum()), count)
     found = [
@@ -91,7 +91,7 @@ def scale(fixture: Fixture) -> tuple[Scale, Ints]:
 
 
 def binned(scale: Scale, sample: Sample) -> Ints:
-    """Return the bin of every score of every mission, shape (missions, scores); -1 where a mission has none.
+    """Return the bin of every score of every mission, shape (missions, scores); -1 if a mission has none.
 
     A mission without steps has only the score of its success; one without rewards lacks those that need them.
     """
@@ -109,7 +109,7 @@ def _binned(scale: Scale, values: Floats) -> Ints:
 def _values(scale: Scale, sample: Sample) -> Floats:
     """Return the scores, shape (missions, scores), NaN if a mission has none.
 
-    That of a cell is its residual, on average of a visit.
+    The score of a cell is its mean residual per visit.
     """
     parts = residuals(sample, scale.model)
     residual = parts.move + parts.reward
@@ -133,7 +133,7 @@ def _values(scale: Scale, sample: Sample) -> Floats:
 
 
 def _units(chain: Chain, episodes: int, cells: int) -> Floats:
-    """Return the size of what each score was summed up from, shape (scores,): its rounding is relative to that."""
+    """Return the magnitude of the terms summed in each score, shape (scores,); rounding errors are relative to it."""
     size = float(np.abs(chain.reward).sum())
     mission, step = size / max(1, episodes), size / max(1, int(chain.count.sum()))
     whole = {"success": 1.0, "total": mission, "residual": mission, "unknown": 1.0, "steps": 1.0}
@@ -141,7 +141,7 @@ def _units(chain: Chain, episodes: int, cells: int) -> Floats:
 
 
 def sampled(scale: Scale, missions: Missions) -> Sample:
-    """Return missions in the form of recorded episodes over the scale's cells and one more for all others.
+    """Return missions in the form of recorded episodes over the scale's cells plus one for all others.
 
     The total of a mission is NaN if it has no steps or an unknown reward.
     """
@@ -168,7 +168,7 @@ def _totals(missions: Missions) -> Floats:
 
 
 def _chain(mission: Ints, cell: Ints, reward: Floats, width: int) -> Chain:
-    """Return the transitions of steps in order, as they are recorded and then kept in a fixture."""
+    """Return the transitions of consecutive steps, rounded as in a recording."""
     following = np.append(cell[1:], END)
     following[np.flatnonzero(np.diff(mission))] = END
     codes, place, count = np.unique(

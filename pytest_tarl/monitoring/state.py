@@ -1,6 +1,6 @@
 """The state of a watch on disk: a small file, written atomically, from which the watch resumes.
 
-A `.npz` without pickle, as a fixture is: a JSON header with a digest, and the columns of the processes and the pool.
+A `.npz` without pickle, like a recording: a JSON header with a digest, and the columns of the processes and the pool.
 
 FORMAT history:
 1  First version.
@@ -33,7 +33,7 @@ from pytest_tarl.monitoring.restarts import Processes
 
 FORMAT = 1
 HEADER = "header"
-KIND = "state of a watch"  # a fixture has the same form and is none
+KIND = "state of a watch"  # distinguishes the file from a recording
 _UNREADABLE = (
     ValueError,
     LookupError,
@@ -63,7 +63,7 @@ def save(path: Path, monitor: Monitor, logs: Mapping[str, Progress], fixture: st
     buffer = io.BytesIO()
     text = np.frombuffer(json.dumps(header).encode(), np.uint8)
     arrays: dict[str, Any] = {HEADER: text, **columns}
-    np.savez_compressed(buffer, **arrays)  # numpy before 2.1 takes any option for an array
+    np.savez_compressed(buffer, **arrays)  # numpy before 2.1 would store any option as an array
     try:
         write_atomically(path, buffer.getvalue())
     except OSError as problem:
@@ -77,7 +77,7 @@ def load(
 ) -> tuple[Monitor, dict[str, Progress]]:
     """Return the monitor of a state file, or a new one without a file.
 
-    Raise MonitorError if it is damaged, or belongs to another fixture, α or seed.
+    Raise MonitorError if it is damaged, or belongs to another recording, α or seed.
     """
     fresh = begun(fixture, alpha=alpha, seed=seed)
     if not path.exists():

@@ -16,7 +16,7 @@ from pytest_tarl.model import Bound as Rate
 
 @dataclass(frozen=True)
 class Bound:
-    """A lower bound of the mean of a quantity within [low, high]; it holds with `confidence` over recordings.
+    """A lower bound on the mean of a quantity within [low, high]; it holds with `confidence` over recordings.
 
     `what` is "success" or "total".
     """

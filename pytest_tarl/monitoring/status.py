@@ -13,13 +13,13 @@ from pytest_tarl.monitoring.scores import WHOLE
 from pytest_tarl.monitoring.stated import Bound
 from pytest_tarl.sensors import Cell
 
-LOW, HIGH = (0, 1, 2, 3, 10), (4, 5, 6, 7, 11)  # bets of conformal.factors; the others are on both ends
-FEWEST_NEW = 2  # missions that make a cell worth naming as new
+LOW, HIGH = (0, 1, 2, 3, 10), (4, 5, 6, 7, 11)  # bets of conformal.factors on one end; others bet on both
+FEWEST_NEW = 2  # least missions in a new cell for it to be named
 
 
 @dataclass(frozen=True)
 class Moment:
-    """A mission, counted from 1, and when it began, in seconds since 1970; None if that is not known."""
+    """A mission, counted from 1, and its start in seconds since 1970; None if unknown."""
 
     mission: int
     time: float | None
@@ -27,9 +27,9 @@ class Moment:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Evidence on one question: log10 of it, now and at its highest, in units in which an alarm is at 1/α.
+    """Evidence on one question, now and at its maximum, as log10, scaled so that an alarm is at 1/α.
 
-    `since` is the mission before which the restart was made that explains most of it; `alarm` the one that raised it.
+    `since` is the mission before which the restart with most of the evidence was made; `alarm` the one that raised it.
     """
 
     now: float
@@ -40,7 +40,7 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Score:
-    """A score of missions, of one cell where that is given, and where on-line missions lie in the off-line ones."""
+    """A score of missions, of one cell if given, and the side on which new missions deviate from recorded ones."""
 
     name: str
     cell: Cell | None
@@ -112,7 +112,7 @@ def _testable(bound: Bound) -> bool:
 
 
 def _evidence(monitor: Monitor, rows: Ints) -> Evidence:
-    """Return the evidence of the processes in these rows on one question: the largest, each by its share of α."""
+    """Return the evidence of the processes in these rows on one question: the largest, relative to its share of α."""
     processes = monitor.processes
     unit = -processes.threshold[rows] - np.log2(monitor.alpha)
     now = restarts.log_evidence(processes)[rows] + unit

@@ -29,7 +29,7 @@ SAVED = 1.0  # seconds between two saves of the state while there is more to rea
 
 @dataclass
 class Watch:
-    """Some watched logs; `known` is the progress of each log, by its first record."""
+    """The watched logs; `known` is the progress in each log, by its first record."""
 
     fixture: Fixture
     digest: str
@@ -70,7 +70,7 @@ class Watch:
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """Return what is wrong with the logs now, as sentences."""
+        """Return the current problems of the logs as sentences."""
         return tuple(one.problem for one in self.readers if one.problem)
 
     def close(self) -> None:
@@ -82,7 +82,7 @@ class Watch:
 def begun(logs: Sequence[Path], fixture: Path, path: Path, *, alpha: float, seed: int) -> Watch:
     """Return a watch that resumes from its state file, or a new one without a file.
 
-    Raise FixtureError, MonitorError if fixture or state cannot be used.
+    Raise FixtureError or MonitorError if recording or state cannot be used.
     """
     loaded = load_fixture(fixture)
     digest = hashlib.sha256(fixture.read_bytes()).hexdigest()

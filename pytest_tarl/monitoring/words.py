@@ -80,19 +80,21 @@ def found(evidence: Evidence | None, alpha: float) -> str:
 
 def led(score: Score, words: Vocabulary) -> str:
     """Describe the score that differs most."""
-    what = SCORES[score.name] if score.cell is None else f"what {words.words([score.cell])} brings"
+    what = (
+        SCORES[score.name] if score.cell is None else f"the value of a visit to {words.words([score.cell])}"
+    )
     return f"{what} {SIDES[score.side]}"
 
 
 def promise(status: Status) -> str:
     """Describe the probability of a false alarm."""
     tested = [bound for bound, evidence in status.bounds if evidence is not None]
-    text = f"a false alarm, ever: at most {_percent(status.alpha)} (alpha)"
+    text = f"probability of a false alarm, ever: at most {_percent(status.alpha)} (alpha)"
     if not tested:
         return text
     each = " and ".join(_percent(1.0 - bound.confidence) for bound in tested)
-    which = "bounds themselves" if len(tested) > 1 else "bound itself"
-    return f"{text}; {_percent(status.error)} with the {each} by which the {which} may be wrong"
+    which = "bounds themselves are" if len(tested) > 1 else "bound itself is"
+    return f"{text}; {_percent(status.error)} including the {each} risk that the {which} wrong"
 
 
 def _passed(status: Status) -> str:

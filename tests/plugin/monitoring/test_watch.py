@@ -36,7 +36,7 @@ def test_missions_as_off_line_raise_no_alarm(root: Path, capsys: pytest.CaptureF
     out = capsys.readouterr().out
     assert "200 missions, 200 passed (100 %)" in out
     assert "at least 96.3 % of missions pass (95 % confidence): evidence" in out
-    assert "a false alarm, ever: at most 5 % (alpha); 10 % with the 5 % by which" in out
+    assert "probability of a false alarm, ever: at most 5 % (alpha); 10 % including the 5 % risk" in out
     assert "ALARM" not in out
     assert "where" not in out
     assert (root / ".tarl/watch/f.npz").exists()
@@ -207,7 +207,7 @@ def test_the_mean_is_tested_where_a_range_was_declared(
     )
     said, _, document = capsys.readouterr().out.rpartition("\n{")
     assert "a mission earns at least 5." in said
-    assert "15 % with the 5 % and 5 % by which the bounds themselves may be wrong" in said
+    assert "15 % including the 5 % and 5 % risk that the bounds themselves are wrong" in said
     success, total = json.loads("{" + document)["bounds"]
     assert (success["of"], total["of"]) == ("success", "total")
     assert success["evidence"]["alarm"] is None
@@ -224,7 +224,7 @@ def test_totals_outside_of_the_declared_range_are_told(
     assert "1 mission with a total outside the declared range: clipped to its ends" in capsys.readouterr().out
 
 
-def test_a_fixture_of_one_world_states_no_bound(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_recording_of_equal_episodes_has_no_bound(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
     fixture(root / "g.npz", walks(1, 1) * 80, varied=False)
     log(root / "m.log", walks(1, 1) * 200)
     assert main(["watch", "m.log", "--fixture", "g.npz", "--once"]) == 0
@@ -233,7 +233,7 @@ def test_a_fixture_of_one_world_states_no_bound(root: Path, capsys: pytest.Captu
     assert "a false alarm, ever: at most 5 % (alpha)\n" in out
 
 
-def test_before_the_first_mission_the_account_says_what_will_be_tested(
+def test_before_the_first_mission_the_report_names_the_bounds(
     root: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     log(root / "m.log", [])
@@ -241,7 +241,7 @@ def test_before_the_first_mission_the_account_says_what_will_be_tested(
     out = capsys.readouterr().out
     assert "0 missions, 0 passed\n" in out
     assert "evidence 0.5, alarm at 20" in out
-    assert "10 % with the 5 %" in out
+    assert "10 % including the 5 % risk" in out
 
 
 @pytest.mark.parametrize("time", [float("nan"), float("inf"), -1e300, 1e300, 0.0])
