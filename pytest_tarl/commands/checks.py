@@ -20,7 +20,7 @@ def tested(target: Target, patch: Patch, file: FilePatch, content: bytes) -> Non
     if file.exact(content) is None:
         raise RefusedError(
             f"{patch.name} does not produce the tested text of {target.shown}: the patch was edited or damaged. "
-            "Nothing was changed; make the patch again."
+            "Nothing was changed; search for the repair again."
         )
 
 
@@ -29,7 +29,7 @@ def sealed(patch: Patch) -> None:
     if not patch.sealed:
         raise RefusedError(
             f"{patch.name} has no digest, so it cannot be verified on a changed file: restore the text that it was "
-            "made for, or make the patch again."
+            "made for, or search for the repair again."
         )
 
 
