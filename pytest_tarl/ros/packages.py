@@ -43,9 +43,7 @@ def get_package_share_directory(package_name: str) -> str:
     """Return a package's source folder, which stands in for its share directory. Raises PackageNotFoundError."""
     found = _folder(package_name)
     if found is None:
-        raise PackageNotFoundError(
-            f"package '{package_name}' not found, looked below the repository of the node"
-        )
+        raise PackageNotFoundError(f"package '{package_name}' not found, looked in the node's repository")
     return str(found)
 
 
@@ -68,7 +66,7 @@ def get_pkg_dir(package: str, required: bool = True) -> str | None:
     """Return a package's folder, as roslib does. Raises InvalidROSPkgException if it is unknown."""
     found = _folder(package)
     if found is None and required:
-        raise InvalidROSPkgException(f"cannot locate package {package!r} below the repository of the node")
+        raise InvalidROSPkgException(f"cannot locate package {package!r} in the node's repository")
     return None if found is None else str(found)
 
 

@@ -20,7 +20,7 @@ OPEN: Final = re.compile(
 
 
 def parameter_names(modules: Sequence[Module]) -> frozenset[str] | None:
-    """Return every string of the program that may name a parameter; None if a name is computed, or all are read."""
+    """Return every string that may name a parameter; None if a name is computed or the program reads all parameters."""
     if any(OPEN.search(module.text) for module in modules):
         return None
     strings: set[str] = set()

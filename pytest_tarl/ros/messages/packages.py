@@ -60,7 +60,7 @@ class PackagePart(ModuleType):
 
 
 class MessagePackage(ModuleType):
-    """`package`: its parts need no import of their own, as in ROS, where other messages import them."""
+    """`package`. Its parts are available without an explicit import, as in ROS, where messages import each other."""
 
     def __init__(self, kind: Kind, package: str) -> None:
         super().__init__(package, f"Message package {package}, built from definitions.")

@@ -132,7 +132,7 @@ class Task(Future):
         super().cancel()
 
     def run(self) -> None:
-        """Continue to the end or to the next future that is not done; spin raises the task's exception."""
+        """Continue to the end or to the next future that is not done. The executor's spin re-raises its exception."""
         self._executing = True
         try:
             self._advance()
