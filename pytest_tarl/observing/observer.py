@@ -179,10 +179,10 @@ class Observer:
 
     def _flush(self) -> None:
         cut = self.stream.cut(self._outlet.full)
+        steps = len(cut.rewards)  # dropped between missions
+        readings, self._readings = self._readings[:steps], self._readings[steps:]
+        times, self._times = self._times[:steps], self._times[steps:]
         if self.running and not cut.empty:
-            steps = len(cut.rewards)
-            readings, self._readings = self._readings[:steps], self._readings[steps:]
-            times, self._times = self._times[:steps], self._times[steps:]
             followed = (times, self._taken()) if self._following else None
             readings = [[*map(_plain, one)] for one in readings]
             self._outlet.put("steps", tuple(cut), readings, self.stream.dropped, followed)

@@ -71,3 +71,26 @@ def test_after_a_sleep_longer_than_idle_another_mission_begins_and_no_step_is_lo
     assert kinds == ["start", *["mission", "end"] * (2 if asleep > 60 else 1)]
     rewards = [unpacked(one["reward"], "float64").tolist() for one in found if one["kind"] == "steps"]
     assert list(chain.from_iterable(rewards)) == [float(number) for number in range(100)]
+
+
+def test_between_missions_nothing_is_kept(tmp_path: Path) -> None:
+    observer = Observer([Sensor("x")], tmp_path / "log", {"sites": [], "sensors": ["x"]})
+    observer.begin()
+    observer.step(1.0)
+    observer.end(passed=True)
+    for number in range(5000):  # the node runs on, and nobody begins another mission
+        observer.stream.hook(0, 1.0)
+        observer.step(float(number))
+    observer._flush()
+    assert held(observer) == 0
+    observer.begin()
+    observer.step(2.0)
+    observer.close()
+    steps = [one for one in records(tmp_path / "log") if one["kind"] == "steps"]
+    assert [unpacked(one["reward"], "float64").tolist() for one in steps] == [[1.0], [2.0]]
+
+
+def held(observer: Observer) -> int:
+    """Return the entries of steps and events that wait in the node's process."""
+    events = sum(len(buffer.entries) for buffer in observer.stream._buffers)
+    return events + len(observer._times) + len(observer._readings) + len(observer._changes)
