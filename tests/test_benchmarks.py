@@ -47,23 +47,23 @@ def imported(path: Path) -> Iterator[str]:
             yield (node.module or "").partition(".")[0]
 
 
-def declared() -> set[str]:
-    """Return the distributions that tarl and its extra `bench` name, by normalised name; not what those need."""
-    names, extras = set[str](), {"bench"}
+def named(extras: set[str]) -> set[str]:
+    """Return the distributions that tarl and its extras name, by normalised name, without what those need."""
+    names, wanted = set[str](), {*extras}
     for _ in range(3):  # an extra may name others
         for line in requires("tarl") or ():
             requirement, _, marker = line.partition(";")
             extra = re.search(r"extra == ['\"](\w+)", marker)
-            if extra is None or extra[1] in extras:
+            if extra is None or extra[1] in wanted:
                 name = re.split(r"[\[<>=!~ ]", requirement)[0]
                 names.add(re.sub(r"[-_.]+", "-", name).lower())
                 if name == "tarl" and "[" in requirement:
-                    extras |= {*requirement.partition("[")[2].partition("]")[0].split(",")}
+                    wanted |= {*requirement.partition("[")[2].partition("]")[0].split(",")}
     return names
 
 
 def test_what_the_benchmarks_import_is_declared() -> None:
-    known, allowed = packages_distributions(), declared()
+    known, allowed = packages_distributions(), named({"bench"})
     assert {"scipy", "pymunk", "numpy", "rosbags"} <= allowed
     own = {path.stem for path in FOLDER.rglob("*.py")} | {"pytest_tarl", "tarl_lint"} | ROS
     undeclared = {

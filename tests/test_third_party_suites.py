@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 
 @pytest.fixture
-def different(monkeypatch: pytest.MonkeyPatch):  # type: ignore[no-untyped-def]
+def suites(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     monkeypatch.syspath_prepend(str(Path(__file__).parent.parent / "benchmarks"))
-    yield __import__("third_party_suites").different
+    yield __import__("third_party_suites")
     sys.modules.pop("third_party_suites", None)
+
+
+@pytest.fixture
+def different(suites: Any) -> Any:
+    return suites.different
 
 
 def test_an_outcome_that_no_plain_run_had_was_changed(different) -> None:  # type: ignore[no-untyped-def]
@@ -27,3 +34,23 @@ def test_a_test_that_only_one_side_has_was_changed(different) -> None:  # type: 
     plain = {"a": ["call passed"], "b": ["call passed"]}
     assert different([plain], {"a": plain["a"]}) == ["b"]
     assert different([{"a": plain["a"]}], plain) == ["b"]
+
+
+@pytest.mark.parametrize(("failing", "left"), [({3}, []), (set(), ["a.py::test"])])
+def test_files_with_a_test_that_differs_run_again_until_its_outcome_occurs(
+    suites: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, failing: set[int], left: list[str]
+) -> None:
+    passed, failed = ["call passed"], ["call failed"]
+    plain = {"a.py::test": passed, "b.py::test": passed}
+    seen: list[tuple[str, ...]] = []
+
+    def run(python: Path, suite: Any, *_: Path, record: bool) -> tuple[dict[str, Any], float]:
+        assert not record
+        seen.append(suite.tests)
+        return {"tests": {"a.py::test": failed if len(seen) in failing else passed}}, 0.0
+
+    monkeypatch.setattr(suites, "run", run)
+    suite, recorded = suites.SUITES["click"], {**plain, "a.py::test": failed}
+    more = suites.again(tmp_path, suite, tmp_path, tmp_path, [plain], recorded)
+    assert suites.different([plain, *more], recorded) == left
+    assert seen == [("a.py",)] * (3 if failing else suites.FILE_RUNS)

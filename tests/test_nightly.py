@@ -1,0 +1,67 @@
+"""The nightly jobs that install some packages of their own install all that their tests import."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+from importlib.metadata import packages_distributions
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from tests.test_benchmarks import named
+
+ROOT = Path(__file__).parent.parent
+NIGHTLY = (ROOT / ".github" / "workflows" / "nightly.yml").read_text()
+INSTALLED = re.compile(r'pip install .*-e "?\.\[([\w,]+)\]"?(.*)$', re.MULTILINE)
+TESTED = re.compile(r"-m pytest -q ((?:tests\S* ?)+)$", re.MULTILINE)
+OWN = {"pytest_tarl", "tarl_lint", "tests"}
+JOBS = {
+    name: body
+    for name, body in re.findall(r"^  ([\w-]+):.*\n((?:    .*\n)+)", NIGHTLY, re.MULTILINE)
+    if INSTALLED.search(body)
+}
+
+
+def started(file: Path) -> Iterator[str]:
+    """Yield the packages that a test module imports at its top, or starts as `python -m NAME`."""
+    tree = ast.parse(file.read_text())
+    for node in tree.body:
+        if isinstance(node, ast.Import):
+            yield from (alias.name.partition(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield (node.module or "").partition(".")[0]
+    for node in ast.walk(tree):
+        words = [one.value if isinstance(one, ast.Constant) else None for one in getattr(node, "elts", ())]
+        yield from (str(word).partition(".")[0] for flag, word in pairwise(words) if flag == "-m" and word)
+
+
+def test_there_are_jobs_to_look_at() -> None:
+    assert {"lower-bounds", "benchmarks", "newer-pythons"} <= JOBS.keys()
+
+
+@pytest.mark.parametrize("job", JOBS)
+def test_a_job_installs_what_its_tests_import(job: str) -> None:
+    extras, more = INSTALLED.findall(JOBS[job])[0]
+    allowed = named({*extras.split(",")}) | {re.sub(r"[-_.]+", "-", one).lower() for one in more.split()}
+    known = packages_distributions()
+    paths = [ROOT / path for listed in TESTED.findall(JOBS[job]) for path in listed.split()]
+    assert paths
+    files = {file for path in paths for file in ([path] if path.is_file() else path.rglob("test_*.py"))}
+    missing = {
+        (file.relative_to(ROOT).as_posix(), name)
+        for file in files
+        for name in started(file)
+        if name not in OWN | sys.stdlib_module_names
+        and not {re.sub(r"[-_.]+", "-", one).lower() for one in known.get(name, [name])} & allowed
+        and not guarded(file, name)
+    }
+    assert not missing
+
+
+def guarded(file: Path, name: str) -> bool:
+    """Return whether a module is skipped without a package."""
+    return f'pytest.importorskip("{name}' in file.read_text()
