@@ -25,7 +25,7 @@ def tested(target: Target, patch: Patch, file: FilePatch, content: bytes) -> Non
 
 
 def sealed(patch: Patch) -> None:
-    """Raise RefusedError if nothing shows that a patch is as written."""
+    """Raise RefusedError if a patch has no digest, so that edits of it cannot be detected."""
     if not patch.sealed:
         raise RefusedError(
             f"{patch.name} has no digest, so it cannot be verified on a changed file: restore the text that it was "

@@ -62,7 +62,7 @@ class Reference:
 
     @property
     def tolerated(self) -> float:
-        """Return the failure rate below which a repair must be shown to stay."""
+        """Return the highest tolerable failure rate; a repair must be shown to fail less often."""
         return min(1.0 - self.pass_rate + PASS_RATE_LOSS, 1.0)
 
     @property

@@ -24,9 +24,7 @@ from tests.plugin.tank import ONLINE, RECORD, changed, result
     st.integers(1, 60),
     st.lists(st.tuples(st.floats(0.0, 1.0), st.integers(0, 80), st.integers(0, 10)), max_size=6),
 )
-def test_phases_never_spend_more_than_the_purse_holds(
-    budget: int, phases: list[tuple[float, int, int]]
-) -> None:
+def test_phases_together_never_exceed_the_budget(budget: int, phases: list[tuple[float, int, int]]) -> None:
     ran = 0
 
     def run(candidate: Candidate, seed: int, drift: str | None) -> Outcome:
