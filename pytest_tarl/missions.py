@@ -250,8 +250,8 @@ class Mission:
         lost = replaced(self.designation.drifts, fixture.design, self.drift)
         if lost:
             yield (
-                f"the design has the drift {lost!r}, but tarl_drift held only {self.drift!r}: make both "
-                "dictionaries, and the scenario is merged into the design"
+                f"the design has the drift {lost!r}, but tarl_drift held only {self.drift!r}: if both "
+                "are dictionaries, the scenario is merged into the design"
             )
 
     def _neighbours(self) -> list[Neighbour]:

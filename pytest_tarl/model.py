@@ -304,7 +304,7 @@ class ListComparison:
 
 @dataclass(frozen=True, slots=True)
 class FormulaWorld:
-    """A formula in one world: mean and least robustness, and numbers of episodes that judged and violated it.
+    """A formula in one world: mean and least robustness, and the numbers of episodes that judged it and violated it.
 
     `first` is the earliest time of a violation in an episode, in s.
     """

@@ -72,7 +72,7 @@ def form_edits(
 
 @dataclass(frozen=True)
 class _Place:
-    """An expression that a form changes, in its statement; `condition` is the guard as Python, or empty."""
+    """An expression to which a form is applied, and its statement; `condition` is the guard as Python, or ""."""
 
     source: Document
     statement: ast.stmt
@@ -81,7 +81,7 @@ class _Place:
     condition: str
 
     def named(self, name: str, fill: Mapping[str, str]) -> tuple[list[str], str]:
-        """Return the lines that a form needs for a value of this name, and what stands for the value after them."""
+        """Return the lines that a form adds for a value of this name, and the expression that replaces the value."""
         fill = {**fill, "x": name}
         new = filled(self.form.template.expression, fill)
         lines = [filled(line, fill) for line in self.form.template.lines]

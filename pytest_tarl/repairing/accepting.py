@@ -86,7 +86,7 @@ class Examiner:
     def _under_guards(self, candidate: Candidate, trials: Trials) -> Accepted | None:
         """Examine a candidate under every guard, then other values of it: stronger, milder and neighbouring ones."""
         edges: list[Candidate] = []  # held on known seeds but failed on some fresh ones
-        weak: list[Guard] = []  # do not restore the drifted world
+        weak: list[Guard] = []  # guards under which the reward in the drifted world stays too low
         for guard in self.guards:
             if any(_narrower(guard, known) for known in weak):
                 continue
@@ -113,7 +113,7 @@ class Examiner:
         return None
 
     def _followed(self, others: OtherValues, trials: Trials) -> Accepted | None:
-        """Examine other values of a candidate, each chosen by what became of the ones before."""
+        """Examine other values of a candidate, each chosen by the results of the previous ones."""
         told: Tried | None = None
         while True:
             try:
@@ -295,5 +295,5 @@ class Examiner:
 
 
 def _narrower(guard: Guard, known: Guard) -> bool:
-    """Tell whether a guard holds less often than a known condition, since it asks for more beside it."""
+    """Tell whether a guard is stricter than a known one because it adds conditions to it."""
     return bool(known.conjuncts) and set(known.conjuncts) < set(guard.conjuncts)

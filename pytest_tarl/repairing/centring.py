@@ -42,7 +42,7 @@ def centred(
 
 
 def neighbours(candidate: Candidate, mutate: Mutate) -> Iterator[Candidate]:
-    """Yield a candidate with its only value moved to either side; nothing where it has several, or a sign."""
+    """Yield a candidate with its value moved to either side; nothing for several sites or without a factor."""
     for ratio in ASIDE:
         other = moved(candidate, ratio, mutate)
         if other is not None:

@@ -8,14 +8,14 @@ from pytest_tarl.searching.accept import Acceptance, Reference
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 
 LATEST = 3
-FEW = 0.25  # of its missions that a candidate may lose and have nearly the right value
+FEW = 0.25  # share of lost missions up to which a candidate's value counts as nearly right
 
 
 @dataclass
 class Missed:
     """Seeds on which tested candidates lost, each with the total that counts as near its designed mission.
 
-    `few` has the seeds of candidates that lost few of their missions and so may have nearly the right value.
+    `few` contains the lost seeds of candidates that lost at most `FEW` of their missions.
     """
 
     seeds: list[tuple[int, float]] = field(default_factory=list)

@@ -1,6 +1,6 @@
-"""Other values of a candidate that was examined: further on, beside it, or nearer to the original.
+"""Propose other values of an examined candidate: larger steps, neighbouring values, or smaller steps.
 
-Each way is a generator: it yields what to examine next and is sent what became of it.
+Each method is a generator that yields the next candidate to examine and receives its result by `send`.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from pytest_tarl.repairing.mutants import Mutants
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
-POWERS = (1.5, 2.0)  # of the factors of a candidate at the edge of its window
-CLOSE = 1.3  # ratio of two rejected values that have the window between them
+POWERS = (1.5, 2.0)  # exponents for the factors of a candidate at the edge of its window
+CLOSE = 1.3  # largest ratio of two rejected values between which a narrow window is assumed
 
 OtherValues = Generator[Candidate, Tried, None]
 Place = tuple[frozenset[Operand], Guard]
 
 
 class Others:
-    """Proposes other values, each way once for the same operands and guard."""
+    """Propose other values; each method runs once for the same operands and guard."""
 
     def __init__(self, mutants: Mutants, ledger: Ledger, missed: Missed) -> None:
         self.mutants = mutants
@@ -37,7 +37,7 @@ class Others:
         self._mended: set[Candidate] = set()
 
     def beyond(self, candidate: Candidate) -> OtherValues:
-        """Go on in the direction of a candidate that fails here and there: it is at the edge of its window."""
+        """Propose larger steps for a candidate that fails on some seeds: it is at the edge of its window."""
         place = (operands(candidate), candidate.guard)
         if place in self._pushed:
             return
@@ -51,9 +51,10 @@ class Others:
                 return
 
     def beside(self, trials: Trials) -> OtherValues:
-        """Move what lost few missions in its test to a value that loses none of them. Raises BudgetSpentError.
+        """Move a candidate that lost few missions in its test to a value that loses none of them.
 
-        Where a value on the other side was rejected, too, the one between them comes first.
+        If a value on the other side was rejected, too, the value between the two comes first.
+        Raises BudgetSpentError.
         """
         while refused := next((one for one in self.missed.few if one not in self._mended), None):
             self._mended.add(refused)
@@ -63,13 +64,13 @@ class Others:
                     break
 
     def bracketed(self, candidate: Candidate) -> bool:
-        """Tell whether values on both sides, close by, lost few missions: the window lies here, and it is narrow."""
+        """Tell whether close values on both sides lost few missions, which indicates a narrow window between them."""
         ratios = [ratio_of(candidate, other) for other in self.missed.few]
         close = [one for one in ratios if one is not None and max(one, 1.0 / one) <= CLOSE]
         return bool(close) and min(close) < 1.0 < max(close)
 
     def _between(self, refused: Candidate) -> Iterator[Candidate]:
-        """Yield the value between a rejected one and another rejected one that is close."""
+        """Yield the value halfway between two rejected values that are close to each other."""
         for other in self.missed.few:
             ratio = ratio_of(other, refused)
             if ratio is not None and 1.0 < max(ratio, 1.0 / ratio) <= CLOSE:
@@ -100,7 +101,7 @@ class Others:
 
 
 def ratio_of(one: Candidate, other: Candidate) -> float | None:
-    """Return by what ratio one candidate moves its only operand further than another; None if they differ otherwise."""
+    """Return the ratio of two candidates' factors for their only operand; None if they differ in anything else."""
     if one.guard != other.guard or operands(one) != operands(other) or len(one.mutations) != 1:
         return None
     mine, its = factor(one.mutations[0]), factor(other.mutations[0])

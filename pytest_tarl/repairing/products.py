@@ -1,4 +1,4 @@
-"""Constants that are multiplied with each other: a factor on one of them is the same mutant as on any other."""
+"""Constants of one product: a factor on any of them gives the same program, so searching one suffices."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ Product = tuple[str, int, int]  # file, and the offsets of the outermost express
 
 
 def one_of_each(analysis: Analysis, operands: Sequence[Operand]) -> tuple[list[Operand], list[Operand]]:
-    """Return the operands of which a search needs to move only these, and those that do nothing else than they do.
+    """Split operands into those that a search must move, and those that are equivalent to one of these.
 
-    Of a product's constants the first in the given order stays, and so does what another use in the same statement
-    belongs to, as `LIMIT` in `max(-LIMIT, min(LIMIT, x))`: these are moved together.
+    The first constant of a product, in the given order, must be moved. So must a constant with another use in the same
+    statement, such as `LIMIT` in `max(-LIMIT, min(LIMIT, x))`, because its uses move together.
     """
     kept: list[Operand] = []
     same: list[Operand] = []
@@ -36,7 +36,7 @@ def one_of_each(analysis: Analysis, operands: Sequence[Operand]) -> tuple[list[O
 
 
 def _product(analysis: Analysis, operand: Operand) -> Product | None:
-    """Return the product that an operand is a factor of; None where it is none, or does not move by a factor."""
+    """Return the product of which an operand is a factor; None if there is none or the operand has no factor."""
     if operand.value == 0 or isinstance(operand.value, bool):
         return None
     path = operand.span.path
@@ -52,7 +52,7 @@ def _product(analysis: Analysis, operand: Operand) -> Product | None:
 
 
 def _outermost(source: Document, node: ast.expr) -> ast.expr:
-    """Climb while the value around is proportional to the one inside."""
+    """Return the outermost expression that is proportional to the node's value."""
     top = node
     for around in source.ancestors(node):
         factor = isinstance(around, ast.BinOp) and isinstance(around.op, ast.Mult)

@@ -1,4 +1,4 @@
-"""A change that grows with a sensor, in place of one that jumps where a condition on the sensor becomes true.
+"""Replace a change that jumps at a sensor's threshold by one that grows with the sensor.
 
 `margin + self.length` reads better than `margin * 1.5 if self.length >= 0.3 else margin`, and holds for other lengths.
 """
@@ -19,14 +19,14 @@ from pytest_tarl.searching.search import Candidate, effective_value
 from pytest_tarl.sensors import Sensor
 
 SUM, SCALE = "sum", "scale"
-ALIKE = 2.0  # ratio of the change of a constant to the sensor's value, up to which a plain sum is tried
+ALIKE = 2.0  # largest ratio between a constant's change and the sensor's value for which a plain sum is tried
 REST = 0.9  # share of the recorded steps in which the sensor must be about zero
 
 
 def smoothed(order: Order, candidate: Candidate) -> Iterator[Candidate]:
-    """Yield candidates without a condition that add the sensor to the constant, or scale the constant by it.
+    """Yield unconditional candidates that add the sensor to the constant or scale the constant with the sensor.
 
-    Only for one constant, under one condition on a number that is about zero in the designed world.
+    The candidate must change one constant, under one condition on a sensor that is about zero in the designed world.
     """
     if len(candidate.guard.conjuncts) != 1 or len(candidate.mutations) != 1:
         return
@@ -61,7 +61,7 @@ def _parameter(template: Template) -> str:
 
 
 def _mean_where(order: Order, conjunct: Conjunct) -> float | None:
-    """Return a sensor's mean over the compared steps in which a condition on it holds."""
+    """Return a sensor's mean over the drifted steps in which a condition on it holds."""
     bins = [
         ((low + high) / 2, count)
         for low, high, count in _bins(order, order.online.recorded.sample, conjunct.sensor)
@@ -79,7 +79,7 @@ def _rests_at_zero(order: Order, sensor: Sensor) -> bool:
 
 
 def _bins(order: Order, world: Sample, sensor: Sensor) -> Iterator[tuple[float, float, float]]:
-    """Yield the ends of the sensor's bin and the number of steps of every entry of the chain."""
+    """Yield the ends of the sensor's bin and the number of steps for every entry of the chain."""
     names = [one.name for one in order.comparison.sensors]
     at = names.index(sensor.name)
     for cell, count in zip(world.chain.cell.tolist(), world.chain.count.tolist(), strict=True):

@@ -18,7 +18,7 @@ MOST = 3  # parts of a combined repair
 PROMISING = 0.5  # share of the loss that a combination must gain to be balanced
 LEADERS = 5  # units to combine with the first; one of them may gain too little alone to stand out
 STEPS = (1.5, 0.65)  # factors by which balancing moves a part
-STRONG = 5.0  # factor of a part that changes nothing alone
+STRONG = 5.0  # factor for parts that change nothing alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +130,7 @@ class ForwardSelection:
                 yield from self._with_what_was_hidden(pair, hidden)
 
     def _with_what_was_hidden(self, pair: Joint, hidden: Sequence[Unit]) -> Iterator[Candidate]:
-        """Add units that change nothing alone, maybe because missions end too early, to two parts that gain much."""
+        """Add units without effect alone, perhaps because missions end too early, to two parts with a high gain."""
         best, most = pair, (yield from self.gain(pair)) or 0.0
         before = most
         for unit in hidden if most > PROMISING * self.goal.wanted else ():

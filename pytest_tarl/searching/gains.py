@@ -1,4 +1,4 @@
-"""Table of what single units gained, by guard and factor, and the rankings that the sweep reads from it."""
+"""Table of the gains of single units, by guard and factor, and the rankings that the sweep derives from it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Part = tuple[Unit, float]  # a unit with a factor
 class Gains:
     """Gains in total reward over the unmutated runs of the same seeds.
 
-    A gain of at most `slack` is too small to build upon. With `proposed` the factor 1 is a change of its own.
+    A gain of at most `slack` is too small to build upon. With `proposed`, the factor 1 counts as a change.
     """
 
     def __init__(self, slack: float, proposed: bool = False) -> None:
@@ -68,7 +68,7 @@ class Gains:
     ) -> list[Unit]:
         """Return the units that gained at least `least` with the factor `before`, best first.
 
-        Units that never changed a reward are left out, except with `inert`.
+        Units that never changed a reward are excluded unless `inert` is true.
         """
         gains = {unit: self.of(unit, guard).get(before) for unit in (among if inert else self.moving(among))}
         kept = [(gain, unit) for unit, gain in gains.items() if gain is not None and gain >= least]

@@ -21,7 +21,7 @@ Wanted = tuple["Candidate", int]  # an episode: a candidate and its seed
 
 FACTORS = (2.2, 0.4, 5.0, 0.15, 1.5, 0.65, 10.0)  # in the order they are tried
 CONFIRMATIONS = 5  # further seeds on which a promising candidate must hold ...
-HARD = 2  # ... at most so many of them because other candidates fell short on them
+HARD = 2  # ... of which at most this many are chosen because other candidates fell short on them
 FAR = 0.6  # share of the wanted gain that releases the reserve of episodes
 PAIRED = 2  # least number of common seeds for comparing two candidates
 
@@ -92,7 +92,7 @@ class BudgetSpentError(Exception):
 
 
 def lost_nothing(_: Candidate) -> bool:
-    """Return False: no candidate was rejected yet, so no lost mission is known."""
+    """Return False, the default before any candidate was rejected."""
     return False
 
 
@@ -110,7 +110,7 @@ class Trials:
     foresee: Callable[[Sequence[Wanted]], None] = unforeseen
     reserve: int = 0  # episodes beyond the budget, released once a candidate has gained `FAR` ...
     worth: Goal | None = None  # ... of the gain that this goal wants
-    loses: Callable[[Candidate], bool] = lost_nothing  # whether it loses what rejected candidates lost
+    loses: Callable[[Candidate], bool] = lost_nothing  # loses it missions that rejected ones lost?
     misses: Counter[int] = field(default_factory=Counter)  # seed → candidates that fell short on it
     totals: list[float] = field(default_factory=list)
     labels: list[str] = field(default_factory=list)
@@ -226,7 +226,7 @@ def confirmed(candidate: Candidate, trials: Trials, goal: Goal, first: int) -> b
 
 
 def _hardest_first(trials: Trials, goal: Goal, first: int) -> list[int]:
-    """Return the seeds to confirm on: up to `HARD` on which most others fell short, then those after the first pair."""
+    """Return the seeds for confirming: up to `HARD` on which most others fell short, then those after `first`."""
     others = [goal.pairs[(first + i) % len(goal.pairs)].seed for i in range(1, len(goal.pairs))]
     missed = [seed for seed in others if trials.misses[seed]]
     hard = sorted(missed, key=lambda seed: -trials.misses[seed])[:HARD]

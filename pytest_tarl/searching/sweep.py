@@ -27,9 +27,11 @@ if TYPE_CHECKING:
 
 FURTHER = ((5.0, 2.2), (0.15, 0.4))  # (factor, the smaller step that must not have lost)
 OUTWARD = 2.3  # ratio by which to go beyond the outermost factor if that one is the best
-LEADING = 3  # units to move further before the next guard, and to try under it with their best factor ...
+LEADING = (
+    3  # best units that get larger steps before the next guard, which starts with their best factors ...
+)
 HINT = 0.005  # ... if they gained at least this share of the loss
-FLIP = -1.0  # another sign
+FLIP = -1.0  # flips the sign
 BETWEEN = (1.5, 0.65)
 FINE = (1.22, 0.82, 1.1, 0.91)  # for operands that move the reward although larger steps found nothing
 LAST = (10.0, 0.05)
@@ -113,7 +115,7 @@ class Sweep:
     def _near_ones(self, block: Sequence[Unit], guard: Guard) -> Iterator[Candidate]:
         """Try each unit larger and smaller, then in smaller steps if it lost both ways, and combine the best.
 
-        As long as nothing gained enough to build upon, the three that gained most are moved further at once.
+        While no gain is large enough to build upon, the `LEADING` best units get larger steps at once.
         """
         moving = self._gains.moving(block)
         yield from self._carried_over(guard)
@@ -126,7 +128,7 @@ class Sweep:
         yield from self._leaders_together(guard)
 
     def _carried_over(self, guard: Guard) -> Iterator[Candidate]:
-        """Try the units that gained most under other guards under this one, since those may be too narrow."""
+        """Try the best units of other guards under this one, because the other guards may be too narrow."""
         pair = self._turn % len(self.goal.pairs)
         for unit, factor in self._gains.best_under([one for one in self.guards if one != guard])[:LEADING]:
             yield from self._try(unit, guard, factor, pair)
@@ -188,7 +190,7 @@ class Sweep:
     def _plainer(self, found: Candidate, unit: Unit, pair: int) -> Iterator[Candidate]:
         """Spend a few episodes on changes that a maintainer would prefer to the candidate found.
 
-        In place of a literal, named constants are also tried with larger steps, as small ones may show nothing.
+        If the candidate changes a literal, named constants also get larger steps, as small ones may have no effect.
         """
         odd, guard, begun = oddness(found.mutations), found.guard, self.trials.spent
         # In place of an offset, refused units are refined once more.
@@ -210,7 +212,7 @@ class Sweep:
     def _closer(
         self, unit: Unit, guard: Guard, closed_before: set[tuple[Unit, Guard]], pair: int
     ) -> Iterator[Candidate]:
-        """Refine a unit a little if it gained a good share and was not rejected meanwhile."""
+        """Refine a unit for `PLAINER_ROUNDS` rounds while it gains at least `PROMISING` and was not refused."""
         for _ in range(PLAINER_ROUNDS):
             closed = (unit, guard) in self._refused - closed_before
             if self._gains.most((unit, guard)) >= PROMISING * self.goal.wanted and not closed:
@@ -300,5 +302,5 @@ class Sweep:
 
 
 def _refinements(unit: Unit) -> int:
-    """Return how many runs may refine a unit: half as many for an offset of a literal zero."""
+    """Return the number of refining runs allowed for a unit; half of `REFINED` for an offset of a literal zero."""
     return REFINED // 2 if writing(unit.operands[0]) is Oddness.OFFSET else REFINED

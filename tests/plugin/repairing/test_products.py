@@ -1,4 +1,4 @@
-"""Of the constants of one product a search moves one: a factor on any of them is the same mutant."""
+"""A search moves one constant of each product, because a factor on any of them gives the same program."""
 
 from __future__ import annotations
 

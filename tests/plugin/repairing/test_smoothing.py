@@ -1,4 +1,4 @@
-"""In place of a jump at a value of a sensor, the sensor itself is added to the constant or scales it."""
+"""Smooth repairs: instead of a jump at a threshold, the sensor is added to the constant or scales it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a sweep does with hints: small gains, gains under another guard, parts that others hide, seeds that fail."""
+"""How a sweep uses hints: small gains, gains under another guard, hidden parts, and seeds that fail."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def test_an_offset_of_a_literal_zero_is_refined_half_as_often() -> None:
 
     def run(candidate: Candidate, _: int) -> Outcome:
         value = float(candidate.mutations[0].value)
-        total = 9.2 - abs(math.log(max(value, 0.01) / 0.7)) / 10  # near, and never enough
+        total = 9.2 - abs(math.log(max(value, 0.01) / 0.7)) / 10  # near, but never enough
         return Outcome(total, total > 5.0)
 
     trials = Trials(run, 300)
