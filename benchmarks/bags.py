@@ -2,8 +2,9 @@
 
     python benchmarks/bags.py [--seconds 60]
 
-A mission of the shuttle – odometry, terrain and leg ten times a second, and a picture of 640 × 480 once a second that
-no node receives – is written to bags of each kind, then replayed through the shuttle's node with all sites recorded.
+A mission of the shuttle is written to bags of each kind, then replayed through the shuttle's node with all sites
+recorded. The bag has odometry, terrain and leg ten times a second, and a picture of 640 × 480 once a second that the
+node does not receive.
 Times are CPU times of the process, the least of three runs.
 """
 

@@ -112,7 +112,7 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class Guarantee:
-    """Bounds on future episodes of a world, from `episodes` of which `passed` passed; each bound holds separately.
+    """Bounds on future episodes of a world, from `passed` successes in `episodes` episodes; each holds separately.
 
     At least 1 - `share` of the episodes earn `quantile` or more. It is None if there are fewer than `needed` episodes,
     or if their number depended on their results (`needed` is 0). `varied` is false if all episodes are equal: then

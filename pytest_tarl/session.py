@@ -94,7 +94,7 @@ class TarlSession:
             items[:] = marked
 
     def _chosen(self, item: pytest.Item) -> bool:
-        """Return whether an item has the selected scenario, or would have if it took the fixture."""
+        """Return whether an item has the selected scenario, or would have it with the fixture `tarl_drift`."""
         declared = self.options.drift in _drift_names(item)
         if self.options.mode == "record":
             return declared or self.options.drift == AS_WRITTEN

@@ -159,8 +159,8 @@ def _drift(
 def avoided(offline: Sample, online: Sample, alpha: float) -> NDArray[np.bool_]:
     """Return the cells that deployed episodes avoid significantly, shape (cells,).
 
-    In a single world, all n deployed episodes are among the N - K of all N that avoid the cell with probability
-    C(N - K, n) / C(N, n), which must be below α divided by the number of cells.
+    If the worlds are equal and K of all N episodes visit a cell, all n deployed episodes avoid it with probability
+    C(N - K, n) / C(N, n). This must be below α divided by the number of cells.
     """
     been = np.unique(offline.chain.episode * len(offline.cells) + offline.chain.cell) % len(offline.cells)
     often = np.bincount(been, minlength=len(offline.cells))

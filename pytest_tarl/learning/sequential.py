@@ -24,7 +24,7 @@ class Look:
 
 
 def planned(episodes: int, looks: int) -> tuple[Look, ...]:
-    """Return at most `looks` looks, each at twice the episodes of the one before, the last at all of them."""
+    """Return at most `looks` looks; each has twice the episodes of the previous one, and the last one has all."""
     ends = [episodes >> k for k in reversed(range(looks)) if episodes >> k >= min(FEWEST, episodes)]
     spent = [(end / episodes) ** 2 for end in ends]
     shares = [after - before for before, after in zip([0.0, *spent], spent, strict=False)]
@@ -40,8 +40,8 @@ def certain(difference: Difference) -> bool:
 def concluded(seen: Sequence[tuple[Look, Difference]], alpha: float) -> Difference:
     """Return the result of the last look, with p-values and intervals adjusted for the whole sequence.
 
-    The adjusted p-value is the least p / share. The interval is that of the last look at its risk, so it holds whenever
-    the run ended.
+    The adjusted p-value is the least p / share. The interval of the last look is computed at that look's risk, so it
+    holds at whatever look the run ended.
     """
     last = seen[-1][1]
     p_drift, p_loss = (

@@ -31,7 +31,7 @@ class LogReader:
     def missions(self) -> Iterator[Mission]:
         """Yield the missions that ended since the last call.
 
-        A rotated log is read to its end before the log with its old name. Missions that were not consumed are
+        A rotated log is read to its end before the new log of the same name. Missions that were not consumed are
         yielded again, provided that `known` is kept up to date.
         """
         if self._ahead:

@@ -101,7 +101,7 @@ def _multiplied(
 ) -> tuple[Floats, Ints]:
     """Update stakes mission by mission; return their sums and exponents after each, shape (missions, rows).
 
-    Rows of `stake` and `best` are the state before each mission and after the last one, all bets of all processes.
+    A row of `stake` and `best` is the state of all bets of all processes, before a mission or after the last one.
     """
     count, shape = len(weight), (len(weight), BETS, len(rows))
     exponents = np.repeat(processes.exponent[rows][None, :], count, axis=0)

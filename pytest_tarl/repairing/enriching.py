@@ -26,7 +26,7 @@ CONTROLS = 2  # drifted episodes that lost nothing and in which a candidate must
 def enriched(mutants: Mutants, trials: Trials) -> Goal:
     """Return the goal with enough failing seeds, each with its reward in the designed world; charge the episodes.
 
-    Return the goal unchanged, without running anything, if most drifted episodes lose, and also if the budget does not
+    Return the goal unchanged if most drifted episodes lose (nothing runs in this case) or if the budget does not
     suffice.
     """
     order = mutants.order

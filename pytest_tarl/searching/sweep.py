@@ -287,7 +287,7 @@ class Sweep:
     def _leaders_together(self, guard: Guard) -> Iterator[Candidate]:
         """Combine the best operands of different sites, each with its best factor, assuming additive main effects.
 
-        An operand refused alone is refined again only afterwards: combinations come before its near-duplicates.
+        Refused operands are refined further only after this, so combinations come before near-duplicates of them.
         """
         self._refused -= {tried for tried in self._refused if tried[1] == guard}
         leaders = self._gains.leaders(guard)
