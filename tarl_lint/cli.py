@@ -100,7 +100,13 @@ def _launched(typed: Namespace) -> int:
     typed.paths = [asked.root]
     config = resolve(options(typed))
     _check(config)
-    found = command.judged(_with_progress(lambda tell: command.systems(asked, config, tell)), config)
+    made = _with_progress(lambda tell: command.systems(asked, config, tell))
+    found = command.judged(made, config, writing=typed.write_baseline)
+    if typed.write_baseline:
+        path, written = command.accepted(found, config)
+        baseline.save(path, written)
+        _print([((f"{shown(path)}: {summary.numbers(written)} accepted.", "strong"),)])
+        return 0
     if typed.output_file:
         _write_file(typed.output_file, command.rendered(typed.format, found, asked, _view(typed)))
     else:

@@ -72,14 +72,15 @@ def page(code: str) -> str:
 def _examples(rule: ModuleType) -> str:
     """Return the rule's snippets, which are its tests, as code blocks below headings."""
     return "".join(
-        f"\n## {heading}\n" + "".join(map(_block, snippets))
+        f"\n## {heading}\n"
+        + "".join(_block(snippet, "text" if "--- " in snippet else "python") for snippet in snippets)
         for name, heading in _HEADINGS
         if (snippets := getattr(rule, name, ()))
     )
 
 
-def _block(snippet: str) -> str:
-    return f"\n```python\n{inspect.cleandoc(snippet)}\n```\n"
+def _block(snippet: str, language: str) -> str:
+    return f"\n```{language}\n{inspect.cleandoc(snippet)}\n```\n"
 
 
 def write_pages(directory: Path) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import difflib
+import os
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -10,8 +12,10 @@ from pathlib import Path
 from typing import Final
 
 from tarl_lint import baseline
+from tarl_lint.baseline import Accepted, Baseline
 from tarl_lint.errors import UsageError
 from tarl_lint.files import shown
+from tarl_lint.fingerprints import OfHazard
 from tarl_lint.model import Finding
 from tarl_lint.read import discover
 from tarl_lint.read.discover import SourceFile
@@ -20,7 +24,9 @@ from tarl_lint.report.line import Line, View, unbroken
 from tarl_lint.run import runner
 from tarl_lint.run.progress import Tell, silent
 from tarl_lint.settings.config import Config
+from tarl_lint.settings.schema import BASELINE_NAME
 from tarl_lint.system import compose
+from tarl_lint.system.hazards import hazards
 from tarl_lint.system.interfaces import interface
 from tarl_lint.system.model import Interface, System
 from tarl_lint.workspace.folders import workspace_root
@@ -194,12 +200,37 @@ def rendered(form: str, found: Sequence[System], asked: Request, view: View) -> 
         raise UsageError(f"--format {form} cannot show launch files: use one of {', '.join(FORMATS)}.")
 
 
-def judged(found: Sequence[System], config: Config) -> tuple[System, ...]:
-    """Return the systems with their hazards of the enabled rules; those of the baseline are marked as accepted."""
-    accepted = baseline.load(config.baseline).counts() if config.baseline else {}
-    return tuple(replace(one, findings=baseline.subtract(one.findings, accepted)) for one in found)
+def judged(found: Sequence[System], config: Config, *, writing: bool = False) -> tuple[System, ...]:
+    """Return the systems with their hazards of the enabled rules; those of the baseline are marked as accepted.
+
+    Raises BaselineError for one that does not exist, unless it is about to be written.
+    """
+    path = config.baseline
+    known = baseline.load(path).counts() if path and (path.exists() or not writing) else {}
+    return tuple(replace(one, findings=baseline.subtract(hazards(one, config), known)) for one in found)
 
 
 def new_hazards(found: Sequence[System]) -> tuple[Finding, ...]:
     """Return the hazards that are not in the baseline."""
     return tuple(one for system in found for one in system.findings if one.status == "new")
+
+
+def accepted(found: Sequence[System], config: Config) -> tuple[Path, Baseline]:
+    """Return the baseline with the hazards of these systems, and its file; all other entries are kept."""
+    path = config.baseline or Path(BASELINE_NAME)
+    kept = baseline.load(path).entries if path.exists() else ()
+    counts: dict[Finding, int] = {}
+    for system in found:
+        for finding, count in Counter(replace(one, status="new") for one in system.findings).items():
+            counts[finding] = max(count, counts.get(finding, 0))
+    home = path.absolute().parent
+    entries = [
+        Accepted(
+            OfHazard(one.package, one.code, one.about, one.place),
+            count,
+            (Path(os.path.relpath(one.span.path, home)).as_posix(),),
+        )
+        for one, count in counts.items()
+    ]
+    news = {entry.fingerprint for entry in entries}
+    return path, baseline.merged(entries, [entry for entry in kept if entry.fingerprint not in news])

@@ -15,16 +15,19 @@ from tarl_lint.evidence import Outline
 from tarl_lint.fingerprints import of_finding
 from tarl_lint.flows.reachability import Tracer
 from tarl_lint.interpret.fixpoint import Linker
-from tarl_lint.model import Finding, Flow
+from tarl_lint.model import Finding, Flow, Span
 from tarl_lint.models.ros.endpoints import Publisher
 from tarl_lint.node_names import node_name
 from tarl_lint.prefilter.by_words import reached
 from tarl_lint.read.source import Module, Script, SourceError, parsed
 from tarl_lint.settings.config import Config
 from tarl_lint.system.calls import called_services
+from tarl_lint.system.fields import misfits
+from tarl_lint.system.imports import closed
 from tarl_lint.system.model import Endpoint, Interface
-from tarl_lint.system.parameters import parameter_names
+from tarl_lint.system.parameters import reads_named_parameters, words
 from tarl_lint.system.qos import of_call
+from tarl_lint.system.staleness import stale
 
 _OWN: Final = "__main__"
 
@@ -46,16 +49,31 @@ def interface(
     machine, flows = engine.trace(modules, plain, thorough=False)
     tracer = Tracer(machine)
     endpoints = tuple(sorted(_endpoints(machine, tracer, modules), key=lambda e: (e.span, e.role)))
+    found = tuple(
+        _marked(finding, flow, package, config)
+        for finding, flow in zip(engine.findings(flows), flows, strict=True)
+        if _of_topics(flow)
+    )
+    quiet = closed(modules) and len(imported) == len(modules) - 1
+    named = all(one.names for one in endpoints) and not any(topicless(one) for one in flows)
     return Interface(
-        script.path,
-        node_name(first.tree) or next((found for one in modules[1:] if (found := node_name(one.tree))), ""),
-        package,
-        endpoints,
-        tuple(_marked(finding, flow, package, config) for finding, flow in
-              zip(engine.findings(flows), flows, strict=True) if _of_topics(flow)),
-        parameter_names(modules),
-        not machine.cut and all(one.names for one in endpoints) and len(imported) == len(modules) - 1,
-    )  # fmt: skip
+        path=script.path,
+        name=next((name for one in modules if (name := node_name(one.tree))), ""),
+        package=package,
+        endpoints=endpoints,
+        flows=found,
+        words=words(modules),
+        parameters=quiet and reads_named_parameters(modules),
+        closed=quiet,
+        whole=quiet and named and not machine.cut,
+        stale=stale(found, modules),
+        misfits=tuple(one for module in modules for one in misfits(module, Outline(module.tree))),
+    )
+
+
+def topicless(flow: Flow) -> bool:
+    """Return whether an end of a flow between topics has no constant name."""
+    return _of_topics(flow) and not (flow.source.topics and flow.sink.topics)
 
 
 def _as_import(module: Module) -> Module:
@@ -99,13 +117,19 @@ def _endpoints(machine: Linker, tracer: Tracer, modules: Sequence[Module]) -> It
         elif record.kind == "service":
             yield Endpoint("serves", source.topics, source.type, source.span, None, source.qualname)
     yield from _publishers(machine, tracer, outlines)
-    ran = {(frame.program.path, frame.function.qualname) for frame in machine.frames.values()}
     for module in modules:
-        for call, name, kind in called_services(outlines[module.path]):
-            place = outlines[module.path].qualname(call.lineno)
-            if (module.path, place) in ran:
-                pos = (call.lineno, call.col_offset, call.end_lineno or 0, call.end_col_offset or 0)
-                yield Endpoint("calls", (name,), kind, tracer.texts[module.path].stretch(pos), None, place)
+        yield from _clients(machine, module, outlines[module.path])
+
+
+def _clients(machine: Linker, module: Module, outline: Outline) -> Iterator[Endpoint]:
+    """Yield the services that a module calls, as far as its functions run."""
+    ran = {frame.function.qualname for frame in machine.frames.values() if frame.program.path == module.path}
+    for call, name, kind in called_services(outline):
+        place = outline.qualname(call.lineno)
+        if not ran or place in ran or not place:
+            end = call.end_lineno or call.lineno
+            span = Span(module.path, call.lineno, call.col_offset + 1, end, (call.end_col_offset or 0) + 1)
+            yield Endpoint("calls", (name,), kind, span, None, place)
 
 
 def _publishers(machine: Linker, tracer: Tracer, outlines: Mapping[str, Outline]) -> Iterator[Endpoint]:

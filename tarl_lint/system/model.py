@@ -36,13 +36,25 @@ class Endpoint:
     place: str = ""  # qualified name of the function
 
 
+@dataclass(frozen=True, slots=True)
+class Misfit:
+    """A use of a field that its message type does not have."""
+
+    type: str
+    field: str
+    span: Span
+    place: str
+
+
 @dataclass(frozen=True)
 class Interface:
     """The topics, services and parameters of a program, by the names in its code.
 
     `flows` are the findings TARL101 to TARL103. `name` is the node's name in the code, "" if it is computed.
-    `parameters` are the names that it declares or reads, None if some of them are computed. `whole` is true if all
-    topics have constant names and the analysis was complete.
+    `words` are all strings of its code. `parameters` says whether they include every parameter that it reads.
+    `closed` says that it imports nothing that could use topics on its own, `whole` that besides all topics have
+    constant names and that the analysis was complete. `stale` are publish calls that go on without new messages,
+    `misfits` uses of fields that a message type does not have.
     """
 
     path: str
@@ -50,9 +62,12 @@ class Interface:
     package: str = ""
     endpoints: tuple[Endpoint, ...] = ()
     flows: tuple[Finding, ...] = ()
-    parameters: frozenset[str] | None = None
+    words: frozenset[str] = frozenset()
+    parameters: bool = False
+    closed: bool = False
     whole: bool = False
-    loops: tuple[Span, ...] = ()  # publish calls without a watchdog, for TARL306
+    stale: tuple[Finding, ...] = ()
+    misfits: tuple[Misfit, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Find the names of parameters that a program declares or reads, by literals in its code."""
+"""Strings of a program, among them the names of its parameters, and whether these are all that it reads."""
 
 from __future__ import annotations
 
@@ -19,20 +19,27 @@ OPEN: Final = re.compile(
 )
 
 
-def parameter_names(modules: Sequence[Module]) -> frozenset[str] | None:
-    """Return every string that may name a parameter; None if a name is computed or the program reads all parameters."""
+def words(modules: Sequence[Module]) -> frozenset[str]:
+    """Return every string of a program, as a name without `~` and slashes around it."""
+    return frozenset(
+        node.value.strip("~/")
+        for module in modules
+        for node in ast.walk(module.tree)
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    )
+
+
+def reads_named_parameters(modules: Sequence[Module]) -> bool:
+    """Return whether a program reads parameters only by literal names, one by one."""
     if any(OPEN.search(module.text) for module in modules):
-        return None
-    strings: set[str] = set()
+        return False
     for module in modules:
         for node in ast.walk(module.tree):
-            if isinstance(node, ast.Constant) and isinstance(node.value, str):
-                strings.add(node.value.lstrip("~/"))
-            elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute | ast.Name):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute | ast.Name):
                 name = node.func.attr if isinstance(node.func, ast.Attribute) else node.func.id
                 if name in READERS and node.args and _computed(node.args[0]):
-                    return None
-    return frozenset(strings)
+                    return False
+    return True
 
 
 def _computed(argument: ast.expr) -> bool:

@@ -1,0 +1,150 @@
+"""TARL301: a subscription has no publisher, but a publisher with nearly its name has no subscriber.
+
+The two ends were meant to be connected: the last part of their names is equal and only the namespace differs
+(`/cmd_vel` and `/robot/cmd_vel`), or one letter differs, and their types are equal. The robot starts without an error
+and does not move. The keyboard teleoperation of the Kobuki did nothing for this reason
+(https://github.com/aliasrobotics/RVD/issues/581), and robots stand still when they are launched in a namespace but
+the code says `/cmd_vel` (https://github.com/UoY-RoboStar/AURO/issues/5).
+
+Nothing is reported if a node of the launch file was not read, or if its topics are computed: it might be the other
+end. A subscription without any near publisher is not reported either, because sensors and simulators are often
+started elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.fingerprints import topic_text
+from tarl_lint.model import Finding
+from tarl_lint.system.hazards import at_end, single, spelled_alike
+from tarl_lint.system.model import System
+
+CODE: Final = "TARL301"
+SUMMARY: Final = "a subscription has no publisher, but a publisher with nearly its name has no subscriber"
+
+INVALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="teleop.py" name="teleop"/>
+      <group ns="left">
+        <node pkg="robot" type="base.py" name="base"/>
+      </group>
+    </launch>
+    --- scripts/teleop.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from sensor_msgs.msg import Joy
+
+    rospy.init_node("teleop")
+    pub = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+
+    def on_joy(joy):
+        cmd = Twist()
+        cmd.linear.x = joy.axes[1]
+        pub.publish(cmd)
+
+    rospy.Subscriber("joy", Joy, on_joy)
+    rospy.spin()
+    --- scripts/base.py
+    import rospy
+    from geometry_msgs.msg import Twist
+
+    rospy.init_node("base")
+    rospy.Subscriber("cmd_vel", Twist, lambda msg: print(msg.linear.x))
+    rospy.spin()
+    """,
+)
+
+VALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <group ns="left">
+        <node pkg="robot" type="teleop.py" name="teleop"/>
+        <node pkg="robot" type="base.py" name="base"/>
+      </group>
+    </launch>
+    --- scripts/teleop.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from sensor_msgs.msg import Joy
+
+    rospy.init_node("teleop")
+    pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+
+    def on_joy(joy):
+        cmd = Twist()
+        cmd.linear.x = joy.axes[1]
+        pub.publish(cmd)
+
+    rospy.Subscriber("joy", Joy, on_joy)
+    rospy.spin()
+    --- scripts/base.py
+    import rospy
+    from geometry_msgs.msg import Twist
+
+    rospy.init_node("base")
+    rospy.Subscriber("cmd_vel", Twist, lambda msg: print(msg.linear.x))
+    rospy.spin()
+    """,
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="teleop.py" name="teleop"/>
+      <group ns="left">
+        <node pkg="robot" type="base.py" name="base"/>
+      </group>
+      <node pkg="other" type="mux" name="mux"/>
+    </launch>
+    --- scripts/teleop.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from sensor_msgs.msg import Joy
+
+    rospy.init_node("teleop")
+    pub = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+
+    def on_joy(joy):
+        cmd = Twist()
+        cmd.linear.x = joy.axes[1]
+        pub.publish(cmd)
+
+    rospy.Subscriber("joy", Joy, on_joy)
+    rospy.spin()
+    --- scripts/base.py
+    import rospy
+    from geometry_msgs.msg import Twist
+
+    rospy.init_node("base")
+    rospy.Subscriber("cmd_vel", Twist, lambda msg: print(msg.linear.x))
+    rospy.spin()
+    """,
+)
+
+
+def findings(system: System) -> Iterator[Finding]:
+    """Yield a hazard for each subscription that misses a publisher by its name only."""
+    if not system.complete:
+        return
+    published, subscribed = (
+        {name for name, _, _ in system.ends(role)} for role in ("publishes", "subscribes")
+    )
+    lonely = [(name, who, end) for name, who, end in system.ends("publishes") if name not in subscribed]
+    for name, who, end in system.ends("subscribes"):
+        if name in published or not single(end) or len(end.names) > 1:
+            continue
+        near = sorted(
+            (other, them.name)
+            for other, them, beyond in lonely
+            if them is not who and single(beyond) == single(end) and spelled_alike(name, other)
+        )
+        if near:
+            message = f"{who.name} subscribes to {name} ({end.type}), which nobody publishes; "
+            message += (
+                " and ".join(f"{node} publishes {other}" for other, node in near)
+                + ", which nobody subscribes to"
+            )
+            yield at_end(CODE, who, end, message, topic_text(end.names))

@@ -1,0 +1,129 @@
+"""TARL303: the quality of service of a subscription asks for more than its publisher offers.
+
+ROS 2 does not connect a subscription that asks for `RELIABLE` with a publisher that offers `BEST_EFFORT`, nor one
+that asks for `TRANSIENT_LOCAL` with one that offers `VOLATILE`. No message arrives. A number in place of a profile
+means `RELIABLE` and `VOLATILE`; drivers of sensors publish with `qos_profile_sensor_data`, which is `BEST_EFFORT`.
+Who subscribes to a laser scanner with the number 10 receives nothing
+(https://github.com/ros2/ros2_documentation/issues/569).
+
+Both profiles must be constant in the code.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.fingerprints import topic_text
+from tarl_lint.model import Finding
+from tarl_lint.system.hazards import at_end
+from tarl_lint.system.model import Endpoint, System
+
+CODE: Final = "TARL303"
+SUMMARY: Final = "the quality of service of a subscription asks for more than its publisher offers"
+
+INVALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="scanner.py" name="scanner"/>
+      <node pkg="robot" type="reader.py" name="reader"/>
+    </launch>
+    --- scripts/scanner.py
+    import rclpy
+    from rclpy.node import Node
+    from rclpy.qos import qos_profile_sensor_data
+    from sensor_msgs.msg import LaserScan
+
+    class Scanner(Node):
+        def __init__(self):
+            super().__init__("scanner")
+            self.pub = self.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
+            self.create_timer(0.1, lambda: self.pub.publish(LaserScan()))
+
+    if __name__ == "__main__":
+        rclpy.init()
+        rclpy.spin(Scanner())
+    --- scripts/reader.py
+    import rclpy
+    from rclpy.node import Node
+    from rclpy.qos import qos_profile_sensor_data
+    from sensor_msgs.msg import LaserScan
+
+    class Reader(Node):
+        def __init__(self):
+            super().__init__("reader")
+            self.create_subscription(LaserScan, "scan", self.on_scan, 10)
+
+        def on_scan(self, scan):
+            print(min(scan.ranges))
+
+    if __name__ == "__main__":
+        rclpy.init()
+        rclpy.spin(Reader())
+    """,
+)
+
+VALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="scanner.py" name="scanner"/>
+      <node pkg="robot" type="reader.py" name="reader"/>
+    </launch>
+    --- scripts/scanner.py
+    import rclpy
+    from rclpy.node import Node
+    from rclpy.qos import qos_profile_sensor_data
+    from sensor_msgs.msg import LaserScan
+
+    class Scanner(Node):
+        def __init__(self):
+            super().__init__("scanner")
+            self.pub = self.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
+            self.create_timer(0.1, lambda: self.pub.publish(LaserScan()))
+
+    if __name__ == "__main__":
+        rclpy.init()
+        rclpy.spin(Scanner())
+    --- scripts/reader.py
+    import rclpy
+    from rclpy.node import Node
+    from rclpy.qos import qos_profile_sensor_data
+    from sensor_msgs.msg import LaserScan
+
+    class Reader(Node):
+        def __init__(self):
+            super().__init__("reader")
+            self.create_subscription(LaserScan, "scan", self.on_scan, qos_profile_sensor_data)
+
+        def on_scan(self, scan):
+            print(min(scan.ranges))
+
+    if __name__ == "__main__":
+        rclpy.init()
+        rclpy.spin(Reader())
+    """,
+)
+
+
+def findings(system: System) -> Iterator[Finding]:
+    """Yield a hazard for each subscription that cannot be connected with a publisher of its topic."""
+    for name, who, end in system.ends("subscribes"):
+        for other, them, offered in system.ends("publishes"):
+            if other == name:
+                for policies in _refused(offered, end):
+                    message = (
+                        f"{who.name} asks for {policies[0]} on {name}, but {them.name} offers {policies[1]}"
+                    )
+                    yield at_end(CODE, who, end, f"{message}: no message arrives", topic_text(end.names))
+
+
+def _refused(offered: Endpoint, asked: Endpoint) -> Iterator[tuple[str, str]]:
+    """Yield the policies that are asked for, with what is offered instead."""
+    if offered.qos is None or asked.qos is None:
+        return
+    if asked.qos.reliable is True and offered.qos.reliable is False:
+        yield "RELIABLE", "BEST_EFFORT"
+    if asked.qos.latched is True and offered.qos.latched is False:
+        yield "TRANSIENT_LOCAL", "VOLATILE"

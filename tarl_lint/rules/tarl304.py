@@ -1,0 +1,84 @@
+"""TARL304: a service that is called has no server, but a server with nearly its name is never called.
+
+The client waits forever, or its calls fail. As with topics, a namespace or a private name is often the reason: a
+service `~home` of the node `arm` is `/arm/home`, not `/home`. Nothing is reported if a node of the launch file was
+not read, or if no server has nearly that name: it may be started elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.fingerprints import topic_text
+from tarl_lint.model import Finding
+from tarl_lint.system.hazards import at_end, single, spelled_alike
+from tarl_lint.system.model import System
+
+CODE: Final = "TARL304"
+SUMMARY: Final = "a service that is called has no server, but a server with nearly its name is never called"
+
+INVALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="arm.py" name="arm"/>
+      <node pkg="robot" type="client.py" name="client"/>
+    </launch>
+    --- scripts/arm.py
+    import rospy
+    from std_srvs.srv import Trigger, TriggerResponse
+
+    rospy.init_node("arm")
+    rospy.Service("~home", Trigger, lambda request: TriggerResponse(True, ""))
+    rospy.spin()
+    --- scripts/client.py
+    import rospy
+    from std_srvs.srv import Trigger
+
+    rospy.init_node("client")
+    rospy.wait_for_service("home")
+    rospy.ServiceProxy("home", Trigger)()
+    """,
+)
+
+VALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="arm.py" name="arm"/>
+      <node pkg="robot" type="client.py" name="client"/>
+    </launch>
+    --- scripts/arm.py
+    import rospy
+    from std_srvs.srv import Trigger, TriggerResponse
+
+    rospy.init_node("arm")
+    rospy.Service("~home", Trigger, lambda request: TriggerResponse(True, ""))
+    rospy.spin()
+    --- scripts/client.py
+    import rospy
+    from std_srvs.srv import Trigger
+
+    rospy.init_node("client")
+    rospy.wait_for_service("arm/home")
+    rospy.ServiceProxy("arm/home", Trigger)()
+    """,
+)
+
+
+def findings(system: System) -> Iterator[Finding]:
+    """Yield a hazard for each client that misses a server by its name only."""
+    if not system.complete:
+        return
+    served, called = ({name for name, _, _ in system.ends(role)} for role in ("serves", "calls"))
+    for name, who, end in system.ends("calls"):
+        near = sorted(
+            (other, them.name)
+            for other, them, beyond in system.ends("serves")
+            if other not in called and single(beyond) == single(end) and spelled_alike(name, other)
+        )
+        if name not in served and near and single(end):
+            message = f"{who.name} calls {name} ({end.type}), which nobody offers; "
+            message += " and ".join(f"{node} offers {other}" for other, node in near)
+            yield at_end(CODE, who, end, message, topic_text(end.names))

@@ -1,0 +1,123 @@
+"""TARL305: two nodes publish commands on the same topic.
+
+Whoever publishes last wins, so the robot follows both in turn, and jerks. A multiplexer such as `twist_mux` with a
+topic for each of them decides. Clearpath's robots had this defect: the game controller and the autonomous control
+published on `cmd_vel` (https://github.com/clearpathrobotics/clearpath_common/pull/232).
+
+Reported are messages such as `Twist`, where a subscribed topic decides in both nodes when they are published. Nodes
+whose condition is known only on the robot are left out: one may replace the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.model import Finding
+from tarl_lint.system.hazards import at_node
+from tarl_lint.system.model import Instance, System
+from tarl_lint.system.staleness import COMMANDS
+
+CODE: Final = "TARL305"
+SUMMARY: Final = "two nodes publish commands on the same topic"
+
+INVALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="teleop.py" name="teleop"/>
+      <node pkg="robot" type="planner.py" name="planner"/>
+    </launch>
+    --- scripts/teleop.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from sensor_msgs.msg import Joy
+
+    rospy.init_node("teleop")
+    pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+
+    def on_joy(joy):
+        cmd = Twist()
+        cmd.linear.x = joy.axes[1]
+        pub.publish(cmd)
+
+    rospy.Subscriber("joy", Joy, on_joy)
+    rospy.spin()
+    --- scripts/planner.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Path
+
+    rospy.init_node("planner")
+    pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+
+    def on_path(path):
+        cmd = Twist()
+        cmd.linear.x = path.poses[0].pose.position.x
+        pub.publish(cmd)
+
+    rospy.Subscriber("path", Path, on_path)
+    rospy.spin()
+    """,
+)
+
+VALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="teleop.py" name="teleop">
+        <remap from="cmd_vel" to="joy_vel"/>
+      </node>
+      <node pkg="robot" type="planner.py" name="planner"/>
+    </launch>
+    --- scripts/teleop.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from sensor_msgs.msg import Joy
+
+    rospy.init_node("teleop")
+    pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+
+    def on_joy(joy):
+        cmd = Twist()
+        cmd.linear.x = joy.axes[1]
+        pub.publish(cmd)
+
+    rospy.Subscriber("joy", Joy, on_joy)
+    rospy.spin()
+    --- scripts/planner.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Path
+
+    rospy.init_node("planner")
+    pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+
+    def on_path(path):
+        cmd = Twist()
+        cmd.linear.x = path.poses[0].pose.position.x
+        pub.publish(cmd)
+
+    rospy.Subscriber("path", Path, on_path)
+    rospy.spin()
+    """,
+)
+
+
+def findings(system: System) -> Iterator[Finding]:
+    """Yield a hazard for each topic of commands on which several nodes publish."""
+    authors: dict[str, dict[str, tuple[Instance, str]]] = {}
+    for instance in system.instances:
+        for finding in instance.interface.flows if instance.interface is not None else ():
+            sink = finding.flow.sink if finding.flow is not None else None
+            if sink is None or instance.node.condition or sink.type not in COMMANDS or len(sink.topics) != 1:
+                continue
+            topic = instance.resolve(sink.topics[0])
+            authors.setdefault(topic, {}).setdefault(instance.name, (instance, sink.topics[0]))
+    for topic, found in sorted(authors.items()):
+        (_, (first, _)), *others = found.items()
+        for name, (instance, in_code) in others:
+            message = f"{name} and {first.name} both publish commands on {topic}: let a multiplexer choose"
+            yield at_node(
+                CODE, instance, message, f"{in_code}, beside {first.node.package}/{first.node.executable}"
+            )

@@ -1,0 +1,107 @@
+"""TARL306: a loop goes on publishing commands when its messages stop.
+
+A callback stores what it receives, and a loop or timer publishes a command from it again and again. If the messages
+stop, because a sensor hangs, a cable breaks, or a node crashes, the robot goes on with the last command. A Pioneer
+collided with expensive equipment (https://github.com/amor-ros-pkg/rosaria/pull/51). Remember when the last message
+arrived, and stop when it is too old.
+
+Nothing is reported if the program looks at the time at all, resets what the callback stored, or has words such as
+`timeout`, `last_` and `counter`, which suggest that it does so in another way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from tarl_lint.fingerprints import topic_text
+from tarl_lint.model import Finding
+from tarl_lint.system.model import System
+
+CODE: Final = "TARL306"
+SUMMARY: Final = "a loop goes on publishing commands when its messages stop"
+
+INVALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="follower.py" name="follower"/>
+    </launch>
+    --- scripts/follower.py
+    import rospy
+    from geometry_msgs.msg import PointStamped, Twist
+
+    class Follower:
+        def __init__(self):
+            self.offset = 0.0
+            self.pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+            rospy.Subscriber("person", PointStamped, self.on_person)
+
+        def on_person(self, person):
+            self.offset = person.point.y
+
+        def run(self):
+            rate = rospy.Rate(10)
+            while not rospy.is_shutdown():
+                cmd = Twist()
+                cmd.linear.x = 0.3
+                cmd.angular.z = self.offset
+                self.pub.publish(cmd)
+                rate.sleep()
+
+    rospy.init_node("follower")
+    Follower().run()
+    """,
+)
+
+VALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="follower.py" name="follower"/>
+    </launch>
+    --- scripts/follower.py
+    import rospy
+    from geometry_msgs.msg import PointStamped, Twist
+
+    class Follower:
+        def __init__(self):
+            self.offset = 0.0
+            self.seen = 0.0
+            self.pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+            rospy.Subscriber("person", PointStamped, self.on_person)
+
+        def on_person(self, person):
+            self.offset = person.point.y
+            self.seen = rospy.get_time()
+
+        def run(self):
+            rate = rospy.Rate(10)
+            while not rospy.is_shutdown():
+                cmd = Twist()
+                if rospy.get_time() - self.seen < 0.5:
+                    cmd.linear.x = 0.3
+                    cmd.angular.z = self.offset
+                self.pub.publish(cmd)
+                rate.sleep()
+
+    rospy.init_node("follower")
+    Follower().run()
+    """,
+)
+
+
+def findings(system: System) -> Iterator[Finding]:
+    """Yield a hazard for each command that is published again and again from the last message."""
+    for instance in system.instances:
+        for finding in instance.interface.stale if instance.interface is not None else ():
+            flow = finding.flow
+            if flow is None or not (flow.source.topics and flow.sink.topics):
+                continue
+            source, sink = (", ".join(map(instance.resolve, end.topics)) for end in (flow.source, flow.sink))
+            message = f"{instance.name} goes on publishing {sink} ({flow.sink.type}) when {source} stops"
+            about = f"{topic_text(flow.sink.topics)} after {topic_text(flow.source.topics)}"
+            package = instance.interface.package if instance.interface is not None else ""
+            yield Finding(
+                CODE, flow.sink.span, message, about=about, place=flow.sink.qualname, package=package
+            )

@@ -1,0 +1,134 @@
+"""TARL307: a launch file sets a parameter that the node does not have.
+
+The value has no effect, and the node goes on with its default, often since the parameter was renamed or misspelt. ROS
+does not complain: a filter drove on with the two worst settings that its author had measured, because its file of
+parameters did not match (https://github.com/manankharwar/fusioncore/issues/134).
+
+Reported are parameters of one node, if its program was read with all that it imports and reads parameters only by
+literal names. Parameters that groups set for all their nodes are reported if none of these has them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, Final
+
+from tarl_lint.model import Finding
+from tarl_lint.system.hazards import at_node
+from tarl_lint.system.model import Instance, System
+from tarl_lint.workspace.launch_model import Setting
+
+CODE: Final = "TARL307"
+SUMMARY: Final = "a launch file sets a parameter that the node does not have"
+
+INVALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="keeper.py" name="keeper">
+        <param name="gian" value="0.8"/>
+      </node>
+    </launch>
+    --- scripts/keeper.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+
+    rospy.init_node("keeper")
+    gain = rospy.get_param("~gain", 0.5)
+    pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+
+    def on_odom(odom):
+        cmd = Twist()
+        cmd.angular.z = -gain * odom.pose.pose.position.y
+        pub.publish(cmd)
+
+    rospy.Subscriber("odom", Odometry, on_odom)
+    rospy.spin()
+    """,
+)
+
+VALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="keeper.py" name="keeper">
+        <param name="gain" value="0.8"/>
+      </node>
+    </launch>
+    --- scripts/keeper.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+
+    rospy.init_node("keeper")
+    gain = rospy.get_param("~gain", 0.5)
+    pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+
+    def on_odom(odom):
+        cmd = Twist()
+        cmd.angular.z = -gain * odom.pose.pose.position.y
+        pub.publish(cmd)
+
+    rospy.Subscriber("odom", Odometry, on_odom)
+    rospy.spin()
+    """,
+)
+
+_OF_ROS: Final = frozenset(
+    ["use_sim_time", "qos_overrides", "start_type_description_service", "robot_description"]
+)
+
+
+def findings(system: System) -> Iterator[Finding]:
+    """Yield a hazard for each parameter that no node has for which it is set."""
+    carriers: dict[Setting, list[Instance]] = {}
+    for instance in system.instances:
+        for setting in instance.node.settings:
+            carriers.setdefault(setting, []).append(instance)
+    for setting, instances in carriers.items():
+        names = list(_names(setting, instances))
+        for name in names if setting.name.startswith("~") else ():
+            if all(_lacks(instance, name) for instance in instances):
+                first = instances[0]
+                message = f"{first.name} has no parameter {name}: the launch file sets it without effect"
+                yield at_node(CODE, first, message, name)
+
+
+def _lacks(instance: Instance, name: str) -> bool:
+    """Return whether a node surely has no such parameter."""
+    interface = instance.interface
+    if interface is None or not interface.parameters or name.partition(".")[0] in _OF_ROS:
+        return False
+    parts = {name, name.replace(".", "/"), *name.replace("/", ".").split(".")}
+    return parts.isdisjoint(interface.words)
+
+
+def _names(setting: Setting, instances: list[Instance]) -> Iterator[str]:
+    """Yield the names of the parameters that a setting gives a node of its own."""
+    above = setting.name.lstrip("~").strip("/")
+    if setting.yaml is None:
+        yield above
+        return
+    content = _parsed(setting.yaml)
+    if above:
+        yield above
+    elif isinstance(content, dict):
+        named = {instance.name.rpartition("/")[2] for instance in instances} | {instances[0].name}
+        for key, value in content.items():
+            inside = value.get("ros__parameters") if isinstance(value, dict) else None
+            if not isinstance(inside, dict):
+                yield str(key)
+            elif str(key) in named:
+                yield from map(str, inside)
+
+
+def _parsed(text: str) -> Any:
+    try:
+        import yaml
+    except ModuleNotFoundError:
+        return None
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError:
+        return None

@@ -1,0 +1,116 @@
+"""TARL308: a remapping matches no name that the node uses.
+
+It has no effect, so the two ends that it was meant to connect stay apart. In the Kobuki, the multiplexer published on
+`cmd_vel_mux/output` and the launch file renamed `cmd_vel_mux/mux_cmd_vel`: the robot ignored all velocity commands
+(https://github.com/aliasrobotics/RVD/issues/582).
+
+Reported are remappings for which every node that has them was read with all that it imports, and uses only constant
+names of topics, and no string in its code ends in that name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final, get_args
+
+from tarl_lint.model import Finding
+from tarl_lint.system.hazards import at_node
+from tarl_lint.system.model import Instance, Role, System
+from tarl_lint.workspace.ros_names import resolved
+
+CODE: Final = "TARL308"
+SUMMARY: Final = "a remapping matches no name that the node uses"
+
+INVALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="keeper.py" name="keeper">
+        <remap from="cmd_val" to="/wheels/cmd_vel"/>
+      </node>
+    </launch>
+    --- scripts/keeper.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+
+    rospy.init_node("keeper")
+    gain = rospy.get_param("~gain", 0.5)
+    pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+
+    def on_odom(odom):
+        cmd = Twist()
+        cmd.angular.z = -gain * odom.pose.pose.position.y
+        pub.publish(cmd)
+
+    rospy.Subscriber("odom", Odometry, on_odom)
+    rospy.spin()
+    """,
+)
+
+VALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="keeper.py" name="keeper">
+        <remap from="cmd_vel" to="/wheels/cmd_vel"/>
+      </node>
+    </launch>
+    --- scripts/keeper.py
+    import rospy
+    from geometry_msgs.msg import Twist
+    from nav_msgs.msg import Odometry
+
+    rospy.init_node("keeper")
+    gain = rospy.get_param("~gain", 0.5)
+    pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+
+    def on_odom(odom):
+        cmd = Twist()
+        cmd.angular.z = -gain * odom.pose.pose.position.y
+        pub.publish(cmd)
+
+    rospy.Subscriber("odom", Odometry, on_odom)
+    rospy.spin()
+    """,
+)
+
+_OF_ROS: Final = frozenset(
+    ["tf", "tf_static", "clock", "rosout", "parameter_events", "diagnostics", "robot_description"]
+)
+
+
+def findings(system: System) -> Iterator[Finding]:
+    """Yield a hazard for each remapping that matches nothing in any node that has it."""
+    carriers: dict[tuple[str, str], list[Instance]] = {}
+    for instance in system.instances:
+        for pair in instance.node.remaps:
+            carriers.setdefault(pair, []).append(instance)
+    for (old, new), instances in carriers.items():
+        if all(_unmatched(instance, old) for instance in instances):
+            first = instances[0]
+            used = sorted(
+                {name for role in get_args(Role) for _, end in first.ends(role) for name in end.names}
+            )
+            known = f"; it uses {', '.join(used[:4])}{' …' if len(used) > 4 else ''}" if used else ""
+            message = f"{first.name} uses no name {old}, so renaming it to {new} has no effect{known}"
+            yield at_node(CODE, first, message, old)
+
+
+def _unmatched(instance: Instance, old: str) -> bool:
+    """Return whether a node surely uses no such name."""
+    interface = instance.interface
+    last = old.strip("~/").rpartition("/")[2]
+    if (
+        interface is None
+        or not interface.whole
+        or old.startswith("_")
+        or last in _OF_ROS
+        or "$(" in old
+        or ":" in old
+    ):
+        return False
+    own, namespace = instance.name.rpartition("/")[2], instance.node.namespace
+    used = {resolved(name, namespace, own) for end in interface.endpoints for name in end.names}
+    said = any(word.strip("~/").rpartition("/")[2] == last for word in interface.words)
+    return not said and resolved(old, namespace, own) not in used

@@ -1,0 +1,81 @@
+"""TARL309: code uses a field that the message type does not have.
+
+The callback raises AttributeError at its first message; rospy logs this and goes on, so the rest of the robot runs
+without the data. An `Accel` has `linear` and `angular`, but no `accel`; an `Imu` has `linear_acceleration`.
+
+Reported are messages of `std_msgs`, `geometry_msgs`, `nav_msgs` and `sensor_msgs` of which the fields are known,
+where a callback receives them or a function makes them, and the variable holds nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from difflib import get_close_matches
+from typing import Final
+
+from tarl_lint.definitions import FIELDS
+from tarl_lint.model import Finding
+from tarl_lint.system.model import System
+
+CODE: Final = "TARL309"
+SUMMARY: Final = "code uses a field that the message type does not have"
+
+INVALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="limiter.py" name="limiter"/>
+    </launch>
+    --- scripts/limiter.py
+    import rospy
+    from geometry_msgs.msg import Accel
+    from std_msgs.msg import Float64
+
+    rospy.init_node("limiter")
+    pub = rospy.Publisher("force", Float64, queue_size=1)
+
+    def on_accel(msg):
+        pub.publish(2.0 * msg.accel.x)
+
+    rospy.Subscriber("accel", Accel, on_accel)
+    rospy.spin()
+    """,
+)
+
+VALID: Final = (
+    """
+    --- launch/robot.launch
+    <launch>
+      <node pkg="robot" type="limiter.py" name="limiter"/>
+    </launch>
+    --- scripts/limiter.py
+    import rospy
+    from geometry_msgs.msg import Accel
+    from std_msgs.msg import Float64
+
+    rospy.init_node("limiter")
+    pub = rospy.Publisher("force", Float64, queue_size=1)
+
+    def on_accel(msg):
+        pub.publish(2.0 * msg.linear.x)
+
+    rospy.Subscriber("accel", Accel, on_accel)
+    rospy.spin()
+    """,
+)
+
+
+def findings(system: System) -> Iterator[Finding]:
+    """Yield a hazard for each use of an absent field, once for a program."""
+    for interface in {
+        one.interface.path: one.interface for one in system.instances if one.interface
+    }.values():
+        for misfit in interface.misfits:
+            fields = list(FIELDS[misfit.type])
+            near = get_close_matches(misfit.field, fields, 1)
+            hint = f"did you mean {near[0]}?" if near else f"it has {', '.join(fields)}"
+            message = f"{misfit.type} has no field {misfit.field}: {hint}"
+            about = f"{misfit.type}.{misfit.field}"
+            yield Finding(
+                CODE, misfit.span, message, about=about, place=misfit.place, package=interface.package
+            )

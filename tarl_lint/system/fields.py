@@ -1,0 +1,121 @@
+"""Uses of message fields that the message type does not have, for types of which the fields are known."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+from tarl_lint.definitions import FIELDS
+from tarl_lint.evidence import Outline
+from tarl_lint.model import Span
+from tarl_lint.read.source import Module
+from tarl_lint.system.model import Misfit
+
+_STANDARD: Final = frozenset(["std_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs"])
+_METHODS: Final = frozenset(
+    ["serialize", "deserialize", "serialize_numpy", "deserialize_numpy", "get_fields_and_field_types",
+     "connection_header"]
+)  # fmt: skip
+_REGISTERS: Final[Mapping[str, tuple[int, int]]] = {"Subscriber": (1, 2), "create_subscription": (0, 2)}
+Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+def misfits(module: Module, outline: Outline) -> Iterator[Misfit]:
+    """Yield the uses of absent fields: on messages that a callback receives, or that a function makes."""
+    types = _imported(module.tree)
+    if not types:
+        return
+    functions = [
+        one for one in outline.definitions if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef)
+    ]
+    received = _received(module.tree, types)
+    for function in functions:
+        held = _made(function, types)
+        kinds = received.get(function.name, set())
+        if len(kinds) == 1 and sum(one.name == function.name for one in functions) == 1:
+            held |= _parameter(function, next(iter(kinds)))
+        for node in ast.walk(function) if held else ():
+            found = _absent(node, held) if isinstance(node, ast.Attribute) else None
+            if found is not None and isinstance(node, ast.Attribute):
+                yield Misfit(*found, _span(module.path, node), outline.qualname(node.lineno))
+
+
+def _span(path: str, node: ast.expr) -> Span:
+    end = node.end_lineno or node.lineno
+    return Span(path, node.lineno, node.col_offset + 1, end, (node.end_col_offset or 0) + 1)
+
+
+def _imported(tree: ast.Module) -> dict[str, str]:
+    """Return local name → type for messages of standard packages whose fields are known."""
+    return {
+        alias.asname or alias.name: alias.name
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.partition(".")[0] in _STANDARD
+        for alias in node.names
+        if alias.name in FIELDS
+    }
+
+
+def _received(tree: ast.Module, types: Mapping[str, str]) -> dict[str, set[str]]:
+    """Return function name → types of the messages with which a subscription calls it; "" for an unknown type."""
+    found: dict[str, set[str]] = {}
+    for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
+        places = _REGISTERS.get(_last(call.func))
+        if places is not None and len(call.args) > max(places):
+            kind = types.get(_last(call.args[places[0]]), "")
+            found.setdefault(_last(call.args[places[1]]), set()).add(kind)
+    return {name: kinds for name, kinds in found.items() if name and "" not in kinds}
+
+
+def _parameter(function: Function, kind: str) -> dict[str, str]:
+    names = [one.arg for one in function.args.args if one.arg not in ("self", "cls")]
+    stored = {
+        one.id for one in ast.walk(function) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+    }
+    return {names[0]: kind} if names and names[0] not in stored else {}
+
+
+def _made(function: Function, types: Mapping[str, str]) -> dict[str, str]:
+    """Return the local variables that hold a new message, each assigned once."""
+    assigned: dict[str, list[ast.expr | None]] = {}
+    for node in ast.walk(function):
+        if isinstance(node, ast.Assign) and len(node.targets) == 1 and isinstance(node.targets[0], ast.Name):
+            assigned.setdefault(node.targets[0].id, []).append(node.value)
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            assigned.setdefault(node.id, [])
+    stores: dict[str, int] = {}
+    for node in ast.walk(function):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            stores[node.id] = stores.get(node.id, 0) + 1
+    return {
+        name: types[_last(values[0].func)]
+        for name, values in assigned.items()
+        if len(values) == stores.get(name) == 1
+        and isinstance(values[0], ast.Call)
+        and isinstance(values[0].func, ast.Name)
+        and values[0].func.id in types
+    }
+
+
+def _absent(node: ast.Attribute, held: Mapping[str, str]) -> tuple[str, str] | None:
+    """Return the type and the field of an attribute that its type does not have."""
+    kind = _kind(node.value, held)
+    fields = FIELDS.get(kind)
+    name = node.attr
+    if not fields or name in fields or name in _METHODS or name.startswith("_") or name.upper() == name:
+        return None
+    return kind, name
+
+
+def _kind(expr: ast.expr, held: Mapping[str, str]) -> str:
+    """Return the type of a message expression, "" if it is unknown."""
+    if isinstance(expr, ast.Name):
+        return held.get(expr.id, "")
+    if isinstance(expr, ast.Attribute):
+        return FIELDS.get(_kind(expr.value, held), {}).get(expr.attr, "")
+    return ""
+
+
+def _last(expr: ast.expr) -> str:
+    return expr.attr if isinstance(expr, ast.Attribute) else expr.id if isinstance(expr, ast.Name) else ""

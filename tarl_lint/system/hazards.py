@@ -1,0 +1,90 @@
+"""Hazards of a system: where they stand, and what identifies them; the rules TARL3xx make them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from importlib import import_module
+from typing import Final, Protocol, cast
+
+from tarl_lint.files import shown
+from tarl_lint.fingerprints import OfHazard
+from tarl_lint.model import RULES, Finding, Span
+from tarl_lint.settings.config import Config
+from tarl_lint.system.model import Endpoint, Instance, System
+
+
+class Rule(Protocol):
+    """A rule of architecture: a file `rules/tarl3xx.py`."""
+
+    CODE: str
+
+    def findings(self, system: System) -> Iterator[Finding]:
+        """Yield the hazards of a system."""
+
+
+ARCHITECTURE: Final = tuple(code for code in RULES if code.startswith("TARL3"))
+
+
+def hazards(system: System, config: Config) -> tuple[Finding, ...]:
+    """Return the hazards of the enabled rules, with fingerprints, sorted by place."""
+    found: set[Finding] = set()
+    for code in ARCHITECTURE:
+        if config.enabled(code):
+            rule = cast("Rule", import_module(f"tarl_lint.rules.{code.lower()}"))
+            found |= {_identified(one) for one in rule.findings(system)}
+    return tuple(sorted(found, key=lambda one: (one.span, one.code, one.message)))
+
+
+def _identified(finding: Finding) -> Finding:
+    fingerprint = OfHazard(finding.package, finding.code, finding.about, finding.place)
+    return replace(finding, fingerprint=fingerprint.digest())
+
+
+def at_node(code: str, instance: Instance, message: str, about: str) -> Finding:
+    """Return a hazard at the place where a launch file starts a node; `about` has names of the code."""
+    node = instance.node
+    span = Span(shown(node.file), max(node.line, 1), 1, max(node.line, 1), 2)
+    return Finding(
+        code, span, message, about=about, place=f"{node.package}/{node.executable}", package=node.package
+    )
+
+
+def at_end(code: str, instance: Instance, endpoint: Endpoint, message: str, about: str) -> Finding:
+    """Return a hazard at the code of an endpoint."""
+    package = instance.interface.package if instance.interface is not None else ""
+    return Finding(code, endpoint.span, message, about=about, place=endpoint.place, package=package)
+
+
+def single(endpoint: Endpoint) -> str:
+    """Return the type of an endpoint, "" if it is unknown or may be one of several."""
+    return "" if " | " in endpoint.type or endpoint.type == "AnyMsg" else endpoint.type
+
+
+def spelled_alike(one: str, other: str) -> bool:
+    """Return whether two absolute names may be meant to be one: the last part is equal, or differs in one letter.
+
+    A letter may be missing, be another one, or stand in the wrong place; names with fewer than five letters, and names
+    that differ in a digit (`left_1`, `left_2`), are different names.
+    """
+    (above, last), (beyond, end) = (name.rpartition("/")[::2] for name in (one, other))
+    if last == end:
+        return one != other
+    return above == beyond and min(len(last), len(end)) >= 5 and _one_apart(last, end)
+
+
+def _one_apart(one: str, other: str) -> bool:
+    if len(one) == len(other):
+        places = [i for i, (a, b) in enumerate(zip(one, other, strict=True)) if a != b]
+        letters = all(one[i].isalpha() and other[i].isalpha() for i in places)
+        if len(places) == 1:
+            return letters and not (
+                one[: places[0]] == other[: places[0]] and places[0] == len(one) - 1 and len(one) < 6
+            )
+        first = places[0]
+        swapped = len(places) == 2 and places[1] == first + 1
+        return letters and swapped and one[first] == other[first + 1] and one[first + 1] == other[first]
+    short, long = sorted((one, other), key=len)
+    if len(long) != len(short) + 1:
+        return False
+    return any(long[:i] + long[i + 1 :] == short and long[i].isalpha() for i in range(len(long)))

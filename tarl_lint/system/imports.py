@@ -1,0 +1,44 @@
+"""Whether a program imports only modules that use no topics and parameters on their own."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+from tarl_lint.read.source import Module
+
+_QUIET: Final = frozenset(
+    ["rospy", "rclpy", "message_filters", "actionlib", "cv_bridge", "cv2", "numpy", "scipy", "yaml", "matplotlib",
+     "PIL",
+     "roslib", "rospkg", "rosgraph", "genpy", "ament_index_python", "builtin_interfaces", "angles", "transforms3d",
+     "tf_transformations", "serial", "pandas", "torch", "sklearn", "shapely", "six", "future"]
+)  # fmt: skip
+_INTERFACES: Final = re.compile(r"\w+_(msgs|srvs|interfaces|actions?|msg|srv)$")
+_TRANSFORMS: Final = frozenset(
+    ["tf", "tf2_ros", "tf2_py", "tf2_geometry_msgs"]
+)  # use /tf, which no rule looks at
+
+
+def closed(modules: Sequence[Module]) -> bool:
+    """Return whether every import of the modules is one of them, quiet, or of interfaces."""
+    own = {part for module in modules for part in (module.name, module.name.partition(".")[0])}
+    own |= {module.name.rpartition(".")[2] for module in modules}
+    return all(_quiet(name, own) for module in modules for name in _imported(module.tree))
+
+
+def _quiet(name: str, own: set[str]) -> bool:
+    first, _, rest = name.partition(".")
+    if rest.partition(".")[0] in ("msg", "srv", "action") or _INTERFACES.match(first):
+        return True
+    return first in own or first in _QUIET or first in _TRANSFORMS or first in sys.stdlib_module_names
+
+
+def _imported(tree: ast.Module) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            yield node.module

@@ -1,0 +1,75 @@
+"""Publish calls that go on when no message arrives: loops and timers without any look at the time."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+from tarl_lint.model import Finding, Flow
+from tarl_lint.read.source import Module
+
+COMMANDS: Final = frozenset(
+    [
+        "Twist",
+        "TwistStamped",
+        "AckermannDrive",
+        "AckermannDriveStamped",
+        "Wrench",
+        "WrenchStamped",
+        "AttitudeTarget",
+    ]
+)
+_TIMES: Final = re.compile(
+    r"\b(now|get_time|get_rostime|Time|time|monotonic|stamp|clock|timeout|wait_for_message|Duration)\b|watchdog|stale|"
+    r"last_|_time\b|elapsed|_age\b|\bage\b|fresh|alive|heartbeat|deadman|counter|countdown|received|_new\b|\bnew_|updated"
+)
+_SLEEPS: Final = re.compile(
+    r"\btime\.sleep\(|\bimport time\b|\bDuration\([^)]*\)|create_(wall_)?timer\([^)]*\)|rospy\.Timer\([^)]*\)"
+)
+
+
+def stale(findings: Sequence[Finding], modules: Sequence[Module]) -> tuple[Finding, ...]:
+    """Return the flows into commands that a timer or loop publishes again and again from the last message.
+
+    The message arrives in one function and is published in another one, which clears nothing that the callback stored,
+    and no word in the program suggests that the age of the message is looked at.
+    """
+    texts = {module.path: _SLEEPS.sub("", module.text) for module in modules}
+    if any(_TIMES.search(text) for text in texts.values()):
+        return ()
+    return tuple(one for one in findings if one.flow is not None and _repeated(one.flow, texts))
+
+
+def _repeated(flow: Flow, texts: Mapping[str, str]) -> bool:
+    """Return whether the publish call of a flow runs without its callback."""
+    if flow.kind != "explicit" or flow.sink.type not in COMMANDS or "ubscri" not in flow.source.api:
+        return False
+    callbacks = {name.strip() for name in flow.source.callback.split(",")}
+    if flow.sink.qualname in callbacks or not callbacks - {""}:
+        return False
+    stored = [step for step in flow.steps if step.site.qualname in callbacks and step.role == "assign"]
+    attributes = {found[1] for step in stored if (found := re.match(r"self\.(\w+)\b[^=]*=", step.code))}
+    if not attributes:
+        return False
+    cleared = "|".join(map(re.escape, sorted(attributes)))
+    text = texts.get(flow.sink.span.path, "")
+    used = rf"self\.({cleared})\b"
+    publishing = [step for step in flow.steps if step.site.qualname == flow.sink.qualname]
+    called = re.search(rf"self\.{re.escape(flow.sink.qualname.rpartition('.')[2])}\(", text)
+    return (
+        called is None
+        and not re.search(rf"{used}\s*=\s*None", _without_init(text))
+        and any(re.search(used, step.code) for step in publishing)
+    )
+
+
+def _without_init(text: str) -> str:
+    """Return a text without its initialisers, in which attributes begin as None."""
+    return re.sub(r"def __init__\(.*?(?=\n    def |\n\S|\Z)", "", text, flags=re.DOTALL)
+
+
+def about(finding: Finding) -> Finding:
+    """Return the finding without its flow, as a hazard has none."""
+    return replace(finding, flow=None)

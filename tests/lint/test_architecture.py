@@ -1,0 +1,102 @@
+"""The snippets of the rules TARL3xx are workspaces with a launch file, and their tests."""
+
+from __future__ import annotations
+
+import json
+import re
+from inspect import cleandoc
+from pathlib import Path
+
+import pytest
+
+from tarl_lint.cli import main
+from tarl_lint.explain import known_rules
+from tarl_lint.system.hazards import ARCHITECTURE, spelled_alike
+
+MANIFEST = "<package><name>robot</name><depend>catkin</depend></package>"
+SNIPPETS = [
+    pytest.param(code, name, text, id=f"{code} {name} {number}")
+    for code, rule in known_rules().items()
+    if code in ARCHITECTURE
+    for name in ("VALID", "INVALID")
+    for number, text in enumerate(getattr(rule, name))
+]
+
+
+def workspace(folder: Path, snippet: str) -> Path:
+    """Write the files of a snippet, each after a line `--- NAME`, into a package `robot`."""
+    folder = folder / "robot"
+    folder.mkdir()
+    (folder / "package.xml").write_text(MANIFEST)
+    for part in re.split(r"^--- ", cleandoc(snippet), flags=re.MULTILINE)[1:]:
+        name, _, text = part.partition("\n")
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text)
+    return folder / "launch/robot.launch"
+
+
+def reported(capsys: pytest.CaptureFixture[str], *arguments: str) -> list[dict[str, str]]:
+    main(["--launch", *arguments, "--format", "json"])
+    systems = json.loads(capsys.readouterr().out)["systems"]
+    return [one for system in systems for one in system["diagnostics"]]
+
+
+@pytest.mark.parametrize(("code", "name", "text"), SNIPPETS)
+def test_snippets_are_what_they_say(code, name, text, tmp_path, capsys):
+    found = reported(capsys, str(workspace(tmp_path, text)))
+    assert (code in {one["code"] for one in found}) == (name == "INVALID"), found
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "alike"),
+    [
+        ("/cmd_vel", "/robot/cmd_vel", True), ("/cmd_vel", "/cmd_vle", True), ("/cmd_vel", "/cmd_vell", True),
+        ("/obstacle", "/obstacles", True), ("/cmd_vel", "/cmd_vel", False), ("/left_1", "/left_2", False),
+        ("/odom", "/oдom", False), ("/left", "/lift", False), ("/a/scan", "/b/scan", True),
+        ("/a/obstacle", "/b/obstacles", False), ("/imu/data", "/gps/data", True),
+    ],
+)  # fmt: skip
+def test_names_are_alike(one, other, alike):
+    assert spelled_alike(one, other) is alike
+    assert spelled_alike(other, one) is alike
+
+
+def test_hazards_fail_the_run_until_they_are_disabled(tmp_path, capsys):
+    file = str(workspace(tmp_path, known_rules()["TARL308"].INVALID[0]))
+    assert main(["--launch", file]) == 1
+    assert "robot.launch:2:1 TARL308 /keeper uses no name cmd_val" in capsys.readouterr().out
+    assert main(["--launch", file, "--ignore", "TARL308"]) == 0
+    assert main(["--launch", file, "--select", "TARL302"]) == 0
+    assert main(["--launch", file, "--exit-zero"]) == 0
+
+
+def test_fingerprints_do_not_depend_on_the_namespace(tmp_path, capsys):
+    file = workspace(tmp_path, known_rules()["TARL305"].INVALID[0])
+    (plain,) = reported(capsys, str(file))
+    file.write_text(
+        file.read_text()
+        .replace("<launch>", '<launch><group ns="left">')
+        .replace("</launch>", "</group></launch>")
+    )
+    (moved,) = reported(capsys, str(file))
+    assert (plain["message"] != moved["message"], plain["fingerprint"]) == (True, moved["fingerprint"])
+
+
+def test_the_example_workspace_has_no_hazards(capsys, monkeypatch):
+    monkeypatch.chdir(Path(__file__).parents[2] / "examples/workspace")
+    assert reported(capsys, "all") == []
+
+
+def test_accepted_hazards_stay_accepted_and_runs_without_launch_files_keep_them(
+    tmp_path, capsys, monkeypatch
+):
+    file = str(workspace(tmp_path, known_rules()["TARL301"].INVALID[0]))
+    monkeypatch.chdir(tmp_path)
+    assert main(["--launch", file]) == 1
+    assert main(["--launch", file, "--write-baseline"]) == 0
+    assert "1 hazard" in capsys.readouterr().out
+    assert main(["--launch", file]) == 0
+    assert "1 accepted by the baseline." in capsys.readouterr().out
+    main([".", "--write-baseline"])
+    assert "TARL301" in (tmp_path / "tarl-flows.json").read_text()
+    assert main(["--launch", file]) == 0
