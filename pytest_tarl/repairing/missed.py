@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pytest_tarl.searching.accept import Acceptance, Reference
+from pytest_tarl.searching.accept import PASS_RATE_LOSS, Acceptance, Reference
 from pytest_tarl.searching.search import Candidate, Goal, Trials
 
 LATEST = 3
@@ -15,11 +15,13 @@ FEW = 0.25  # share of lost missions up to which a candidate's value counts as n
 class Missed:
     """Seeds on which tested candidates lost, each with the total that counts as near its designed mission.
 
-    `few` contains the lost seeds of candidates that lost at most `FEW` of their missions.
+    `few` contains the lost seeds of candidates that lost at most `FEW` of their missions, `poor` the candidates that
+    failed hardly any mission and earned too little.
     """
 
     seeds: list[tuple[int, float]] = field(default_factory=list)
     few: dict[Candidate, list[tuple[int, float]]] = field(default_factory=dict)
+    poor: set[Candidate] = field(default_factory=set)
 
     def learn(self, candidate: Candidate, found: Acceptance, goal: Goal, reference: Reference) -> None:
         """Store the missions that a refused candidate lost."""
@@ -31,6 +33,9 @@ class Missed:
         self.seeds += lost
         if 0 < len(lost) <= FEW * len(found.drifted):
             self.few[candidate] = lost[-LATEST:]
+        failed = sum(not outcome.passed for outcome in found.drifted)
+        if goal.passing and failed <= PASS_RATE_LOSS * len(found.drifted):
+            self.poor.add(candidate)
 
     def again(self, candidate: Candidate, trials: Trials, goal: Goal) -> bool:
         """Tell whether a candidate loses most of the latest stored missions. Raises BudgetSpentError."""

@@ -15,10 +15,12 @@ from pytest_tarl.repairing.centring import in_place, moved, neighbours
 from pytest_tarl.repairing.ledger import Ledger, Tried, operands
 from pytest_tarl.repairing.missed import Missed
 from pytest_tarl.repairing.mutants import Mutants
+from pytest_tarl.searching.accept import TOO_LITTLE
 from pytest_tarl.searching.search import Candidate, Trials
 from tarl_lint.model import Operand
 
 POWERS = (1.5, 2.0)  # exponents for the factors of a candidate at the edge of its window
+MILDER = (0.75, 0.5)  # the same for a candidate whose missions succeed and earn too little
 CLOSE = 1.3  # largest ratio of two rejected values between which a narrow window is assumed
 
 OtherValues = Generator[Candidate, Tried, None]
@@ -37,17 +39,20 @@ class Others:
         self._mended: set[Candidate] = set()
 
     def beyond(self, candidate: Candidate) -> OtherValues:
-        """Propose larger steps for a candidate that fails on some seeds: it is at the edge of its window."""
+        """Propose larger steps for a candidate that fails on some seeds: it is at the edge of its window.
+
+        Propose smaller steps for a candidate whose missions succeed and earn too little.
+        """
         place = (operands(candidate), candidate.guard)
         if place in self._pushed:
             return
         self._pushed.add(place)
-        for power in POWERS:
+        for power in MILDER if candidate in self.missed.poor else POWERS:
             moved = stronger(candidate, power, self.mutants.mutate)
             if moved is None:
                 return
             examined = yield moved
-            if not examined.fresh or examined.reason not in WEAK:
+            if not examined.fresh or examined.reason not in (*WEAK, *TOO_LITTLE):
                 return
 
     def beside(self, trials: Trials) -> OtherValues:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -234,6 +235,28 @@ def test_a_value_at_the_edge_of_its_window_is_moved_further(low: float, share: f
     """The value holds on the seeds of the search but fails on others, so the factor is increased, not reduced."""
     field: Any = Edge(low, 100.0)
     assert accepted_factor(field, (low * share,)) == pytest.approx((low * share) ** 1.5, rel=1e-3)
+
+
+class Costly(Window):
+    """One operand that suffices from a factor on; the further it is moved, the less a mission earns."""
+
+    def run(self, candidate: Candidate, seed: int, drift: str | None) -> Outcome:
+        if candidate == ORIGINAL or drift is None:
+            return Outcome(DESIGNED, passed=True)
+        (mutation,) = candidate.mutations
+        factor = float(mutation.value) / float(mutation.operand.value or 1)
+        if factor < self.low:
+            return Outcome(DRIFTED, passed=False)
+        slack = 0.0 if seed in KNOWN else 1.0
+        return Outcome(DESIGNED - slack * max(factor - self.high, 0.0), passed=True)
+
+
+@settings(max_examples=10, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.floats(1.2, 1.4))
+def test_a_value_whose_missions_succeed_and_earn_too_little_is_moved_back(low: float) -> None:
+    field: Any = Costly(low, 1.6)
+    field.order.goal = replace(field.order.goal, passing=True)
+    assert low <= accepted_factor(field, (2.6,)) < 1.9
 
 
 class Narrow(Window):
